@@ -89,7 +89,7 @@ def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list
     request = ReportRequest(**told, about=about)
     if request.length not in LENGTHS:
         raise InputError("length", request.length, f"one of {', '.join(LENGTHS)}", ("length",))
-    for word in request.formats:
+    for word in request.formats or [""]:
         if word not in FORMATS:
             raise InputError("formats", word, f"some of {', '.join(FORMATS)}", ("formats",))
     return _Files(request).all()

@@ -12,7 +12,7 @@ from reports.about import About
 from reports.formula.layout import Amount, Letter
 from reports.front_plot import front_in_words, front_svg
 from reports.numbers import printed, shown, unit_text
-from reports.reasons import significant, why
+from reports.reasons import BINDING, SIGN_OF, significant, why
 from reports.sheet.blocks import (
     Block,
     Bullets,
@@ -31,7 +31,7 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import TIGHT, front_details, front_state, next_in_tables, percent, program_name
+from reports.sheet.design_sheet import front_details, front_state, next_in_tables, percent, program_name
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
@@ -287,7 +287,10 @@ class _Report:
         for name in sorted(design.limits, key=order):
             value, limit = design.limits[name]
             used, unit = design.utilisation.get(name), self.frame.limit_units.get(name, "-")
-            bad, tight = name in design.violated, (used or 0) >= TIGHT and self.frame.limit_senses.get(name) != "equal"
+            bad, tight = (
+                name in design.violated,
+                (used or 0) >= BINDING and self.frame.limit_senses.get(name) != "equal",
+            )
             verdict: Cell = Strong("VIOLATED") if bad else "holds" if used is not None else "not checked"
             sides: list[Cell] = ["", ""] if used is None else [Amount(shown(x, unit)) for x in (value, limit)]
             rows.append(
@@ -295,7 +298,7 @@ class _Report:
                     (
                         said(texts.get(name) or name, " ", Code(name)),
                         sides[0],
-                        SENSES[self.frame.limit_senses[name]],
+                        SIGN_OF[self.frame.limit_senses[name]],
                         sides[1],
                         "" if used is None else percent(used),
                         verdict,
@@ -530,7 +533,6 @@ def _spec_text(front: ParetoFront) -> str:
     return "\n".join(lines) + "\n"
 
 
-SENSES = {"at_most": "≤", "at_least": "≥", "equal": "="}
 VALUE_COLUMNS = (
     Column("meaning", width=3.4),
     Column("symbol", width=0.8),

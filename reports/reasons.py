@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from synth.results import Design, ParetoFront
 
 BINDING = 0.999  # a limit used more than this decides something
+SIGN_OF = {"at_most": "≤", "at_least": "≥", "equal": "="}  # of a limit, by its sense
 EQUAL = 1e-9  # relative; objectives closer than this are the same
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from reports.excel_sheets import BAD, Book, Sheet
+from reports.reasons import SIGN_OF
 from reports.workbook_cells import in_unit
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront, shown_value
@@ -14,7 +15,6 @@ from synth.units import header
 
 ASKED = "--xlsx"
 UTILISATION = "utilisation: "  # heads these columns of the table of a front; they stand on the sheet of limits
-SIGNS = {"at_most": "≤", "at_least": "≥", "equal": "="}
 STATES = {
     Status.OPTIMAL: "proven within the gap asked for",
     Status.FEASIBLE: "feasible, not proven",
@@ -193,7 +193,7 @@ def _limits(book: Book, front: ParetoFront) -> None:
     """Write how much of each limit each design uses, in colours by its size; both sides of it beside."""
     frame = front.frame
     names = list(frame.limit_units)
-    sides = [header(f"{name} {SIGNS[frame.limit_senses[name]]}", frame.limit_units[name]) for name in names]
+    sides = [header(f"{name} {SIGN_OF[frame.limit_senses[name]]}", frame.limit_units[name]) for name in names]
     heads = ["rank", *names, "", *(f"{word}: {side}" for side in sides for word in ("found", "allowed"))]
     rows = [_used(front, design, names) for design in front.designs]
     sheet = book.sheet("limits", _widths(heads, rows), locked=False, wide=True)

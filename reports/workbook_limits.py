@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from reports.excel_formula import from_si_text, number_text
 from reports.excel_sheets import BAD, GOOD, GREY, MARKED, Sheet, cell
+from reports.reasons import SIGN_OF
 from reports.workbook_cells import Formulas, in_unit
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict
@@ -17,7 +18,6 @@ FOUND_SI, ALLOWED_SI, MISSED, VOID, OWN, HELD, BEHIND, COUNTS = range(10, 18)
 HEADS = ("limit", "found", "", "allowed", "unit", "used", "verdict", "as solved", "meaning", "source")
 INNER_HEADS = ("found, SI", "allowed, SI", "missed by", "void", "holds", "counts as held", "behind", "may govern")
 WIDTHS = (32, 14, 4, 14, 11, 10, 26, 10, 48, 36, 14, 14, 14, 9, 9, 9, 24, 12)
-SIGNS = {"at_most": "≤", "at_least": "≥", "equal": "="}
 HOLDS, VIOLATED, NOT_GIVEN, NOT_TOLD = "holds", "VIOLATED", "not checked: not given", "not told: behind "
 ENDLESS, NOTHING = "∞", "–"
 BEYOND = "beyond what can be told as a share"
@@ -117,7 +117,7 @@ def _sides(sheet: Sheet, row: int, x: LimitRule, verdict: LimitVerdict, formulas
         gone = bool(verdict.failed) or math.isnan(number)
         sheet.formula(row, outer, f'IFERROR({shown},"{NOTHING}")', NOTHING if gone else number)
     sheet.text(row, LIMIT, x.name, "name")
-    sheet.text(row, SIGN, SIGNS[x.sense], "verdict")
+    sheet.text(row, SIGN, SIGN_OF[x.sense], "verdict")
     sheet.text(row, UNIT, x.unit if x.unit != "-" else "", "unit")
     note = " (guard: formulas exist only where it holds)" if x.guard else ""
     sheet.text(row, TEXT, x.text + note)

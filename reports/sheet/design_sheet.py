@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from reports.about import About
 from reports.formula.layout import Amount, Letter, Word, textbook
 from reports.numbers import printed, shown
+from reports.reasons import BINDING
 from reports.sheet.blocks import (
     Block,
     Bullets,
@@ -31,7 +32,6 @@ from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, 
 from synth.results.provenance import installed_versions
 
 LENGTHS = ("summary", "normal", "full")
-TIGHT = 0.999  # share of a limit from which on it decides something
 CONFIDENCE_NOTED = ("typical", "assumed")
 
 
@@ -196,7 +196,7 @@ class _Sheet:
         broken = [x.name for x in ranked if not self.outcome.verdicts[x.name].holds]
         if broken:
             return f"Violated: {', '.join(broken)}."
-        tight = [x.name for x in ranked if (self.outcome.verdicts[x.name].used or 0) >= TIGHT and x.sense != "equal"]
+        tight = [x.name for x in ranked if (self.outcome.verdicts[x.name].used or 0) >= BINDING and x.sense != "equal"]
         told = f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
         worst = self.design.robust.worst_limit if self.design.robust else ""
         return f"At the nominal point: {told} Over the range that scatters the worst is {worst}." if worst else told
@@ -215,7 +215,7 @@ class _Sheet:
         words: Cell = "holds" if verdict.holds else Strong("VIOLATED")
         if x.source and "unsourced" in x.source:
             words = said(words, " (rule of practice)")
-        mark = "bad" if not verdict.holds else "tight" if (verdict.used or 0) >= TIGHT and x.sense != "equal" else ""
+        mark = "bad" if not verdict.holds else "tight" if (verdict.used or 0) >= BINDING and x.sense != "equal" else ""
         return TableRow((name, condition, numbers, used, words), mark=mark, used=verdict.used)
 
     def _over_a_range(self) -> list[Block]:

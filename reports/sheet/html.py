@@ -10,7 +10,6 @@ from importlib.resources import files
 
 from reports.formula.layout import Layout
 from reports.formula.mathml import mathml
-from reports.numbers import unit_text
 from reports.sheet.blocks import (
     Block,
     Bullets,
@@ -192,9 +191,3 @@ def _step(block: StepBlock) -> str:
 def _line(symbol: str, line: Layout, mark: str, continues: bool) -> str:
     sign = "" if continues else "<mo>=</mo>"
     return f"<mtr><mtd>{symbol}</mtd><mtd>{sign}</mtd><mtd{_marked(mark)}>{mathml(line)}</mtd></mtr>"
-
-
-def unit_words(unit: str) -> str:
-    """Return a unit for a heading, in brackets; nothing where there is none."""
-    text = unit_text(unit)
-    return f" [{text}]" if text else ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -23,6 +22,7 @@ from reports.formula.layout import (
 from reports.formula.lines import broken
 from reports.formula.plain import plain
 from reports.numbers import DIGITS, Shown, UnitIn, shown
+from reports.reasons import SIGN_OF
 from reports.sheet.blocks import Cell, StepBlock, said
 from synth.feasibility import TOLERANCE
 from synth.results.calculation import CalculatedDesign, Calculation, LimitVerdict, NamedQuantity
@@ -156,16 +156,13 @@ class Steps:
     def limit_condition(self, value: Expression, limit: Expression, sense: str) -> Layout:
         """Return a limit in symbols."""
         sides = [self.symbols.lay(textbook(side)) for side in (value, limit)]
-        return Row((sides[0], Sign(SENSES[sense]), sides[1]))
+        return Row((sides[0], Sign(SIGN_OF[sense]), sides[1]))
 
     def limit_numbers(self, verdict: LimitVerdict, sense: str, unit: str) -> Cell:
         """Return both sides of a limit in numbers, with enough digits to see that one is missed."""
         both = ((verdict.value, verdict.limit), (verdict.limit, verdict.value))
         sides = [Amount(apart(x, other, unit, verdict.holds)) for x, other in both]
-        return said(sides[0], f" {SENSES[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
-
-
-SENSES = {"at_most": "≤", "at_least": "≥", "equal": "="}
+        return said(sides[0], f" {SIGN_OF[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
 
 
 def apart(value: float, other: float, unit: str, holds: bool) -> Shown:
@@ -175,8 +172,3 @@ def apart(value: float, other: float, unit: str, holds: bool) -> Shown:
         if same or shown(value, unit, digits) != shown(other, unit, digits):
             return shown(value, unit, digits)
     return shown(value, unit, MORE_DIGITS[-1])
-
-
-def names_of(steps: Sequence[StepBlock]) -> Mapping[str, int]:
-    """Return the numbers of steps by the name of their quantity."""
-    return {step.name: step.number for step in steps}

@@ -21,7 +21,6 @@ from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON, load_front
 
-FORMATS = ("html", "pdf", "xlsx", "json")
 CURVES = ("*.svg",)
 
 
@@ -95,16 +94,8 @@ class ReportOptions:
     def read(
         formats: str | Sequence[str], about: Any, length: str, fonts: Sequence[str | Path], about_folder: Path | None
     ) -> ReportOptions:
-        """Return what was asked for.
-
-        Raises
-        ------
-        InputError
-            No format is named.
-        """
+        """Return what was asked for; what is wrong in it reports tell themselves."""
         words = (formats,) if isinstance(formats, str) else tuple(formats)
-        if not words:
-            raise InputError("formats", list(words), f"some of {', '.join(FORMATS)}", ("formats",))
         return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
 
     def asked(self) -> dict[str, Any]:
