@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from problems.disc.pack import Facing
+from problems.friction.bought import declare_bought
 from problems.friction.engagement import Pair
 from synth.declaration import Declaration, Part
 
@@ -27,20 +28,8 @@ def declare_facing_set(d: Declaration) -> Part | None:
     Part or None
         The row of the list; None where facings are made to size.
     """
-    plates = d.option(
-        "plates",
-        ("made", "standard"),
-        "made",
-        symbol="pls",
-        text="made: the friction ring to the sizes found; standard: a row of table facing_sets, your maker's list",
-        source=f"table {TABLE}",
-        group="model",
-    )
-    if plates == "made":
-        return None
-    return d.part(
-        "facing_set", TABLE, symbol="set", text="Facing on either side of a disc, as bought", source=f"table {TABLE}"
-    )
+    text = "Facing on either side of a disc, as bought"
+    return declare_bought(d, slot="facing_set", table=TABLE, made="the friction ring", text=text)
 
 
 def ring_diameters(row: Part) -> tuple[Any, Any]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from problems.friction.bought import declare_bought
 from problems.friction.engagement import Pair
 from problems.friction.ring import Ring
 from problems.multi_plate.pack import Pack, Plates
@@ -28,24 +29,8 @@ def declare_plate_set(d: Declaration) -> Part | None:
     Part or None
         The row of the list; None where plates are made to size.
     """
-    plates = d.option(
-        "plates",
-        ("made", "standard"),
-        "made",
-        symbol="pls",
-        text="made: ring, cores and splines to the sizes found; standard: a row of table plate_sets, your maker's list",
-        source=f"table {TABLE}",
-        group="model",
-    )
-    if plates == "made":
-        return None
-    return d.part(
-        "plate_set",
-        TABLE,
-        symbol="set",
-        text="Inner and outer plate that fit together",
-        source=f"table {TABLE}",
-    )
+    text = "Inner and outer plate that fit together"
+    return declare_bought(d, slot="plate_set", table=TABLE, made="ring, cores and splines", text=text)
 
 
 def ring_diameters(row: Part) -> tuple[Any, Any]:
