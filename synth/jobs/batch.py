@@ -17,14 +17,16 @@ from sqlalchemy import URL
 
 from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
+from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
+from synth.jobs.job_queue import BATCH
 from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_groups import RowGroups
 from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
 from synth.jobs.runner import Runner, Shares
-from synth.jobs.store import DONE, OPEN, Store, digest, encoded, file_url
+from synth.jobs.store import Store
 from synth.jobs.warm_starts import WarmStarts
 from synth.model.registry import families, load
 from synth.output_folder import claimed, settle
@@ -326,7 +328,10 @@ class BatchJob:
         place = self.address if isinstance(self.address, str) else Path(str(self.address.database))
         if isinstance(place, Path) and not place.is_file():
             return False
-        return self.store.job(self.id) is not None
+        found = self.store.job(self.id) or self.store.job_like(BATCH, self.id)
+        if found is not None:
+            self.id = found.id  # one that a service has made has an id of its own
+        return found is not None
 
     def _is_single(self) -> bool:
         """Tell whether each row asks for one best design only."""
@@ -339,8 +344,8 @@ class BatchJob:
         job = self.store.job(self.id)
         assert job is not None
         if job.folder != str(self.folder.resolve()):
-            self.store.set_folder(self.id, str(self.folder.resolve()))
-        self.store.set_state(self.id, OPEN, "continued", f"was {job.state}")
+            self.store.change(self.id, folder=str(self.folder.resolve()))
+        self.store.reopen(self.id, "continued", f"was {job.state}")
 
     def _refuse(self, rows: list[ReadRow], count: int) -> None:
         if not rows:
@@ -483,9 +488,10 @@ def work_off(
     if stopped == "cancelled":
         return stopped
     if stopped:
+        store.rest(job)
         store.tell(job, "stopped", stopped)
     else:
-        store.set_state(job, DONE, "done")
+        store.settle(job)
     return stopped
 
 
@@ -566,7 +572,7 @@ def resume(
     if changed:
         wanted = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
         raise InputError("job", job, wanted)
-    store.set_state(job, OPEN, "resumed", f"was {found.state}")
+    store.reopen(job, "resumed", f"was {found.state}")
     return work_off(
         store, job, Shares(content["settings"], content["catalogs"], None), workers, scheduler, progress, say
     )

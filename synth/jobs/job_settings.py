@@ -23,11 +23,17 @@ class StoreSettings:
         In s, that a claim lasts without a sign of life: so long a unit is idle whose worker died on another machine.
     chunk : int
         Rows that are written or read at a time: enough that statements cost little, and little memory.
+    starving : float
+        In s, after which bulk work that nobody has served counts as work that somebody waits for.
+    forgotten : float
+        In s, after which a worker that has given no sign of life is listed no more.
     """
 
     patience: float = 60.0
     lease: float = 60.0
     chunk: int = 500
+    starving: float = 60.0
+    forgotten: float = 86400.0
 
 
 @dataclass(frozen=True, kw_only=True)

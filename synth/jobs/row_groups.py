@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from synth.jobs.database import digest
 from synth.jobs.job_settings import JOBS, GroupSettings
 from synth.jobs.solve import GROUP
-from synth.jobs.store import digest
 
 WIDEST, FINEST = 2.0**10, 2.0**40  # no place lies further from zero; cells of this many parts of one
 

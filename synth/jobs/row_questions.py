@@ -11,8 +11,8 @@ from typing import Any
 
 from synth.errors import InputError, UnknownOptionError, shortened
 from synth.jobs.cells import READERS
+from synth.jobs.database import digest, encoded
 from synth.jobs.row_table import RowTable
-from synth.jobs.store import digest, encoded
 from synth.jobs.vocabulary import FAMILY, FIX, LIMITS, OPTIONS, PARTS, STRUCTURE, Universe, Word, words_of
 from synth.jobs.warm_starts import place
 from synth.model.problem import DesignProblem

@@ -16,10 +16,12 @@ from sqlalchemy.exc import OperationalError
 from synth.deadline import until
 from synth.errors import InputError
 from synth.jobs.executors import Cluster, Inline, Processes, is_lost
+from synth.jobs.job_queue import CANCELLED, Claim
 from synth.jobs.job_settings import JOBS, RunnerSettings
+from synth.jobs.owners import new_owner
 from synth.jobs.signs import show
 from synth.jobs.solve import ALONE, OtherCodeError, is_group, solve_unit
-from synth.jobs.store import CANCELLED, NONE_ALONE, Account, Claim, Outcome, Store, new_owner
+from synth.jobs.store import NONE_ALONE, Account, Outcome, Store
 from synth.results.provenance import code_digest
 
 T = TypeVar("T")

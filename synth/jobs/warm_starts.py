@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from synth.jobs.database import digest
 from synth.jobs.job_settings import JOBS, WarmStartSettings
 from synth.jobs.solve import LIKE
-from synth.jobs.store import digest
 
 SMALL = 1e-6  # SI; above it requirements are compared by their ratio
 

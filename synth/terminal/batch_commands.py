@@ -194,6 +194,9 @@ def list_jobs(
     found: list[tuple[Job, Any]] = []
     for store in _stores(database, folders or None):
         with store:
+            store.release_dead()
+            for job in store.jobs():
+                store.rest(job.id)
             found += [(job, store.account(job.id)) for job in store.jobs()]
     print_jobs(found)
 
@@ -211,13 +214,10 @@ def show(job: JobName, database: Database = None) -> None:
 @jobs_app.command()
 def cancel(job: JobName, database: Database = None) -> None:
     """Stop a job wherever it runs; what it has found is kept, and resume goes on."""
-    from synth.jobs.store import CANCELLED, DONE
-
     store, found = _find(job, database)
     with store:
-        if found.state == DONE:
-            raise InputError("JOB", job, "a job that is not done yet")
-        store.set_state(found.id, CANCELLED, "cancelled")
+        if not store.cancel(found.id):
+            raise InputError("JOB", job, f"a job that is not {found.state} yet")
     print(f"{found.id}: cancelled; clutchsynth jobs resume goes on")
 
 
@@ -256,7 +256,8 @@ def resume(
 def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
     """Return the databases that are meant: the one named, or those in folders."""
     from synth.jobs.batch import DATABASE
-    from synth.jobs.store import Store, file_url
+    from synth.jobs.database import file_url
+    from synth.jobs.store import Store
 
     if database is not None and folders is None:
         return [Store(database, create=False)]

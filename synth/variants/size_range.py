@@ -17,8 +17,9 @@ from synth.errors import InputError, whole_number
 from synth.files import csv_text, frame_csv
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.batch import DATABASE, BatchResult
+from synth.jobs.database import file_url
 from synth.jobs.outputs import SHORT, explanation_of, status_of
-from synth.jobs.store import Store, file_url
+from synth.jobs.store import Store
 from synth.model.model import Model
 from synth.model.registry import load
 from synth.output_folder import SIZE_RANGE, save_result

@@ -189,7 +189,7 @@ def emptied(path: Path) -> None:
 
 def without_tables(path: Path) -> None:
     with sqlite3.connect(path) as connection:
-        connection.execute("DROP TABLE batch_row")
+        connection.execute("DROP TABLE job_row")
 
 
 def garbage(path: Path) -> None:
@@ -204,7 +204,7 @@ def damaged(path: Path) -> None:
 
 def cells_cut(path: Path) -> None:
     with sqlite3.connect(path) as connection:
-        connection.execute("UPDATE batch_job SET content = '{'")
+        connection.execute("UPDATE job SET content = '{'")
 
 
 @pytest.mark.slow

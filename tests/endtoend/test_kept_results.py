@@ -74,7 +74,7 @@ def out(small: Path, tmp_path: Path) -> Path:
 def until_it_works(database: Path, rows: int) -> None:
     """Wait until a worker has taken the first rows of a batch of so many."""
     taken = (
-        "SELECT count(*) FROM batch_unit JOIN batch_job ON batch_unit.job = batch_job.id WHERE rows = ? AND owner <> ''"
+        "SELECT count(*) FROM unit JOIN job ON unit.job = job.id WHERE rows = ? AND owner <> ''"
     )
     deadline = time.monotonic() + 100
     while time.monotonic() < deadline:
@@ -220,7 +220,7 @@ def test_a_batch_without_room_says_so_in_one_sentence(tmp_path: Path) -> None:
 @pytest.mark.skipif(not sys.platform.startswith("linux") or os.geteuid() != 0, reason="only root can mount a disk")
 def test_a_batch_whose_disk_gets_full_keeps_what_it_has_and_goes_on(tmp_path: Path) -> None:
     rows(tmp_path / "rows.csv", *range(500, 516))
-    with small_disk(tmp_path / "out", 300) as disk:
+    with small_disk(tmp_path / "out", 600) as disk:
         full = clutchsynth(*BATCH, "-q", folder=tmp_path)
         assert full.returncode == 4
         assert len(full.stderr.splitlines()) == 1

@@ -11,7 +11,7 @@ import pytest
 import sqlalchemy as sa
 from sqlalchemy.exc import OperationalError
 
-from synth.jobs.store import file_url
+from synth.jobs.database import file_url
 
 
 def server() -> sa.URL:

@@ -20,10 +20,11 @@ import synth
 from synth.errors import InputError
 from synth.jobs import runner
 from synth.jobs.batch import BatchJob, resume, work_off
+from synth.jobs.database import file_url
 from synth.jobs.executors import Inline, Processes
 from synth.jobs.job_settings import JOBS
 from synth.jobs.runner import Shares
-from synth.jobs.store import CANCELLED, Store, file_url
+from synth.jobs.store import Store
 from synth.question.settings import SearchSettings
 from tests.jobs.deadly import deadly_unit, faulty_unit
 from tests.sample_problems.rod import Rod
@@ -258,7 +259,7 @@ def test_cancelling_stops_and_resuming_goes_on(tmp_path: Path) -> None:
     def look(state: Mapping[str, Any]) -> None:
         states.append(state)
         if len(states) == 1:
-            job.store.set_state(job.id, CANCELLED, "cancelled")
+            job.store.cancel(job.id)
             time.sleep(2 * JOBS.runner.tick + 0.3)  # until the heart has beaten
 
     assert job.work(None, None, look) == "cancelled"

@@ -14,7 +14,8 @@ import pytest
 import sqlalchemy as sa
 
 from synth.jobs.batch import DATABASE
-from synth.jobs.store import Store, file_url
+from synth.jobs.database import file_url
+from synth.jobs.store import Store
 from tests.repetitions import repetitions
 from tests.terminal.entry import COMMAND, in_process
 
@@ -128,7 +129,7 @@ def at_work(file: Path) -> bool:
     engine = sa.create_engine(file_url(file))
     try:
         with engine.connect() as connection:
-            return bool(connection.execute(sa.text("SELECT count(*) FROM batch_unit WHERE state = 'running'")).scalar())
+            return bool(connection.execute(sa.text("SELECT count(*) FROM unit WHERE state = 'running'")).scalar())
     except sa.exc.OperationalError:
         return False  # the tables are just being made
     finally:

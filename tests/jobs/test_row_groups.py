@@ -15,12 +15,13 @@ import synth
 from synth import deadline
 from synth.deadline import Stopped
 from synth.jobs import runner
+from synth.jobs.database import digest
 from synth.jobs.executors import Processes
 from synth.jobs.job_settings import GroupSettings, JobSettings, RunnerSettings
 from synth.jobs.row_groups import RowGroups, neighbourhoods
 from synth.jobs.signs import show
 from synth.jobs.solve import ALONE, GROUP, Shared, answered_together, is_group, solve_unit
-from synth.jobs.store import CANCELLED, Outcome, Store, digest
+from synth.jobs.store import Outcome, Store
 from synth.jobs.warm_starts import place
 from synth.parametric.joint_search import JointSearch
 from tests.jobs.asked import batch
@@ -262,7 +263,7 @@ def test_a_job_that_is_cancelled_stops_within_a_group(
     def endless(search: JointSearch) -> None:
         with Store(f"sqlite:///{tmp_path / 'jobs.sqlite'}") as store:
             (job,) = store.jobs()
-            store.set_state(job.id, CANCELLED, "cancelled")
+            store.cancel(job.id)
         end = time.monotonic() + 60
         while time.monotonic() < end:
             deadline.check()

@@ -18,9 +18,12 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 
 from synth.errors import InputError
-from synth.jobs import store as module
+from synth.jobs import database as module
+from synth.jobs.database import digest, file_url
+from synth.jobs.job_queue import CANCELLED, OPEN, RUNNING
 from synth.jobs.models import VERSION_TABLE, Base, WorkUnit
-from synth.jobs.store import CANCELLED, OPEN, Outcome, Store, digest, file_url, has_died, new_owner
+from synth.jobs.owners import has_died, new_owner
+from synth.jobs.store import Outcome, Store
 
 
 def outcome(text: str = "found", status: str = "optimal") -> Outcome:
@@ -72,7 +75,7 @@ def test_a_job_is_worked_off_and_read_back(store: Store) -> None:
     assert found[0].content == {"rows": [["found"]], "value": 0.1 + 0.2}
     assert [row.line for row in store.rows("j", canonical=True)] == [6, 5, 4, 3, 2]
     assert list(store.layouts("j").values()) == [{"family": "f", "columns": ["found"]}]
-    assert [kind for _, kind, _ in store.events("j")] == ["created"]
+    assert [kind for _, kind, _ in store.events("j")] == ["created", "started"]
     assert [content["n"] for _, _, content in store.questions("j")] == [0, 1, 2, 3, 4]
 
 
@@ -184,7 +187,7 @@ def test_a_question_that_fails_is_tried_alone_and_at_last_keeps_its_error(store:
 def test_units_of_a_process_that_died_are_free_at_once(store: Store) -> None:
     store.create(job(), rows(2), 1)
     gone = subprocess.run(
-        [sys.executable, "-c", "from synth.jobs.store import new_owner; print(new_owner())"],
+        [sys.executable, "-c", "from synth.jobs.owners import new_owner; print(new_owner())"],
         capture_output=True,
         text=True,
         check=True,
@@ -217,11 +220,19 @@ def test_answers_of_the_same_basis_are_taken_over(store: Store) -> None:
 
 def test_the_state_of_a_job_changes_with_an_event(store: Store) -> None:
     store.create(job(), rows(1), 1)
-    store.set_state("j", CANCELLED, "cancelled", "by hand")
+    assert store.cancel("j")
     found = store.job("j")
     assert found is not None
     assert found.state == CANCELLED
-    assert store.events("j")[-1][1:] == ("cancelled", "by hand")
+    assert store.events("j")[-1][1:] == ("cancelled", "")
+    assert not store.cancel("j")
+    assert store.claim("j", new_owner(), 1) == []
+    store.reopen("j", "resumed", "by hand")
+    assert len(store.claim("j", new_owner(), 1)) == 1
+    found = store.job("j")
+    assert found is not None
+    assert found.state == RUNNING
+    assert [kind for _, kind, _ in store.events("j")] == ["created", "cancelled", "resumed", "started"]
 
 
 def test_migrations_make_what_the_models_say(store: Store) -> None:

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 import synth
+from synth.jobs.database import digest
 from synth.jobs.job_settings import JobSettings, WarmStartSettings
 from synth.jobs.solve import LIKE
-from synth.jobs.store import Store, digest
+from synth.jobs.store import Store
 from synth.jobs.warm_starts import WarmStarts, place
 from tests.jobs.asked import batch
 from tests.sample_problems.rod import Rod

@@ -1,0 +1,732 @@
+"""The queue of a job database: what is asked, who works at it, and how it ended. It alone is the truth.
+
+A unit is claimed for a time, and the claim is renewed while its owner lives. What comes out is written only by the
+owner that still holds the claim (its token counts claims), in one transaction with the end of the unit. States of jobs
+change by compare-and-set: a job that was cancelled cannot end in another way any more.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import secrets
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sqlalchemy as sa
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from synth.jobs.database import Database, digest
+from synth.jobs.models import (
+    Event,
+    Job,
+    JobRecord,
+    RowQuestion,
+    Tenant,
+    Upload,
+    WorkerSign,
+    WorkUnit,
+    moment,
+)
+from synth.jobs.owners import has_died
+
+OPEN, RUNNING, DONE, CANCELLED, FAILED, STOPPED = "open", "running", "done", "cancelled", "failed", "stopped"
+LIVE = (OPEN, RUNNING)  # states of a job that somebody has to work at
+WHOLE_JOB, PLAN, ROWS = "job", "plan", "rows"  # tasks of units
+BATCH, SIZE_RANGE = "batch", "size_range"  # kinds that the store itself knows of: their answers stand in tables
+LOCAL = 1  # the tenant of the command line, and of a service without tokens
+LETTERS = "0123456789abcdefghjkmnpqrstvwxyz"  # of ids: none that is read as another
+RUNNING_LIMIT, OPEN_LIMIT = "running", "open_jobs"  # of a tenant
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A unit that this owner may work on, as long as the lease is renewed."""
+
+    unit: int
+    token: int
+    attempts: int
+    questions: dict[str, Any]  # by key
+    task: str = ROWS
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewJob:
+    """A job to be made, of one unit.
+
+    Parameters
+    ----------
+    kind, title : str
+    request : mapping
+        What is asked, as it is kept.
+    fingerprint, code : str
+        Of what decides the results, and of the programs that may work at it.
+    tenant : int
+    task : str
+        Of its first unit.
+    priority : int
+        0 for bulk work, 1 where somebody waits.
+    content : mapping
+        What the kind keeps with it.
+    idempotency, body : str, optional
+        A key that the client has chosen for this request, and the digest of the request: said again, it makes no
+        second job.
+    parent : str, optional
+        The job that it follows from.
+    seconds_limit, keep : float, optional
+        In s: how long it may be worked at, and how long it is kept.
+    source : str
+        Where it comes from, for people.
+    """
+
+    kind: str
+    title: str
+    request: Mapping[str, Any]
+    fingerprint: str
+    code: str | None
+    tenant: int = LOCAL
+    task: str = WHOLE_JOB
+    priority: int = 1
+    content: Mapping[str, Any] = field(default_factory=dict)
+    idempotency: str | None = None
+    body: str = ""
+    parent: str | None = None
+    seconds_limit: float | None = None
+    keep: float | None = None
+    source: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A file that is part of a result."""
+
+    name: str
+    media: str
+    content: bytes
+
+    @property
+    def digest(self) -> str:
+        """The SHA-256 of the content."""
+        return hashlib.sha256(self.content).hexdigest()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ending:
+    """How a job ended: its state, its records, and what lists tell of it."""
+
+    state: str
+    outcome: str | None = None
+    summary: Mapping[str, Any] | None = None
+    error: Mapping[str, Any] | None = None
+    records: Sequence[Record] = ()
+
+
+@dataclass(frozen=True)
+class Happening:
+    """An event as others are told of it."""
+
+    id: int
+    job: str
+    time: float
+    kind: str
+    text: str
+    data: Mapping[str, Any] | None
+
+
+class KeyTakenError(Exception):
+    """The idempotency key was used for another request."""
+
+
+class QueueFullError(Exception):
+    """A tenant has as many open jobs as it may have; ``most`` says how many."""
+
+    def __init__(self, most: int) -> None:
+        super().__init__(f"{most} jobs are open already")
+        self.most = most
+
+
+def new_id() -> str:
+    """Return an id that no other job has, and that sorts by time: 10 letters of milliseconds, 16 at random."""
+    number = (time.time_ns() // 1_000_000) << 80 | secrets.randbits(80)
+    return "".join(LETTERS[number >> shift & 31] for shift in range(125, -1, -5))
+
+
+class JobQueue(Database):
+    """The jobs of a database, and the work that they are."""
+
+    # -- jobs ----------------------------------------------------------------------------------
+
+    def job(self, job: str, tenant: int | None = None) -> Job | None:
+        """Return a job; None where there is none, or where it belongs to another tenant than the one named."""
+        with Session(self.engine, expire_on_commit=False) as session:
+            return session.scalar(sa.select(Job).where(Job.id == job, *_of(tenant)))
+
+    def job_like(self, kind: str, fingerprint: str, tenant: int = LOCAL) -> Job | None:
+        """Return the job of a kind that asks just this; None where there is none."""
+        with Session(self.engine, expire_on_commit=False) as session:
+            wanted = (Job.tenant == tenant, Job.kind == kind, Job.fingerprint == fingerprint)
+            return session.scalar(sa.select(Job).where(*wanted))
+
+    def jobs(self) -> list[Job]:
+        """Return all jobs, the latest first."""
+        with Session(self.engine, expire_on_commit=False) as session:
+            return list(session.scalars(sa.select(Job).order_by(Job.created.desc(), Job.id)))
+
+    def page(
+        self,
+        tenant: int | None,
+        *,
+        states: Sequence[str] = (),
+        kind: str | None = None,
+        text: str = "",
+        parent: str | None = None,
+        pinned: bool | None = None,
+        before: tuple[float, str] | None = None,
+        most: int = 50,
+    ) -> list[Job]:
+        """Return some jobs of a tenant, the latest first.
+
+        Parameters
+        ----------
+        tenant : int or None
+            Of all tenants for None.
+        states, kind, text, parent, pinned
+            Only those in these states, of this kind, with this text in their title or id, that follow from this job.
+        before : tuple of float and str, optional
+            ``created`` and ``id`` of the last job of the page before.
+        most : int
+        """
+        wanted: list[Any] = [*_of(tenant)]
+        if states:
+            wanted.append(Job.state.in_(states))
+        if kind is not None:
+            wanted.append(Job.kind == kind)
+        if parent is not None:
+            wanted.append(Job.parent == parent)
+        if pinned is not None:
+            wanted.append(Job.pinned.is_(pinned))
+        if text:
+            wanted.append(sa.or_(Job.title.icontains(text, autoescape=True), Job.id.startswith(text, autoescape=True)))
+        if before is not None:
+            created, name = before
+            wanted.append(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
+        with Session(self.engine, expire_on_commit=False) as session:
+            asked = sa.select(Job).where(*wanted).order_by(Job.created.desc(), Job.id.desc()).limit(most)
+            return list(session.scalars(asked))
+
+    def submit(self, new: NewJob) -> tuple[str, bool]:
+        """Write a job; return its id, and whether it is a new one.
+
+        A key that was used for the same request, and the same question of a batch, give the job that there is.
+
+        Raises
+        ------
+        KeyTakenError
+            The key was used for another request.
+        QueueFullError
+            The tenant has as many open jobs as it may have.
+        """
+        known = self._known(new)
+        if known is not None:
+            return known, False
+        self._refuse_beyond(new.tenant)
+        name = new_id()
+        columns = {
+            "id": name,
+            "tenant": new.tenant,
+            "kind": new.kind,
+            "title": new.title,
+            "state": OPEN,
+            "priority": new.priority,
+            "fingerprint": new.fingerprint,
+            "basis": "",
+            "code": new.code,
+            "idempotency": new.idempotency,
+            "parent": new.parent,
+            "request": dict(new.request),
+            "content": {**new.content, "body": new.body},
+            "rows": 0,
+            "seconds_limit": new.seconds_limit,
+            "pinned": False,
+            "source": new.source,
+            "folder": "",
+            "expires": None if new.keep is None else moment() + new.keep,
+            "created": moment(),
+            "updated": moment(),
+        }
+        try:
+            with self.engine.begin() as connection:
+                connection.execute(sa.insert(Job).values(**columns))
+                unit = {"job": name, "task": new.task, "state": OPEN, "token": 0, "attempts": 0}
+                connection.execute(sa.insert(WorkUnit).values(**unit))
+                tell_on(connection, name, "created", new.title)
+        except IntegrityError:  # somebody has said the same at the same time
+            known = self._known(new)
+            if known is None:
+                raise
+            return known, False
+        return name, True
+
+    def _known(self, new: NewJob) -> str | None:
+        """Return the job that a request has made before."""
+        with Session(self.engine) as session:
+            if new.idempotency is not None:
+                same = session.scalar(
+                    sa.select(Job).where(Job.tenant == new.tenant, Job.idempotency == new.idempotency)
+                )
+                if same is not None:
+                    if same.content.get("body") != new.body:
+                        raise KeyTakenError
+                    return same.id
+            if new.kind in (BATCH, SIZE_RANGE):
+                wanted = (Job.tenant == new.tenant, Job.kind == new.kind, Job.fingerprint == new.fingerprint)
+                return session.scalar(sa.select(Job.id).where(*wanted))
+        return None
+
+    def _refuse_beyond(self, tenant: int) -> None:
+        with self.engine.connect() as connection:
+            limits = connection.scalar(sa.select(Tenant.limits).where(Tenant.id == tenant)) or {}
+            most = limits.get(OPEN_LIMIT)
+            if most is not None:
+                asked = sa.select(sa.func.count()).select_from(Job).where(Job.tenant == tenant, Job.state.in_(LIVE))
+                if int(connection.scalar(asked) or 0) >= most:
+                    raise QueueFullError(int(most))
+
+    def change(self, job: str, **columns: Any) -> None:
+        """Change what people may change of a job: its title, its folder, whether it is kept for good."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.update(Job).where(Job.id == job).values(**columns, updated=moment()))
+
+    def cancel(self, job: str) -> bool:
+        """Cancel a job that has not ended; return False where it has. What it has found is kept."""
+        return self._set_state(job, LIVE, CANCELLED, "cancelled")
+
+    def reopen(self, job: str, kind: str, text: str = "") -> None:
+        """Let a job that has ended, or was given up, go on; say so among its events."""
+        with self.engine.begin() as connection:
+            again = {"state": OPEN, "ended": None, "error": None, "updated": moment()}
+            connection.execute(sa.update(Job).where(Job.id == job).values(**again))
+            tell_on(connection, job, kind, text)
+
+    def rest(self, job: str) -> None:
+        """Note that a job waits again, where nobody works at it any more."""
+        at_work = sa.exists().where(WorkUnit.job == job, WorkUnit.state == RUNNING)
+        with self.engine.begin() as connection:
+            connection.execute(sa.update(Job).where(Job.id == job, Job.state == RUNNING, ~at_work).values(state=OPEN))
+
+    def end(self, job: str, ending: Ending) -> bool:
+        """End a job that has not ended; return False where it has."""
+        with self.engine.begin() as connection:
+            return self._end_on(connection, job, ending)
+
+    def _set_state(self, job: str, before: Sequence[str], state: str, kind: str, text: str = "") -> bool:
+        with self.engine.begin() as connection:
+            changed = connection.execute(
+                sa.update(Job)
+                .where(Job.id == job, Job.state.in_(before))
+                .values(state=state, updated=moment(), ended=moment())
+            )
+            if changed.rowcount == 1:
+                tell_on(connection, job, kind, text, {"state": state})
+        return bool(changed.rowcount == 1)
+
+    def _end_on(self, connection: sa.Connection, job: str, ending: Ending) -> bool:
+        changed = connection.execute(
+            sa.update(Job)
+            .where(Job.id == job, Job.state.in_(LIVE))
+            .values(
+                state=ending.state,
+                outcome=ending.outcome,
+                summary=None if ending.summary is None else dict(ending.summary),
+                error=None if ending.error is None else dict(ending.error),
+                updated=moment(),
+                ended=moment(),
+            )
+        )
+        if changed.rowcount != 1:
+            return False
+        for record in ending.records:
+            self._keep_on(connection, job, record)
+        text = "" if ending.error is None else str(ending.error.get("message", ""))
+        tell_on(connection, job, ending.state, text, {"state": ending.state, "outcome": ending.outcome})
+        return True
+
+    def delete(self, job: str) -> None:
+        """Remove a job with everything that belongs to it; whoever works at it stops."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.delete(Job).where(Job.id == job))
+
+    # -- records -------------------------------------------------------------------------------
+
+    def keep(self, job: str, record: Record) -> None:
+        """Keep a file with a job, in place of one of the same name."""
+        with self.engine.begin() as connection:
+            self._keep_on(connection, job, record)
+
+    @staticmethod
+    def _keep_on(connection: sa.Connection, job: str, record: Record) -> None:
+        connection.execute(sa.delete(JobRecord).where(JobRecord.job == job, JobRecord.name == record.name))
+        packed = gzip.compress(record.content, 6, mtime=0)
+        connection.execute(
+            sa.insert(JobRecord).values(
+                job=job,
+                name=record.name,
+                media=record.media,
+                digest=record.digest,
+                size=len(record.content),
+                content=packed,
+            )
+        )
+
+    def records(self, job: str, names: Sequence[str] = ()) -> dict[str, Record]:
+        """Return the files of a job by name: all, or those named that there are."""
+        asked = sa.select(JobRecord.name, JobRecord.media, JobRecord.content).where(JobRecord.job == job)
+        if names:
+            asked = asked.where(JobRecord.name.in_(names))
+        with self.engine.connect() as connection:
+            return {
+                name: Record(name=name, media=media, content=gzip.decompress(content))
+                for name, media, content in connection.execute(asked.order_by(JobRecord.name))
+            }
+
+    def record_list(self, job: str) -> list[tuple[str, str, str, int]]:
+        """Return name, media type, digest and size of the files of a job."""
+        asked = sa.select(JobRecord.name, JobRecord.media, JobRecord.digest, JobRecord.size)
+        with self.engine.connect() as connection:
+            found = connection.execute(asked.where(JobRecord.job == job).order_by(JobRecord.name))
+            return [(name, media, digest, size) for name, media, digest, size in found]
+
+    # -- work ----------------------------------------------------------------------------------
+
+    def claim(self, job: str, owner: str, most: int, lease: float | None = None) -> list[Claim]:
+        """Take units that are open, or whose owner has not renewed its lease; for so many seconds, or as set."""
+        # PostgreSQL passes over what others are just taking; SQLite has one writer at a time and ignores the clause.
+        wanted = (
+            sa.select(WorkUnit.id)
+            .where(WorkUnit.job == job, _free())
+            .order_by(WorkUnit.id)
+            .limit(most)
+            .with_for_update(skip_locked=True)
+            .cte("wanted")
+        )
+        take = (
+            sa.update(WorkUnit)
+            .where(WorkUnit.id.in_(sa.select(wanted.c.id)))
+            .values(state=RUNNING, owner=owner, lease=self._until(lease), token=WorkUnit.token + 1)
+            .returning(WorkUnit.id, WorkUnit.token, WorkUnit.attempts, WorkUnit.task)
+            .execution_options(synchronize_session=False)
+        )
+        with self.engine.begin() as connection:
+            # First what changes the job: of a statement WITH an update in it, SQLite begins no transaction.
+            if not self._begin_on(connection, job, owner):
+                return []
+            taken = sorted((unit, token, attempts, task) for unit, token, attempts, task in connection.execute(take))
+            if not taken:
+                connection.rollback()
+                return []
+            asked = connection.execute(
+                sa.select(RowQuestion.unit, RowQuestion.key, RowQuestion.content)
+                .where(RowQuestion.unit.in_([unit[0] for unit in taken]))
+                .order_by(RowQuestion.position, RowQuestion.key)
+            ).all()
+        return [
+            Claim(unit, token, attempts, {key: content for of, key, content in asked if of == unit}, task)
+            for unit, token, attempts, task in taken
+        ]
+
+    @staticmethod
+    def _begin_on(connection: sa.Connection, job: str, owner: str) -> bool:
+        """Note that a job is worked at; return False where it has ended."""
+        of_job = sa.update(Job).where(Job.id == job)
+        first = of_job.where(Job.state == OPEN).values(
+            state=RUNNING, started=sa.func.coalesce(Job.started, moment()), served=moment(), updated=moment()
+        )
+        if connection.execute(first).rowcount == 1:
+            tell_on(connection, job, "started", owner, {"state": RUNNING})
+            return True
+        return connection.execute(of_job.where(Job.state == RUNNING).values(served=moment())).rowcount == 1
+
+    def claim_next(
+        self, owner: str, code: str, *, bulk: bool = True, lease: float | None = None
+    ) -> tuple[Job, Claim] | None:
+        """Take the unit whose turn it is, of any job that programs with this code may work at.
+
+        Where somebody waits goes before bulk work, then the tenant that has least under way, then the job that was
+        served longest ago. Bulk work that nobody has served for a while counts as waited for: it never starves.
+
+        Parameters
+        ----------
+        owner, code : str
+        bulk : bool
+            Whether bulk work may be taken; without, only what somebody waits for.
+        lease : float, optional
+            In s.
+        """
+        for job in self._in_turn(code, bulk):
+            claims = self.claim(job, owner, 1, lease)
+            if claims:
+                found = self.job(job)
+                if found is not None:
+                    return found, claims[0]
+        return None
+
+    def _in_turn(self, code: str, bulk: bool) -> list[str]:
+        """Return the jobs that have units to be taken, the next first."""
+        has_some = sa.exists().where(WorkUnit.job == Job.id, _free())
+        asked = sa.select(Job.id, Job.tenant, Job.priority, Job.served, Job.created, moment()).where(
+            Job.state.in_(LIVE), Job.code == code, has_some
+        )
+        with self.engine.connect() as connection:
+            found = connection.execute(asked).all()
+            if not found:
+                return []
+            under_way = {
+                tenant: int(count)
+                for tenant, count in connection.execute(
+                    sa.select(Job.tenant, sa.func.count())
+                    .join(WorkUnit, WorkUnit.job == Job.id)
+                    .where(WorkUnit.state == RUNNING, WorkUnit.lease >= moment())
+                    .group_by(Job.tenant)
+                )
+            }
+            limits = {name: limit for name, limit in connection.execute(sa.select(Tenant.id, Tenant.limits))}
+        queue = []
+        for job, tenant, priority, served, created, now in found:
+            most = limits.get(tenant, {}).get(RUNNING_LIMIT)
+            if most is not None and under_way.get(tenant, 0) >= most:
+                continue
+            waited = priority > 0 or now - (served or created) > self.settings.starving
+            if waited or bulk:
+                queue.append((not waited, under_way.get(tenant, 0), served or 0.0, created, job))
+        return [job for *_, job in sorted(queue)]
+
+    def interactive_waits(self, code: str) -> bool:
+        """Tell whether a unit is open that somebody waits for."""
+        has_open = sa.exists().where(WorkUnit.job == Job.id, WorkUnit.state == OPEN)
+        asked = sa.select(sa.exists().where(Job.state.in_(LIVE), Job.code == code, Job.priority > 0, has_open))
+        with self.engine.connect() as connection:
+            return bool(connection.scalar(asked))
+
+    def _until(self, lease: float | None) -> sa.ColumnElement[float]:
+        return moment() + (self.settings.lease if lease is None else lease)
+
+    def renew(self, owner: str, lease: float | None = None) -> None:
+        """Give a sign of life: everything that an owner works on stays its own."""
+        with self.engine.begin() as connection:
+            connection.execute(
+                sa.update(WorkUnit)
+                .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
+                .values(lease=self._until(lease))
+            )
+
+    def release(self, owner: str) -> None:
+        """Give back everything that an owner works on; that is no failed attempt."""
+        with self.engine.begin() as connection:
+            connection.execute(
+                sa.update(WorkUnit)
+                .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
+                .values(state=OPEN, owner=None, lease=None)
+            )
+
+    def give_back(self, claim: Claim, owner: str) -> bool:
+        """Give one unit back, to be taken again; that is no failed attempt."""
+        with self.engine.begin() as connection:
+            held = connection.execute(
+                sa.update(WorkUnit).where(*held_by(claim, owner)).values(state=OPEN, owner=None, lease=None)
+            )
+        return bool(held.rowcount == 1)
+
+    def release_dead(self, job: str | None = None) -> int:
+        """Take units back from processes of this machine that are gone, without waiting for their leases."""
+        of_job = () if job is None else (WorkUnit.job == job,)
+        with self.engine.begin() as connection:
+            owners = connection.scalars(
+                sa.select(WorkUnit.owner).where(*of_job, WorkUnit.state == RUNNING).distinct()
+            ).all()
+        dead = [owner for owner in owners if owner is not None and has_died(owner)]
+        for owner in dead:
+            self.release(owner)
+        return len(dead)
+
+    def put_back(self, job: str, claim: Claim, owner: str, error: str) -> bool:
+        """Leave a whole unit to be tried again, after an attempt that ended in an error."""
+        with self.engine.begin() as connection:
+            held = connection.execute(
+                sa.update(WorkUnit)
+                .where(*held_by(claim, owner))
+                .values(state=OPEN, owner=None, lease=None, attempts=claim.attempts + 1)
+            )
+            if held.rowcount == 1:
+                what = f" of {len(claim.questions)} questions" if claim.questions else ""
+                tell_on(connection, job, "failed", f"attempt {claim.attempts + 1}{what}: {error}")
+        return bool(held.rowcount == 1)
+
+    def complete(self, job: str, claim: Claim, owner: str, ending: Ending) -> bool:
+        """Write how a job of one unit ended, if the owner still holds the unit and the job has not ended.
+
+        Returns
+        -------
+        bool
+            False where another owner has the unit, or the job was cancelled; then nothing of it is written.
+        """
+        with self.engine.begin() as connection:
+            held = connection.execute(
+                sa.update(WorkUnit)
+                .where(*held_by(claim, owner))
+                .values(state=DONE, lease=None, attempts=claim.attempts + 1)
+            )
+            if held.rowcount == 1 and self._end_on(connection, job, ending):
+                return True
+            connection.rollback()
+        return False
+
+    def wanted(self, jobs: Iterable[str]) -> set[str]:
+        """Return those of some jobs that have not ended."""
+        with self.engine.connect() as connection:
+            return set(connection.scalars(sa.select(Job.id).where(Job.id.in_(list(jobs)), Job.state.in_(LIVE))))
+
+    def progress(self, job: str, state: Mapping[str, Any]) -> None:
+        """Note how far a job is; of one that has ended nothing is noted."""
+        with self.engine.begin() as connection:
+            connection.execute(
+                sa.update(Job).where(Job.id == job, Job.state == RUNNING).values(progress=dict(state), updated=moment())
+            )
+
+    def open_units(self, job: str) -> tuple[int, int]:
+        """Return how many units are open, and how many somebody works on."""
+        with self.engine.begin() as connection:
+            counted = connection.execute(
+                sa.select(WorkUnit.state, sa.func.count()).where(WorkUnit.job == job).group_by(WorkUnit.state)
+            )
+            found = {state: count for state, count in counted}
+        return int(found.get(OPEN, 0)), int(found.get(RUNNING, 0))
+
+    # -- workers -------------------------------------------------------------------------------
+
+    def sign(self, owner: str, host: str, code: str, slots: Mapping[str, Any]) -> None:
+        """Give a sign of life of a worker, and renew what it works on."""
+        with self.engine.begin() as connection:
+            seen = {"seen": moment(), "slots": dict(slots), "code": code}
+            known = connection.execute(sa.update(WorkerSign).where(WorkerSign.owner == owner).values(**seen))
+            if known.rowcount == 0:
+                new = {"owner": owner, "host": host, "started": moment(), **seen}
+                connection.execute(sa.insert(WorkerSign).values(**new))
+
+    def sign_off(self, owner: str) -> None:
+        """Take a worker from the list."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.delete(WorkerSign).where(WorkerSign.owner == owner))
+
+    def workers(self, within: float) -> list[WorkerSign]:
+        """Return the workers that have given a sign within so many seconds."""
+        with Session(self.engine, expire_on_commit=False) as session:
+            return list(session.scalars(sa.select(WorkerSign).where(WorkerSign.seen > moment() - within)))
+
+    def adopt(self, code: str, within: float) -> int:
+        """Take over jobs of one unit whose programs have gone, as after an update; return how many.
+
+        Batches stay with the program they were begun with: their answers must not be mixed.
+        """
+        living = sa.select(WorkerSign.code).where(WorkerSign.seen > moment() - within)
+        with self.engine.begin() as connection:
+            taken = connection.execute(
+                sa.update(Job)
+                .where(
+                    Job.state.in_(LIVE),
+                    Job.kind.not_in((BATCH, SIZE_RANGE)),
+                    Job.code != code,
+                    Job.code.not_in(living),
+                )
+                .values(code=code)
+            )
+        return int(taken.rowcount)
+
+    # -- events --------------------------------------------------------------------------------
+
+    def tell(self, job: str, kind: str, text: str = "", data: Mapping[str, Any] | None = None) -> None:
+        """Add an event."""
+        with self.engine.begin() as connection:
+            tell_on(connection, job, kind, text, data)
+
+    def events(self, job: str, most: int = 1000) -> list[tuple[float, str, str]]:
+        """Return the latest events of a job, oldest first: time, kind, text."""
+        with self.engine.begin() as connection:
+            found = connection.execute(
+                sa.select(Event.time, Event.kind, Event.text)
+                .where(Event.job == job)
+                .order_by(Event.id.desc())
+                .limit(most)
+            )
+            return [(time, kind, text) for time, kind, text in found][::-1]
+
+    def happenings(self, after: int, *, job: str | None = None, most: int = 1000) -> list[Happening]:
+        """Return events of all jobs, or of one, with higher numbers than this one."""
+        asked = sa.select(Event.id, Event.job, Event.time, Event.kind, Event.text, Event.data).where(Event.id > after)
+        if job is not None:
+            asked = asked.where(Event.job == job)
+        with self.engine.connect() as connection:
+            return [Happening(*row) for row in connection.execute(asked.order_by(Event.id).limit(most))]
+
+    def last_event(self) -> int:
+        """Return the number of the latest event; 0 before there are any."""
+        with self.engine.connect() as connection:
+            return int(connection.scalar(sa.select(sa.func.max(Event.id))) or 0)
+
+    # -- housekeeping --------------------------------------------------------------------------
+
+    def prune(self, most: int = 100) -> int:
+        """Remove some of the jobs whose time is over, and files that nobody has used; return how many jobs."""
+        over = (
+            sa.select(Job.id).where(Job.expires < moment(), Job.pinned.is_(False), Job.state.not_in(LIVE)).limit(most)
+        )
+        with self.engine.begin() as connection:
+            gone = list(connection.scalars(over))
+            connection.execute(sa.delete(Job).where(Job.id.in_(gone)))
+            connection.execute(sa.delete(Upload).where(Upload.expires < moment()))
+            connection.execute(sa.delete(WorkerSign).where(WorkerSign.seen < moment() - self.settings.forgotten))
+        return len(gone)
+
+    def census(self) -> dict[str, Any]:
+        """Count jobs by kind and state, units by state, and tell in s how long the oldest open job waits."""
+        with self.engine.connect() as connection:
+            jobs = connection.execute(sa.select(Job.kind, Job.state, sa.func.count()).group_by(Job.kind, Job.state))
+            units = connection.execute(sa.select(WorkUnit.state, sa.func.count()).group_by(WorkUnit.state))
+            oldest = connection.scalar(sa.select(moment() - sa.func.min(Job.created)).where(Job.state == OPEN))
+            return {
+                "jobs": {(kind, state): int(count) for kind, state, count in jobs},
+                "units": {state: int(count) for state, count in units},
+                "oldest": float(oldest or 0.0),
+            }
+
+
+def body_digest(body: Any) -> str:
+    """Return what tells two requests with the same idempotency key apart."""
+    return digest(body)
+
+
+def held_by(claim: Claim, owner: str) -> tuple[Any, ...]:
+    """Return the condition that a unit is still held under a claim."""
+    return (
+        WorkUnit.id == claim.unit,
+        WorkUnit.state == RUNNING,
+        WorkUnit.owner == owner,
+        WorkUnit.token == claim.token,
+    )
+
+
+def tell_on(connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, Any] | None = None) -> None:
+    """Add an event in the transaction of what it tells of."""
+    told = None if data is None else dict(data)
+    connection.execute(sa.insert(Event).values(job=job, time=moment(), kind=kind, text=text, data=told))
+
+
+def _free() -> sa.ColumnElement[bool]:
+    """Return the condition that a unit may be taken."""
+    return sa.or_(WorkUnit.state == OPEN, sa.and_(WorkUnit.state == RUNNING, WorkUnit.lease < moment()))
+
+
+def _of(tenant: int | None) -> tuple[Any, ...]:
+    return () if tenant is None else (Job.tenant == tenant,)
