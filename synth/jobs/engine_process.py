@@ -1,0 +1,331 @@
+"""Engine processes: where everything that is costly to import computes, so that it can be ended at any moment.
+
+They are spawned, warmed up before they get work, and do one thing at a time. One that is ended takes nothing with it:
+what it was asked is asked again, or was not wanted any more. The pipe to it is its lifeline, too: it goes with the
+process that has started it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import queue
+import signal
+import threading
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from synth.errors import InputError
+from synth.jobs.engine_tasks import task_of
+from synth.jobs.job_settings import JOBS, EngineSettings
+
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"
+
+
+class EngineTimeoutError(Exception):
+    """What was asked took longer than it may, or no process was free in time."""
+
+
+class EngineCrashedError(Exception):
+    """The process ended while it was at work, or the work ended in an error that is nobody's input."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """What an engine process says: how far it is, or how its work ended."""
+
+    kind: str
+    content: Any
+
+
+class EngineProcess:
+    """One process; it is warming up when this returns.
+
+    Parameters
+    ----------
+    settings : EngineSettings, optional
+    """
+
+    def __init__(self, settings: EngineSettings = JOBS.engine) -> None:
+        context = multiprocessing.get_context("spawn")  # never fork: threads and solvers do not survive it
+        self._near, far = context.Pipe()
+        self._process = context.Process(target=_serve, args=(far, settings), name="engine", daemon=True)
+        self._process.start()
+        far.close()
+        self.settings = settings
+        self.code = ""  # the fingerprint of its programs, once it is warm
+        self.calls = 0
+
+    @property
+    def pid(self) -> int:
+        """The number of the process."""
+        return int(self._process.pid or 0)
+
+    def is_alive(self) -> bool:
+        """Tell whether the process is there."""
+        return self._process.is_alive()
+
+    def is_worn(self) -> bool:
+        """Tell whether it should be replaced before it gets more work: caches grow."""
+        return self.calls >= self.settings.calls or resident(self.pid) > self.settings.worn
+
+    def warm(self, timeout: float) -> bool:
+        """Wait until the process has imported what it needs; tell whether it has."""
+        if not self.code:
+            message = self.hear(timeout)
+            if message is not None and message.kind == READY:
+                self.code = str(message.content)
+        return bool(self.code)
+
+    def ask(self, task: str, payload: Any) -> None:
+        """Give work to a process that has none.
+
+        Raises
+        ------
+        EngineCrashedError
+            The process has ended.
+        """
+        self.calls += 1
+        try:
+            self._near.send((task, payload))
+        except OSError as error:
+            raise EngineCrashedError(self.ended()) from error
+
+    def hear(self, timeout: float) -> Message | None:
+        """Return what the process says next; None where it says nothing in time.
+
+        Raises
+        ------
+        EngineCrashedError
+            The process has ended.
+        """
+        try:
+            if not self._near.poll(timeout):
+                return None
+            return Message(*self._near.recv())
+        except (EOFError, OSError) as error:
+            raise EngineCrashedError(self.ended()) from error
+
+    def call(self, task: str, payload: Any, deadline: float) -> Any:
+        """Ask, and wait for the answer.
+
+        Parameters
+        ----------
+        task : str
+        payload : object
+        deadline : float
+            In s.
+
+        Raises
+        ------
+        InputError
+            As the task has raised it.
+        EngineTimeoutError
+            It takes longer; the process is of no use any more.
+        EngineCrashedError
+            It failed; where the process has ended, it is of no use any more.
+        """
+        self.ask(task, payload)
+        end = time.monotonic() + deadline
+        while True:
+            message = self.hear(max(end - time.monotonic(), 0.0))
+            if message is None:
+                self.end()
+                raise EngineTimeoutError(f"{task}: more than {deadline:g} s")
+            if message.kind != TOLD:
+                return answer_of(message)
+
+    def ended(self) -> str:
+        """Return in words how the process ended."""
+        self._process.join(timeout=1.0)
+        code = self._process.exitcode
+        if code is None:
+            return "the process does not answer"
+        if code < 0:
+            with contextlib.suppress(ValueError):
+                return f"the process was ended by {signal.Signals(-code).name}"
+        return f"the process ended with code {code}"
+
+    def end(self) -> None:
+        """End the process at once, whatever it does."""
+        self._process.kill()
+        self._near.close()
+        self._process.join(timeout=5.0)
+
+
+def answer_of(message: Message) -> Any:
+    """Return what a task has returned, or raise as it has.
+
+    Raises
+    ------
+    InputError
+        As the task has raised it.
+    EngineCrashedError
+        It ended in another error.
+    """
+    if message.kind == ANSWERED:
+        return message.content
+    if message.kind == REFUSED:
+        field, value, expected, path = message.content
+        raise InputError(field, value, expected, path)
+    raise EngineCrashedError(str(message.content))
+
+
+class Engines:
+    """Some warm processes that answer small questions, one at a time each.
+
+    Parameters
+    ----------
+    count : int
+        Processes.
+    settings : EngineSettings, optional
+    """
+
+    def __init__(self, count: int, settings: EngineSettings = JOBS.engine) -> None:
+        self._settings = settings
+        self._idle: queue.SimpleQueue[EngineProcess] = queue.SimpleQueue()
+        self._all: set[EngineProcess] = set()
+        self._guard = threading.Lock()
+        self._closed = False
+        for _ in range(count):
+            self._add()
+
+    def _add(self) -> None:
+        with self._guard:
+            if self._closed:
+                return
+            engine = EngineProcess(self._settings)
+            self._all.add(engine)
+        self._idle.put(engine)
+
+    def call(self, task: str, payload: Any, deadline: float) -> Any:
+        """Have a task done; as :meth:`EngineProcess.call`.
+
+        Raises
+        ------
+        InputError, EngineTimeoutError, EngineCrashedError
+            As there; a timeout, too, where no process is free in time.
+        """
+        end = time.monotonic() + deadline
+        try:
+            engine = self._idle.get(timeout=deadline)
+        except queue.Empty:
+            raise EngineTimeoutError(f"{task}: no process is free") from None
+        usable = False
+        try:
+            # A process that is just starting is waited for longer: nothing is wrong with the question.
+            if not engine.warm(max(end - time.monotonic(), self._settings.start)):
+                raise EngineTimeoutError(f"{task}: the process is not ready")
+            answer = engine.call(task, payload, max(end - time.monotonic(), deadline / 2))
+            usable = True
+        except InputError:
+            usable = True
+            raise
+        except EngineCrashedError:
+            usable = engine.is_alive()
+            raise
+        finally:
+            self._put_back(engine, usable)
+        return answer
+
+    def _put_back(self, engine: EngineProcess, usable: bool) -> None:
+        if usable and not engine.is_worn():
+            self._idle.put(engine)
+            return
+        with self._guard:
+            self._all.discard(engine)
+        engine.end()
+        self._add()
+
+    def close(self) -> None:
+        """End all processes."""
+        with self._guard:
+            self._closed = True
+            for engine in self._all:
+                engine.end()
+            self._all.clear()
+
+
+# ---- in the process -------------------------------------------------------------------------------------------------
+
+
+def _serve(pipe: Connection, settings: EngineSettings) -> None:
+    """Do what is asked, one thing after the other, until the other side is gone."""
+    for number in (signal.SIGINT, signal.SIGTERM):  # whole groups of processes get them; the master decides
+        signal.signal(number, signal.SIG_IGN)
+    for name in ONE_THREAD:
+        os.environ.setdefault(name, "1")
+    if settings.nice and hasattr(os, "nice"):
+        os.nice(settings.nice)
+    _bound_memory(2 * settings.memory)
+    asked: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(pipe, asked), name="lifeline", daemon=True).start()
+    from synth.jobs.engine_work import warm_up
+
+    say = _Speaker(pipe, settings.tell)
+    say(READY, warm_up())
+    while True:
+        task, payload = asked.get()
+        try:
+            say(ANSWERED, task_of(task)(payload, say.tell))
+        except InputError as refusal:
+            say(REFUSED, (refusal.field, refusal.value, refusal.expected, refusal.path))
+        except (Exception, SystemExit, KeyboardInterrupt) as error:
+            from synth.jobs.solve import told_of
+
+            say(FAILED, told_of(error))
+
+
+def _listen(pipe: Connection, asked: queue.SimpleQueue[tuple[str, Any]]) -> None:
+    """Take what is asked while something else may be computed; end the process with the one that has started it."""
+    while True:
+        try:
+            asked.put(pipe.recv())
+        except (EOFError, OSError):
+            os._exit(1)
+
+
+class _Speaker:
+    """Says things to the other side; how far something is not more often than anybody can read."""
+
+    def __init__(self, pipe: Connection, pause: float) -> None:
+        self._pipe, self._pause, self._told = pipe, pause, 0.0
+
+    def __call__(self, kind: str, content: Any) -> None:
+        try:
+            self._pipe.send((kind, content))
+        except OSError:
+            os._exit(1)
+
+    def tell(self, state: Mapping[str, Any]) -> None:
+        now = time.monotonic()
+        if now - self._told >= self._pause:
+            self._told = now
+            self(TOLD, dict(state))
+
+
+def _bound_memory(size: int) -> None:
+    """Let no allocation go beyond a size, where the system can; the supervisor looks at what is really used."""
+    try:
+        import resource
+    except ImportError:
+        return
+    with contextlib.suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+
+
+def resident(pid: int) -> int:
+    """Return the memory that a process uses, in bytes; 0 where the system does not tell."""
+    try:
+        pages = Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]
+    except (OSError, IndexError):
+        return 0
+    return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+
