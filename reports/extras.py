@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from synth.errors import InputError
+from synth.errors import ExtraNeededError
 
 
 def needed(module: str, option: str, extra: str) -> Any:
@@ -22,13 +22,10 @@ def needed(module: str, option: str, extra: str) -> Any:
 
     Raises
     ------
-    InputError
+    ExtraNeededError
         The module is not installed.
     """
     try:
         return import_module(module)
     except ImportError:
-        install = f"pip install 'clutchsynth[{extra}]'"
-        refusal = InputError(option, None, install, (option.lstrip("-"),))
-        refusal.args = (f"{option} needs the extra {extra}: {install}",)
-        raise refusal from None
+        raise ExtraNeededError(option, extra) from None

@@ -60,6 +60,28 @@ class RefusedError(InputError):
     """What a family refuses by its declaration: every word is understood, but nothing can be asked so."""
 
 
+class ExtraNeededError(InputError):
+    """What was asked needs packages that come with an extra and are not installed.
+
+    Parameters
+    ----------
+    option : str
+        What was asked for: ``--pdf``.
+    extra : str
+        The extra that brings them.
+    """
+
+    def __init__(self, option: str, extra: str) -> None:
+        install = f"pip install 'clutchsynth[{extra}]'"
+        super().__init__(option, None, install, (option.lstrip("-"),))
+        self.option, self.extra = option, extra
+        self.args = (f"{option} needs the extra {extra}: {install}",)
+
+    def __reduce__(self) -> tuple[type[ExtraNeededError], tuple[str, str]]:  # type: ignore[override]
+        """Pickle by what was asked and what it needs."""
+        return type(self), (self.option, self.extra)
+
+
 class at:
     """Say where in the input one is: what is refused inside stands under these keys.
 

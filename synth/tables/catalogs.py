@@ -12,9 +12,10 @@ from typing import Any
 
 from synth.errors import InputError, at
 from synth.plugins import installed
-from synth.tables.reading import is_frame, load_table, table_from_frame
-from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema
+from synth.tables.reading import is_frame, load_table, table_from_frame, table_of_text
+from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema, schema_of_text
 from synth.tables.table import Table, perhaps_meant
+from synth.tables.table_text import TableText
 
 ENTRY_POINTS = "clutchsynth.catalogs"
 
@@ -71,8 +72,8 @@ class Catalogs:
     Parameters
     ----------
     spec : str, Path or mapping, optional
-        A folder, whose CSV files replace the tables of their names; or table name to a CSV path, a DataFrame, or a
-        list ``["+", more, ...]`` whose paths and DataFrames are appended to the shipped rows.
+        A folder, whose CSV files replace the tables of their names; or table name to a CSV path, a DataFrame, a
+        TableText, or a list ``["+", more, ...]`` of these whose rows are appended to the shipped ones.
     folders : sequence of str or Path, optional
         Folders of shipped tables instead of those of the installed packages.
     base : str or Path, optional
@@ -146,18 +147,21 @@ class Catalogs:
                 else:
                     found[name] = (False, [value])
                 for source in found[name][1]:
-                    if not isinstance(source, (str, Path)) and not is_frame(source):
+                    if not isinstance(source, (str, Path, TableText)) and not is_frame(source):
                         raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
         return found
 
     def files(self) -> dict[str, Any]:
-        """Return the user's own tables that are files, as a spec states them, with absolute paths."""
+        """Return the user's own tables that can be named, as a spec states them: absolute paths, and references."""
         result: dict[str, Any] = {}
         for name, (extends, sources) in self._spec.items():
-            paths = [str(self._path(s).resolve()) for s in sources if isinstance(s, (str, Path))]
-            if len(paths) == len(sources):
-                result[name] = ["+", *paths] if extends else paths[0]
+            named = [self._named(s) for s in sources if isinstance(s, (str, Path, TableText))]
+            if len(named) == len(sources):
+                result[name] = ["+", *named] if extends else named[0]
         return result
+
+    def _named(self, source: str | Path | TableText) -> str:
+        return source.reference if isinstance(source, TableText) else str(self._path(source).resolve())
 
     def stated(self) -> dict[str, Any]:
         """Return the user's own tables as :meth:`files`, all of them.
@@ -247,6 +251,11 @@ class Catalogs:
                 described = load_schema(own)
                 schema = described if schema is None else schema.extended(described)
             table = load_table(path, schema, name=name, shipped=False)
+        elif isinstance(source, TableText):
+            if source.schema:
+                described = schema_of_text(source.schema, source.reference + SCHEMA_SUFFIX)
+                schema = described if schema is None else schema.extended(described)
+            table = table_of_text(source, schema, name)
         else:
             table = table_from_frame(source, schema, name=name)
         if "designation" not in table.columns and (schema is None or schema.get("designation") is not None):

@@ -14,8 +14,11 @@ from synth.files import read_bytes
 
 def read_csv_file(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows with their line numbers."""
-    name = path.name
-    raw = read_bytes(path, "catalogue file", "a CSV file")
+    return read_csv_bytes(read_bytes(path, "catalogue file", "a CSV file"), path.name)
+
+
+def read_csv_bytes(raw: bytes, name: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Header and rows with their line numbers of what stands in a file; ``name`` is that of it, for messages."""
     try:
         # spreadsheets put a byte order mark before UTF-8; it is no part of the first name
         text = raw.decode("utf-8-sig")

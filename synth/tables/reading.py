@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.errors import InputError, at
-from synth.tables.csv_file import read_csv_file
+from synth.tables.csv_file import read_csv_bytes, read_csv_file
 from synth.tables.schema import SCHEMA_SUFFIX, Column, Schema, load_schema
 from synth.tables.table import SHIPPED, FloatArray, Table
+from synth.tables.table_text import TableText
 from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -230,29 +231,54 @@ def load_table(
             schema = beside
     if schema is not None and not isinstance(schema, Schema):
         schema = load_schema(schema)
-    head, body = read_csv_file(path)
+    return _table_of(*read_csv_file(path), schema, name, path.name, shipped)
+
+
+def table_of_text(text: TableText, schema: Schema | None, name: str) -> Table:
+    """Read a user's table from the text of a CSV file.
+
+    Parameters
+    ----------
+    text : TableText
+    schema : Schema or None
+        Its schema, where it has one.
+    name : str
+        Name of the table.
+
+    Raises
+    ------
+    InputError
+        Something in the text is not right; reference, line and column are named.
+    """
+    return _table_of(*read_csv_bytes(text.csv.encode(), text.reference), schema, name, text.reference, False)
+
+
+def _table_of(
+    head: list[str], body: list[tuple[int, list[str]]], schema: Schema | None, name: str, file: str, shipped: bool
+) -> Table:
+    """Return the table of a header and rows; ``file`` is where they stand, for messages."""
     if shipped and schema is not None:
         for title in head:
             if head.count(title) > 1:
-                raise InputError(f"{path.name}, line 1", title, "each column once")
-        fields = _strict_fields(head, schema, path.name)
+                raise InputError(f"{file}, line 1", title, "each column once")
+        fields = _strict_fields(head, schema, file)
     else:
         while head and not head[-1].strip() and all(not "".join(cells[len(head) - 1 :]).strip() for _, cells in body):
             head = head[:-1]
             body = [(line, cells[: len(head)]) for line, cells in body]
-        fields = _user_fields(head, schema, f"{path.name}, line 1")
+        fields = _user_fields(head, schema, f"{file}, line 1")
         body = [(line, cells) for line, cells in body if "".join(cells).strip()]
     if not body:
-        raise InputError(path.name, "a header only", "at least one row below the header")
+        raise InputError(file, "a header only", "at least one row below the header")
     rows: list[tuple[str, Sequence[object]]] = []
     for line, cells in body:
         if len(cells) != len(head):
             right = f"{len(head)} cells as in the header (decimal points, and quotes around a text that has a comma)"
-            raise InputError(f"{path.name}, line {line}", f"{len(cells)} cells", right, (line,))
-        rows.append((f"{path.name}, line {line}", cells))
+            raise InputError(f"{file}, line {line}", f"{len(cells)} cells", right, (line,))
+        rows.append((f"{file}, line {line}", cells))
     catalogue = any(field.column.name == "designation" for field in fields)
     lines = [line for line, _ in body]
-    return _build(name, fields, rows, lines, SHIPPED if shipped else path.name, strict=shipped, catalogue=catalogue)
+    return _build(name, fields, rows, lines, SHIPPED if shipped else file, strict=shipped, catalogue=catalogue)
 
 
 def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name: str = "table") -> Table:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.errors import InputError
-from synth.tables.csv_file import read_csv_file
+from synth.tables.csv_file import read_csv_bytes, read_csv_file
 from synth.units import Unit, check_number, header, parse_unit
 
 _SCHEMA_HEADER = ["column", "type", "unit", "minimum", "maximum", "required", "symbol", "description"]
@@ -106,12 +106,26 @@ def load_schema(path: str | Path) -> Schema:
         A line of the schema is not right.
     """
     path = Path(path)
-    head, rows = read_csv_file(path)
+    return _schema_of(*read_csv_file(path), path.name)
+
+
+def schema_of_text(text: str, name: str) -> Schema:
+    """Read what would stand in a schema file; ``name`` is that of it, for messages.
+
+    Raises
+    ------
+    InputError
+        A line of the schema is not right.
+    """
+    return _schema_of(*read_csv_bytes(text.encode(), name), name)
+
+
+def _schema_of(head: list[str], rows: list[tuple[int, list[str]]], file: str) -> Schema:
     if head != _SCHEMA_HEADER:
-        raise InputError(f"{path.name}, line 1", ",".join(head), ",".join(_SCHEMA_HEADER))
+        raise InputError(f"{file}, line 1", ",".join(head), ",".join(_SCHEMA_HEADER))
     columns: list[Column] = []
     for line, cells in rows:
-        where = f"{path.name}, line {line}"
+        where = f"{file}, line {line}"
         if len(cells) != len(_SCHEMA_HEADER):
             raise InputError(where, f"{len(cells)} cells", f"{len(_SCHEMA_HEADER)} cells")
         column = _schema_column(dict(zip(_SCHEMA_HEADER, cells, strict=True)), where)
@@ -121,13 +135,13 @@ def load_schema(path: str | Path) -> Schema:
             raise InputError(f"{where}, column symbol", column.symbol, "a symbol that is not used yet in this table")
         columns.append(column)
     if not columns:
-        raise InputError(path.name, "a header only", "one line for each column of the table")
+        raise InputError(file, "a header only", "one line for each column of the table")
     for column in columns:
         if column.unit and column.unit.startswith(_UNIT_IN_COLUMN):
             name = column.unit.removeprefix(_UNIT_IN_COLUMN)
             if not any(c.name == name and not c.numeric for c in columns):
                 raise InputError(
-                    f"{path.name}, column {column.name}", column.unit, "the name of a text column of this table"
+                    f"{file}, column {column.name}", column.unit, "the name of a text column of this table"
                 )
     return Schema(tuple(columns))
 
