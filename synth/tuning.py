@@ -941,6 +941,25 @@ class NlpSettings:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ProgressLimits:
+    """How much a search tells of the designs it knows while it is at work.
+
+    Parameters
+    ----------
+    points : int
+        Designs that are told at a time: as many as a drawing can show apart.
+    pause : float
+        Seconds at least from one time to the next; eyes ask for no more, and whoever writes it down pays for each.
+    digits : int
+        Of each number: these are drawn, not computed with.
+    """
+
+    points: int = 200
+    pause: float = 0.5
+    digits: int = 6
+
+
+@dataclass(frozen=True, kw_only=True)
 class Tuning:
     """All numbers that steer a search.
 
@@ -956,6 +975,7 @@ class Tuning:
     compiling : CompilingLimits
     arrays : ArraySizes
     dominance : DominanceSettings
+    progress : ProgressLimits
     """
 
     tolerances: Tolerances = field(default_factory=Tolerances)
@@ -968,6 +988,7 @@ class Tuning:
     compiling: CompilingLimits = field(default_factory=CompilingLimits)
     arrays: ArraySizes = field(default_factory=ArraySizes)
     dominance: DominanceSettings = field(default_factory=DominanceSettings)
+    progress: ProgressLimits = field(default_factory=ProgressLimits)
 
 
 TUNING = Tuning()

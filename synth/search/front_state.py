@@ -22,6 +22,7 @@ from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.levels import Cutoffs, LevelProof
 from synth.search.proven_gap import Bound, Level, LevelBound
 from synth.search.pruning import EpsilonCover, NonImprovement
+from synth.search.shown_designs import ShownDesigns
 from synth.search.stage_progress import StageProgress
 from synth.search.turns import TurnBudget
 from synth.search.warm_start import WarmStart
@@ -220,7 +221,14 @@ class FrontState:
     def __init__(self, task: FrontTask, progress: Progress | None = None) -> None:
         instance, settings, learned = task.instance, task.settings, task.warm.branching
         self.task, self.node_limit = task, task.boxes_per_tree()
-        self.progress = StageProgress(progress, instance.combinations.count, lambda: len(self.form.archive))
+        shown = ShownDesigns(list(task.chosen), task.tuning.progress)
+        self.progress = StageProgress(
+            progress,
+            instance.combinations.count,
+            lambda: len(self.form.archive),
+            lambda: shown.of(self.form),
+            task.tuning.progress,
+        )
         self.form, self.infeasibility_mode = task.formulation(infeasibility=False), False
         limit = settings.time_limit
         end = math.inf if limit is None else self.progress.started + limit

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 from synth.question.settings import Progress
+from synth.tuning import TUNING, ProgressLimits
 
 
 class StageProgress:
@@ -15,17 +18,31 @@ class StageProgress:
     Parameters
     ----------
     report : callable, optional
-        Told a mapping: stage, done (0..1), combinations, incumbents, message. None where nobody wants to know.
+        Told a mapping: stage, done (0..1), combinations, incumbents, message; now and then what ``shown`` returns as
+        well. None where nobody wants to know.
     combinations : int
         Of the question.
     incumbents : callable
         Returns how many designs are known.
+    shown : callable, optional
+        Returns what is to be told of these designs (``columns`` and ``points``); nothing where they are the same as
+        before.
+    limits : ProgressLimits
+        How often that is told.
     """
 
-    def __init__(self, report: Progress | None, combinations: int, incumbents: Callable[[], int]) -> None:
+    def __init__(
+        self,
+        report: Progress | None,
+        combinations: int,
+        incumbents: Callable[[], int],
+        shown: Callable[[], Mapping[str, Any]] = dict,
+        limits: ProgressLimits = TUNING.progress,
+    ) -> None:
         self.started = time.monotonic()
         self.seconds: dict[str, float] = {}  # per stage that has ended
         self.report, self._combinations, self._incumbents = report, combinations, incumbents
+        self._shown, self._limits, self._told = shown, limits, -math.inf
         self._stage, self._done = "", 0.0
 
     @property
@@ -64,5 +81,15 @@ class StageProgress:
                     "combinations": self._combinations,
                     "incumbents": self._incumbents(),
                     "message": message,
+                    **self._designs(),
                 }
             )
+
+    def _designs(self) -> Mapping[str, Any]:
+        """Return what is to be told of the designs known, where it is time for that."""
+        now = time.monotonic()
+        if now - self._told < self._limits.pause:
+            return {}
+        found = self._shown()
+        self._told = now if found else self._told
+        return found

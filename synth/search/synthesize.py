@@ -65,7 +65,8 @@ def synthesize(
     seed : int
         Of all random choices.
     progress : callable, optional
-        Called with a mapping: stage, done (0..1), combinations, incumbents, message.
+        Called with a mapping: stage, done (0..1), combinations, incumbents, message; at most twice a second ``points``
+        as well, the objectives of at most 200 designs that are known, with ``columns``, their names and units.
     time_limit : float, optional
         Seconds after which the best front so far is returned.
     robust : mapping, optional
