@@ -21,7 +21,7 @@ from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
 from synth.bounds.boxes import Boxes
 from synth.deadline import Stopped, until
-from synth.errors import InputError, whole_number
+from synth.errors import InputError, at, whole_number
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.input_limits import INPUT_LIMITS
@@ -168,15 +168,22 @@ def near_equals(
     """
     settings = SearchSettings(seed=seed, time_limit=time_limit)
     check_progress(progress)
-    reference = _chosen(front, design)
-    share = _share(within)
+    reference = chosen_design(front, design)
+    share = read_share(within)
     whole_number(count, "count", INPUT_LIMITS.listed, path=("count",))
     instance = question_of(front, problem, catalogs)
     search = _Enumeration(instance, reference, front, share, settings, progress)
     return search.run(int(count))
 
 
-def _chosen(front: ParetoFront, design: Any) -> Design:
+def chosen_design(front: ParetoFront, design: Any) -> Design:
+    """Return the design of a front that is asked for: by its rank, or as it stands.
+
+    Raises
+    ------
+    InputError
+        There is no such design.
+    """
     if isinstance(design, Design):
         if design.frame.family != front.frame.family:
             raise InputError("design", design.frame.family, f"a design of {front.frame.family}, as the front is")
@@ -185,14 +192,24 @@ def _chosen(front: ParetoFront, design: Any) -> Design:
     if not front.designs:
         raise InputError("front", "no designs", "a front with designs")
     if isinstance(design, bool) or design not in ranks:
-        raise InputError("design", design, f"a rank from 1 to {len(front.designs)}, or a Design")
+        raise InputError("design", design, f"a rank from 1 to {len(front.designs)}, or a Design", ("design",))
     return ranks[design]
 
 
-def _share(within: Any) -> float:
-    share = parse_quantity(within, "-", "within")
+def read_share(within: Any) -> float:
+    """Return by which share objectives may be worse.
+
+    Raises
+    ------
+    InputError
+        It is none that near-equal designs can be searched for.
+    """
+    with at("within"):
+        share = parse_quantity(within, "-", "within")
     if not 0 < share <= NEAR.widest:
-        raise InputError("within", within, f"more than 0 and at most {100 * NEAR.widest:g} %, for example '2 %'")
+        raise InputError(
+            "within", within, f"more than 0 and at most {100 * NEAR.widest:g} %, for example '2 %'", ("within",)
+        )
     return share
 
 

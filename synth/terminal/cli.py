@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.interrupts import taken_alike
@@ -21,7 +22,6 @@ from synth.terminal import batch_commands as batches
 from synth.terminal import choice_commands, report_commands, robust_commands
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
-from synth.terminal.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
 from synth.terminal.options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
 from synth.terminal.session import (
     BAD_INPUT,

@@ -103,12 +103,12 @@ def _of_front(
 
 def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path, list[str], list[str], bool]:
     """Write the sheet of a design that stands in a file; return place, files, notes, and whether it is feasible."""
+    from synth.analysis.design_spec import given_design, must_be_a_design
     from synth.analysis.reporting import report_design
     from synth.feasibility import Status
     from synth.question.instance import Instance
     from synth.question.request import Request
     from synth.question.spec import read_spec
-    from synth.terminal.design_spec import given_design, must_be_a_design
 
     spec = read_spec(source)
     must_be_a_design(spec)

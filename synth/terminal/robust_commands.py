@@ -88,8 +88,8 @@ def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, An
 
         front = load_front(source)
         return front, None, None, dict(front.frame.restated.get("robust") or {})
+    from synth.analysis.design_spec import given_design, must_be_a_design
     from synth.question.spec import read_spec
-    from synth.terminal.design_spec import given_design, must_be_a_design
 
     asked = read_spec(source)
     must_be_a_design(asked)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from synth.analysis.design_spec import must_be_a_question, must_be_one_family
 from synth.errors import InputError
 from synth.output_folder import STUDY
-from synth.terminal.design_spec import must_be_a_question, must_be_one_family
 from synth.terminal.options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
 from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_written
 

@@ -76,7 +76,7 @@ def is_comparison(folder: str | Path) -> bool:
     return (Path(folder) / COMPARISON).is_file()
 
 
-def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verification:
+def verify_comparison(folder: str | Path, time_limit: float = 120.0, catalogs: Any = None) -> Verification:
     """Check a saved comparison without help of the search that made it.
 
     Parameters
@@ -85,6 +85,8 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
         What ``Comparison.save`` has written.
     time_limit : float
         Seconds for each family.
+    catalogs : folder or mapping, optional
+        Own tables that were in memory; those that were files are read again.
 
     Returns
     -------
@@ -108,10 +110,10 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
     findings: list[str] = []
     unproven: list[str] = []
     nodes = 0
-    values = _values(path, told, findings)
+    values = _values(path, told, findings, catalogs)
     for label, name in told.folders.items():
         front = unchecked_front(path / name)
-        check = checked(front, None, None, time.monotonic() + time_limit)
+        check = checked(front, None, catalogs, time.monotonic() + time_limit)
         alike = check.readable and dict(front.frame.objectives) == dict(told.senses)
         if alike:
             _among(front, label, told.designs, findings)
@@ -138,7 +140,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
     )
 
 
-def _values(path: Path, told: _Told, findings: list[str]) -> dict[str, np.ndarray]:
+def _values(path: Path, told: _Told, findings: list[str], catalogs: Any) -> dict[str, np.ndarray]:
     """Return the objectives of the designs listed, evaluated again from their files."""
     rows: dict[str, list[float]] = {name: [] for name in told.senses}
     width = max(2, len(str(len(told.designs))))
@@ -148,8 +150,9 @@ def _values(path: Path, told: _Told, findings: list[str]) -> dict[str, np.ndarra
             spec = read_spec(path / f"design_{listed.rank:0{width}d}.yaml")
             problem = robust_counterpart(load(spec.family, **spec.options), spec.robust or None, spec.limits)
             given = {"values": spec.values, "parts": spec.parts}
+            tables = spec.catalogs if catalogs is None else catalogs
             design = evaluate(
-                problem, spec.requirements, given, catalogs=spec.catalogs, limits=spec.limits, objectives=told.senses
+                problem, spec.requirements, given, catalogs=tables, limits=spec.limits, objectives=told.senses
             )
         except InputError as error:
             findings.append(f"{label}: its file cannot be evaluated ({error})")

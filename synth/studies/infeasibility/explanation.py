@@ -171,15 +171,19 @@ class Explanation:
         level = "good" if self.feasible else "bad"
         return notebook_html("Why nothing is feasible", [self.message, *self.not_settled], columns, rows, level)
 
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        return {
+            "explanation.csv": frame_csv(self.to_frame()),
+            "explanation.json": json.dumps(self._told(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
+        }
+
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.csv and explanation.json; return the files.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        files = {
-            "explanation.csv": frame_csv(self.to_frame()),
-            "explanation.json": json.dumps(self._told(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
-        }
+        files = self.files()
         target = save_result(folder, files, EXPLANATION, bool(self.interrupted))
         return [target / name for name in files]
 

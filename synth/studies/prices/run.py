@@ -20,7 +20,7 @@ import numpy as np
 
 from synth.analysis.restate import question_of
 from synth.deadline import Stopped, until
-from synth.errors import InputError
+from synth.errors import InputError, at
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
 from synth.output_folder import claimed
@@ -91,10 +91,8 @@ def prices(
     """
     settings = SearchSettings(time_limit=time_limit)
     check_progress(progress)
-    chosen = _chosen(front, design)
-    share = parse_quantity(step, "-", "step")
-    if not LEAST_STEP <= share <= WIDEST_STEP:
-        raise InputError("step", step, f"from {percent(LEAST_STEP)} to {percent(WIDEST_STEP)}, for example '1 %'")
+    chosen = chosen_designs(front, design)
+    share = read_step(step)
     instance = question_of(front, problem, catalogs)
     digest = (front.record or json.loads(front.files()["front.json"])).get("digest")
     own = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().whole])
@@ -104,16 +102,38 @@ def prices(
         return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
-def _chosen(front: ParetoFront, design: Any) -> list[Design]:
+def read_step(step: Any) -> float:
+    """Return by which share each requirement and limit is moved.
+
+    Raises
+    ------
+    InputError
+        It is no share, or not one for which prices can be told.
+    """
+    with at("step"):
+        share = parse_quantity(step, "-", "step")
+        if not LEAST_STEP <= share <= WIDEST_STEP:
+            raise InputError("step", step, f"from {percent(LEAST_STEP)} to {percent(WIDEST_STEP)}, for example '1 %'")
+    return share
+
+
+def chosen_designs(front: ParetoFront, design: Any) -> list[Design]:
+    """Return the designs of a front that are asked for by rank; all where none is named.
+
+    Raises
+    ------
+    InputError
+        One of them is no design of the front, or there is none.
+    """
     if not front.designs:
         raise InputError("front", "no designs", "a front with designs")
     ranks = {d.rank: d for d in front.designs}
     asked = list(ranks) if design is None else list(design) if isinstance(design, (list, tuple)) else [design]
     for rank in asked:
         if isinstance(rank, bool) or not isinstance(rank, (int, np.integer)) or rank not in ranks:
-            raise InputError("design", rank, f"a rank from 1 to {len(front.designs)}")
+            raise InputError("design", rank, f"a rank from 1 to {len(front.designs)}", ("design",))
     if not asked:
-        raise InputError("design", asked, f"at least one rank from 1 to {len(front.designs)}")
+        raise InputError("design", asked, f"at least one rank from 1 to {len(front.designs)}", ("design",))
     return [ranks[rank] for rank in dict.fromkeys(asked)]
 
 

@@ -1,4 +1,4 @@
-"""What a spec gives: a question, or a design that is evaluated, for the commands that take the one or the other."""
+"""What a spec gives: a question, or a design that is evaluated, for whoever takes the one or the other."""
 
 from __future__ import annotations
 
@@ -39,15 +39,18 @@ def must_be_a_design(asked: Spec) -> None:
         raise InputError(f"{asked.file}: fix", ", ".join(asked.fix), right, ("fix",))
 
 
-def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
-    """Load the problem and evaluate the design that a spec with values describes."""
+def given_design(asked: Spec, tables: Catalogs | None = None) -> tuple[DesignProblem, Catalogs, Design]:
+    """Load the problem and evaluate the design that a spec with values describes.
+
+    ``tables``: in place of those that the spec names.
+    """
     from synth.analysis.evaluate import evaluate
     from synth.model.registry import load
     from synth.question.catalogs import catalogs_for
     from synth.robust.counterpart import robust_counterpart
 
     problem = robust_counterpart(load(asked.family, **asked.options), asked.robust or None, asked.limits)
-    catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+    catalogs = catalogs_for(problem, asked.catalogs if tables is None else tables, asked.folder)
     design = evaluate(
         problem,
         asked.requirements,
