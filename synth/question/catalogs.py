@@ -24,8 +24,20 @@ def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) ->
     if spec is None or isinstance(spec, Catalogs):
         return as_catalogs(spec)
     catalogs = Catalogs(spec, base=base)
+    refuse_unused(problem, catalogs)
+    return catalogs
+
+
+def refuse_unused(problem: DesignProblem, catalogs: Catalogs) -> None:
+    """Refuse tables of the user's own that are neither shipped nor used by the problem.
+
+    Raises
+    ------
+    InputError
+        There is one: its rows would be ignored in silence.
+    """
     if not catalogs.added:
-        return catalogs
+        return
     d = problem.model(frozenset(), catalogs).declaration
     used = {part.table for part in [*d.slots.values(), *d.rows.values()]}
     used |= {setting.table for setting in problem.simulation_settings.values() if setting.table}
@@ -35,7 +47,6 @@ def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) ->
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             right = f"a table that is used ({', '.join(sorted(used)) or 'none'}){hint}"
             raise InputError("catalogs", name, right, ("catalogs", name))
-    return catalogs
 
 
 def as_catalogs(spec: Any) -> Catalogs:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -101,6 +102,38 @@ def _other_limits(request: Request, varied: Varied) -> list[str]:
     return kept
 
 
+def check_steps(request: Request, settings: SearchSettings, vary: Any, most: int) -> tuple[list[str], int]:
+    """Refuse what a study would refuse before it is searched, as far as some of its steps tell.
+
+    Parameters
+    ----------
+    request, settings, vary
+        As for :class:`Steps`.
+    most : int
+        Steps that are posed, spread evenly from the first to the last.
+
+    Returns
+    -------
+    tuple
+        What is varied in words, and how many steps there are.
+
+    Raises
+    ------
+    InputError
+        For whatever is wrong at any of these.
+    """
+    steps = Steps(request, settings, vary, most=most)
+    labels = [f"{x.label} {x.shown(x.values[0])} .. {x.shown(x.values[-1])}" for x in steps.varied]
+    return labels, math.prod(len(x.values) for x in steps.varied)
+
+
+def _spread(values: Sequence[Any], most: int) -> list[Any]:
+    """Return at most so many of some values, spread evenly, the first and the last among them."""
+    if len(values) <= most:
+        return list(values)
+    return [values[round(k * (len(values) - 1) / (most - 1))] for k in range(most)]
+
+
 class Steps:
     """The questions of a study, in their order: of two things varied the second runs through for each of the first.
 
@@ -113,6 +146,8 @@ class Steps:
     vary : mapping
         What does not.
     tuning : Tuning
+    most : int, optional
+        Steps that are looked at, where not all are wanted.
 
     Raises
     ------
@@ -120,14 +155,22 @@ class Steps:
         For whatever is wrong at any step, before anything is searched.
     """
 
-    def __init__(self, request: Request, settings: SearchSettings, vary: Any, tuning: Tuning = TUNING) -> None:
+    def __init__(
+        self,
+        request: Request,
+        settings: SearchSettings,
+        vary: Any,
+        tuning: Tuning = TUNING,
+        most: int | None = None,
+    ) -> None:
         self.request, self.settings, self.tuning = request, settings, tuning
         d = _declared(request)
         keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
         given = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
         model = request.problem.model(frozenset(n for n in given if n is not None), request.catalogs)
         self.varied = read_vary(vary, model, list(chosen_objectives(model, request.objectives)))
-        self.values = list(product(*(x.values for x in self.varied)))
+        whole = list(product(*(x.values for x in self.varied)))
+        self.values = whole if most is None else _spread(whole, most)
         self._problems: dict[Value, DesignProblem] = {}
         self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}
         self._learned: dict[tuple[str, ...], Uncertainty] = {}

@@ -1,0 +1,150 @@
+"""The kinds of jobs: what may be asked of an engine, each as pure functions from a request to records.
+
+Importing this package loads nothing heavy; the module of a kind is imported where its work is done. Such a module has
+
+``read(request, sources) -> Posed``
+    Checks a request as far as that goes without the search.
+``work(request, sources, tell) -> dict of Record``
+    Does what a request that was read asks for.
+``summary(records) -> dict``
+    A few facts of its records, for lists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Protocol, cast
+
+from synth.errors import InputError
+from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+
+__all__ = ["KINDS", "Kind", "KindModule", "Posed", "Record", "Sources", "Tell", "kind"]
+
+
+class KindModule(Protocol):
+    """What the module of a kind has."""
+
+    read: Callable[[Mapping[str, Any], Sources], Posed]
+    work: Callable[[Mapping[str, Any], Sources, Tell], dict[str, Record]]
+    summary: Callable[[Mapping[str, bytes]], dict[str, Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of job.
+
+    Parameters
+    ----------
+    name : str
+    module : str
+        Imported in an engine process only.
+    title : str
+        One line for people.
+    bulk : bool
+        Whether it waits behind what somebody waits for; of some kinds ``Posed.bulk`` decides for each request.
+    record : str
+        Name of the main record.
+    """
+
+    name: str
+    module: str
+    title: str
+    bulk: bool = False
+    record: str
+
+    def load(self) -> KindModule:
+        """Return its module."""
+        return cast("KindModule", import_module(self.module))
+
+
+def _kinds(*found: Kind) -> Mapping[str, Kind]:
+    return MappingProxyType({one.name: one for one in found})
+
+
+KINDS: Mapping[str, Kind] = _kinds(
+    Kind(
+        name="synthesis",
+        module="synth.jobs.kinds.synthesis",
+        title="Ranked Pareto designs for a requirement",
+        record="front.json",
+    ),
+    Kind(
+        name="compare",
+        module="synth.jobs.kinds.comparison",
+        title="Several families asked the same",
+        record="comparison.json",
+    ),
+    Kind(
+        name="whatif",
+        module="synth.jobs.kinds.whatif",
+        title="A question at many values of a requirement, limit, weight, part or option",
+        record="study.json",
+    ),
+    Kind(
+        name="explain",
+        module="synth.jobs.kinds.explain",
+        title="Why nothing is feasible, and what would make it so",
+        record="explanation.json",
+    ),
+    Kind(
+        name="prices",
+        module="synth.jobs.kinds.prices",
+        title="What a per cent of each requirement and limit costs",
+        record="prices.json",
+    ),
+    Kind(
+        name="near_equals",
+        module="synth.jobs.kinds.near_equals",
+        title="Other parts, counts or choices that are nearly as good",
+        record="near_equals.json",
+    ),
+    Kind(
+        name="rate",
+        module="synth.jobs.kinds.rate",
+        title="How designs stand what scatters",
+        record="rating.json",
+    ),
+    Kind(
+        name="verify",
+        module="synth.jobs.kinds.verify",
+        title="A front checked again without the search",
+        record="verification.json",
+    ),
+    Kind(
+        name="report",
+        module="synth.jobs.kinds.report",
+        title="The report of a front, with calculation sheets",
+        record="report.html",
+    ),
+    Kind(
+        name="batch",
+        module="synth.jobs.kinds.batch",
+        title="A table of requirements, answered row by row",
+        bulk=True,
+        record="batch.json",
+    ),
+    Kind(
+        name="size_range",
+        module="synth.jobs.kinds.size_range",
+        title="A few variants that serve a whole table of applications",
+        bulk=True,
+        record="size_range.json",
+    ),
+)
+
+
+def kind(name: Any) -> Kind:
+    """Return a kind by its name.
+
+    Raises
+    ------
+    InputError
+        There is none of that name.
+    """
+    found = KINDS.get(name) if isinstance(name, str) else None
+    if found is None:
+        raise InputError("kind", name, f"one of {', '.join(KINDS)}", ("kind",))
+    return found

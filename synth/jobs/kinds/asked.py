@@ -1,0 +1,397 @@
+"""What all kinds share: the keys of a request, tables and earlier jobs that it names, and how progress is told."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from synth.errors import InputError, at
+from synth.jobs.kinds.contract import QUESTION, Record, Sources, Tell
+from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.question.catalogs import as_catalogs, refuse_unused
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.question.spec_keys import FIELDS, SEARCHED, refuse_several, refuse_values, shown_kind
+from synth.question.spec_patch import patched
+from synth.results import ParetoFront
+from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
+from synth.results.loading import COMPARISON, front_of_record
+from synth.results.plain import plain
+from synth.tables.catalogs import Catalogs
+from synth.tables.table_text import TableText
+from synth.units import format_quantity
+
+WHERE = "request"
+OF = "of"
+FAMILY = "family"
+REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
+SPEC = tuple(key for key in FIELDS if key != "values")
+TABLE_EXPECTED = (
+    "a table of your own by name and version, 'my_linings@3', or ['+', 'my_linings@3'] to extend the shipped one"
+)
+Check = Callable[[str, Any], Any]
+
+
+# ---- keys -----------------------------------------------------------------------------------------------------------
+
+
+def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
+    """Return the entries of a request; None counts as not stated.
+
+    Raises
+    ------
+    InputError
+        It is no mapping, or has a key that is none of these.
+    """
+    if not isinstance(request, Mapping):
+        raise InputError(WHERE, shown_kind(request), "a JSON object")
+    for key in request:
+        if key not in keys:
+            raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
+    return {str(key): value for key, value in request.items() if value is not None}
+
+
+def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the spec of a request, and its entries under some more keys.
+
+    Under ``of`` an earlier job may stand: then its spec is meant, with the entries of this request in place of its own.
+
+    Raises
+    ------
+    InputError
+        A key is unknown, or there is no such job.
+    """
+    given = checked_keys(request, (*SPEC, *more, OF))
+    own = {key: given.pop(key) for key in more if key in given}
+    if OF not in given:
+        return given, own
+    with at(OF):
+        records = records_of(sources, given.pop(OF))
+        question = _json_of(records, QUESTION)
+        before = question.get("request")
+        if not isinstance(before, Mapping) or FAMILY not in before:
+            raise InputError(OF, question.get("kind"), "a job that asks a question of a family")
+    return patched({key: value for key, value in before.items() if key in SPEC}, given), own
+
+
+def flag(name: str, value: Any) -> bool:
+    """Return a truth value.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    if not isinstance(value, bool):
+        raise InputError(f"{WHERE}: {name}", shown_kind(value), "true or false", (name,))
+    return value
+
+
+def seconds(value: Any) -> float | None:
+    """Return a time limit in seconds; None where none is stated.
+
+    Raises
+    ------
+    InputError
+        It is no time.
+    """
+    with at("time_limit"):
+        found: float | None = FIELDS["time_limit"](f"{WHERE}: time_limit", value)
+    return found
+
+
+def seed(value: Any) -> int:
+    """Return the seed of random choices, 0 where none is stated.
+
+    Raises
+    ------
+    InputError
+        It is none.
+    """
+    with at("seed"):
+        found: int | None = FIELDS["seed"](f"{WHERE}: seed", value)
+    return found or 0
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+
+def catalogs_of(stated: Any, sources: Sources) -> Catalogs:
+    """Return the tables that a request names: references to texts, never paths.
+
+    Parameters
+    ----------
+    stated : mapping or None
+        Table -> reference, or ``["+", reference, ...]``.
+    sources : Sources
+
+    Raises
+    ------
+    InputError
+        Something else is stated, or there is no such table.
+    """
+    if stated is None or (isinstance(stated, Mapping) and not stated):
+        return as_catalogs(None)
+    with at("catalogs"):
+        if not isinstance(stated, Mapping):
+            raise InputError(f"{WHERE}: catalogs", shown_kind(stated), f"tables with, for each, {TABLE_EXPECTED}")
+        found = []
+        for table, source in stated.items():
+            with at(str(table)):
+                found.append((str(table), *_texts(str(table), source, sources)))
+        return _catalogs(tuple(found))
+
+
+def _texts(table: str, source: Any, sources: Sources) -> tuple[bool, tuple[TableText, ...]]:
+    """Return whether shipped rows are extended, and the texts that are meant."""
+    extends = isinstance(source, (list, tuple)) and len(source) > 1 and source[0] == "+"
+    entries = list(source[1:]) if extends else [source]
+    texts = []
+    for entry in entries:
+        field = f"{WHERE}: catalogs: {table}"
+        if not isinstance(entry, str) or not REFERENCE.fullmatch(entry):
+            raise InputError(field, shown_kind(entry), TABLE_EXPECTED)
+        if entry not in sources.tables:
+            raise InputError(field, entry, "a table that there is, with its version")
+        texts.append(sources.tables[entry])
+    return extends, tuple(texts)
+
+
+@lru_cache(maxsize=16)
+def _catalogs(stated: tuple[tuple[str, bool, tuple[TableText, ...]], ...]) -> Catalogs:
+    """Return catalogues with some texts, made once: traces of a problem belong to its catalogues."""
+    spec = {table: ["+", *texts] if extends else texts[0] for table, extends, texts in stated}
+    found = Catalogs(spec)
+    for table in spec:
+        found.table(table)  # what is wrong in a text is said now
+    return found
+
+
+def digests(stated: Any, sources: Sources) -> dict[str, str]:
+    """Return the SHA-256 of every table that a request names, by reference."""
+    entries = [x for value in (stated or {}).values() for x in (value if isinstance(value, list) else [value])]
+    return {entry: sources.tables[entry].digest for entry in entries if entry in sources.tables}
+
+
+# ---- earlier jobs ---------------------------------------------------------------------------------------------------
+
+
+def records_of(sources: Sources, job: Any) -> Mapping[str, bytes]:
+    """Return the records of an earlier job.
+
+    Raises
+    ------
+    InputError
+        There is no such job, or it has no records yet.
+    """
+    found = sources.records.get(job) if isinstance(job, str) else None
+    if not found:
+        raise InputError(f"{WHERE}: {OF}", shown_kind(job), "the id of a job that has ended")
+    return found
+
+
+def _json_of(records: Mapping[str, bytes], name: str) -> dict[str, Any]:
+    try:
+        content = json.loads(records[name])
+    except (KeyError, ValueError, RecursionError):
+        content = None
+    if not isinstance(content, dict):
+        raise InputError(f"{WHERE}: {OF}", None, f"a job that has a {name}")
+    return content
+
+
+def fronts_in(records: Mapping[str, bytes]) -> dict[str, str]:
+    """Return the names of the records that are fronts, by family; of one question by an empty name."""
+    if FRONT_FILE in records:
+        return {"": FRONT_FILE}
+    return {name.split("/")[0]: name for name in records if name.endswith(f"/{FRONT_FILE}")}
+
+
+def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = True) -> ParetoFront:
+    """Return a front of an earlier job: of several families that of the one that is named.
+
+    Parameters
+    ----------
+    records : mapping
+    family : str, optional
+    check : bool
+        Whether a record that was changed is refused.
+
+    Raises
+    ------
+    InputError
+        There is none, or it cannot be read.
+    """
+    names = fronts_in(records)
+    if not names:
+        raise InputError(f"{WHERE}: {OF}", None, "a job that has found a front", (OF,))
+    if "" in names and family is not None:
+        raise InputError(f"{WHERE}: {FAMILY}", family, "no family: the job asks one alone", (FAMILY,))
+    if "" not in names and family not in names:
+        right = f"one of those that the job compares: {', '.join(names)}"
+        raise InputError(f"{WHERE}: {FAMILY}", family, right, (FAMILY,))
+    name = names["" if family is None else family]
+    with at(OF):
+        content = _json_of(records, name)
+        if content.get("format") != FRONT_FORMAT:
+            raise InputError(f"{name}: format", content.get("format"), f"format {FRONT_FORMAT}")
+        if check and (fault := changed(content)):
+            raise InputError(name, None, f"a front as it was saved; {fault}")
+        return replace(front_of_record(content, Path(name)), folder=None)
+
+
+def front_of(asked: Mapping[str, Any], sources: Sources) -> tuple[ParetoFront, Catalogs]:
+    """Return the front that a request is of, with its tables.
+
+    Raises
+    ------
+    InputError
+        There is none, or one of its tables cannot be had.
+    """
+    if OF not in asked:
+        raise InputError(f"{WHERE}: {OF}", None, "the id of a job that has found a front", (OF,))
+    with at(OF):
+        records = records_of(sources, asked[OF])
+    front = front_in(records, asked.get(FAMILY))
+    with at(OF):
+        return front, catalogs_of(front.frame.restated.get("catalogs"), sources)
+
+
+def is_comparison(records: Mapping[str, bytes]) -> bool:
+    """Tell whether records are those of several families."""
+    return COMPARISON in records
+
+
+# ---- questions ------------------------------------------------------------------------------------------------------
+
+
+def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
+    """Return what a spec asks of one family.
+
+    Raises
+    ------
+    InputError
+        For everything that is not of its kind.
+    """
+    content = {key: value for key, value in spec.items() if key != "catalogs"}
+    if spec.get("catalogs") is not None:
+        tables = catalogs_of(spec["catalogs"], sources)
+    else:
+        tables = as_catalogs(None)
+    refuse_several(content.get(FAMILY, ""), WHERE)
+    refuse_values(content.get("values"), WHERE)
+    request = Request.from_json(content, WHERE, catalogs=tables)
+    refuse_unused(request.problem, tables)
+    return request
+
+
+def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:
+    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing."""
+    stated = {key: value for key, value in spec.items() if key in SEARCHED and value is not None}
+    read = SearchSettings.from_json({**usual, **stated}, WHERE)
+    return replace(read, workers=1)
+
+
+def stated_spec(request: Request, settings: SearchSettings, keys: Collection[str] = SEARCHED) -> dict[str, Any]:
+    """Return a question as it is stored: requirements by their names in the order of the family, defaults written out.
+
+    Limits, pins and parts keep their order, in which tables show them.
+    """
+    content = request.to_json()
+    declared = request.problem.declaration(frozenset(), request.catalogs)
+    names, order = declared.names(), list(declared.requirements)
+    if "requirements" in content:
+        read = {names.get(word, word): value for word, value in content["requirements"].items()}
+        known = [name for name in order if name in read]
+        content["requirements"] = {name: read[name] for name in [*known, *(n for n in read if n not in order)]}
+    if "options" in content:
+        content["options"] = dict(sorted(content["options"].items()))
+    how = {key: value for key, value in settings.to_json().items() if key in keys and key != "workers"}
+    return {**plain(content), **how}
+
+
+def titled(request: Request) -> str:
+    """Return a few words on what is asked: the family, and the first requirements."""
+    declared = request.problem.declaration(frozenset(map(str, request.requirements)), request.catalogs)
+    names = declared.names()
+    given = {names.get(str(word), str(word)): value for word, value in request.requirements.items()}
+    shown = [
+        f"{name} {_shown(given[name], declared.requirements[name].unit)}"
+        for name in declared.requirements
+        if name in given
+    ]
+    title = request.problem.title or request.problem.name
+    return f"{title}: {', '.join(shown[: KIND_SETTINGS.titled])}" if shown else title
+
+
+def _shown(value: Any, unit: str) -> str:
+    return value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -")
+
+
+# ---- what comes out -------------------------------------------------------------------------------------------------
+
+
+def told(tell: Tell) -> Tell:
+    """Return a progress function that tells what JSON can hold."""
+
+    def show(state: Mapping[str, Any]) -> None:
+        tell(plain({key: _number(value) for key, value in state.items()}))
+
+    return show
+
+
+def _number(value: Any) -> Any:
+    return value.item() if hasattr(value, "item") else value
+
+
+def question_record(name: str, posed: Mapping[str, Any], sources: Sources) -> Record:
+    """Return the record of what was asked: the kind, the request, and the digests of the tables that it names."""
+    content = {"kind": name, "request": posed, "tables": digests(posed.get("catalogs"), sources)}
+    return json_record(QUESTION, content)
+
+
+def json_record(name: str, content: Mapping[str, Any]) -> Record:
+    """Return a record of JSON."""
+    return Record.of(name, json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def by_name(*records: Record) -> dict[str, Record]:
+    """Return records by their names."""
+    return {record.name: record for record in records}
+
+
+def of_files(files: Mapping[str, str | bytes], names: Collection[str] | None = None) -> dict[str, Record]:
+    """Return files as records, all or some of them."""
+    return {name: Record.of(name, text) for name, text in files.items() if names is None or name in names}
+
+
+def read_json(records: Mapping[str, bytes], name: str) -> dict[str, Any]:
+    """Return the content of a record of ours."""
+    content: dict[str, Any] = json.loads(records[name])
+    return content
+
+
+def front_summary(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the facts of the record of a front."""
+    designs, units = content["designs"], content["units"]
+    best = designs[0]["objectives"] if designs else {}
+    return {
+        "outcome": content["status"],
+        "family": content["family"],
+        "title": content["title"],
+        "designs": len(designs),
+        "certificate": content["certificate"]["kind"],
+        "gap": content["certificate"]["gap"],
+        "interrupted": content["interrupted"],
+        "objectives": dict(content["objectives"]),
+        "best": {
+            name: format_quantity(float(best[name]), units[name], KIND_SETTINGS.digits)
+            for name in content["objectives"]
+            if name in best
+        },
+    }

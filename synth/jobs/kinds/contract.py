@@ -1,0 +1,118 @@
+"""What goes into the work of a kind of job and what comes out of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from synth.tables.table_text import TableText
+
+Tell = Callable[[Mapping[str, Any]], None]  # told how far the work is, in mappings that JSON can hold
+
+MEDIA = {
+    "json": "application/json",
+    "csv": "text/csv; charset=utf-8",
+    "yaml": "application/yaml",
+    "svg": "image/svg+xml",
+    "html": "text/html; charset=utf-8",
+    "pdf": "application/pdf",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "zip": "application/zip",
+    "txt": "text/plain; charset=utf-8",
+}
+QUESTION = "question.json"  # the record that says what was asked, in every job
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A named result of a job, or a file that was rendered from such."""
+
+    name: str
+    media: str
+    content: bytes
+
+    @staticmethod
+    def of(name: str, content: str | bytes) -> Record:
+        """Return a record whose media type follows from the ending of its name."""
+        raw = content.encode() if isinstance(content, str) else bytes(content)
+        return Record(name=name, media=MEDIA[name.rsplit(".", 1)[-1]], content=raw)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sources:
+    """What a request refers to by name, found by whoever calls.
+
+    Parameters
+    ----------
+    tables : mapping
+        Reference, such as ``my_linings@3`` -> its text.
+    records : mapping
+        Id of an earlier job -> its records by name. What those refer to in turn stands here as well.
+    """
+
+    tables: Mapping[str, TableText] = field(default_factory=dict)
+    records: Mapping[str, Mapping[str, bytes]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Posed:
+    """A request that was checked.
+
+    Parameters
+    ----------
+    request : mapping
+        In the form that is stored: what is left out is written out, and the same meaning gives the same text.
+    title : str
+        A few words for people.
+    families : tuple of str
+        The names of those that are asked.
+    bulk : bool
+        Whether it waits behind what somebody waits for.
+    tables : mapping
+        Reference of every table of the user's own that it reads -> SHA-256 of its text.
+    """
+
+    request: Mapping[str, Any]
+    title: str
+    families: tuple[str, ...]
+    bulk: bool = False
+    tables: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """Return the request as it is stored; entries keep their order, which says in which columns stand."""
+        return json.dumps(self.request, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mentioned:
+    """What a request refers to by name: tables by their reference, and earlier jobs."""
+
+    tables: tuple[str, ...]
+    jobs: tuple[str, ...]
+
+
+def mentioned(request: Any) -> Mentioned:
+    """Return what a request refers to; whatever is wrong with it is for ``read`` to say.
+
+    A job that is mentioned may refer to tables itself: by its own request, which is asked the same way.
+
+    Examples
+    --------
+    >>> mentioned({"catalogs": {"friction_materials": ["+", "my_linings@3"]}, "of": "01J"})
+    Mentioned(tables=('my_linings@3',), jobs=('01J',))
+    """
+    if not isinstance(request, Mapping):
+        return Mentioned(tables=(), jobs=())
+    stated, job = request.get("catalogs"), request.get("of")
+    found = dict[str, None]()
+    for value in stated.values() if isinstance(stated, Mapping) else ():
+        entries = value if isinstance(value, (list, tuple)) else [value]
+        found |= dict.fromkeys(entry for entry in entries if isinstance(entry, str) and "@" in entry)
+    return Mentioned(tables=tuple(found), jobs=(job,) if isinstance(job, str) else ())
+
+
+NOTHING = Sources(tables=MappingProxyType({}), records=MappingProxyType({}))

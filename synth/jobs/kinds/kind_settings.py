@@ -1,0 +1,40 @@
+"""The numbers of the kinds of jobs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class KindSettings:
+    """How requests are taken.
+
+    Parameters
+    ----------
+    interactive_steps : int
+        Of a study that somebody waits for: as many as fill the track of a slider. With more it is bulk work.
+    posed_steps : int
+        Of a study that are posed when its request is read, spread evenly; the rest is when it is worked at. Posing one
+        takes some hundredths of a second, and whoever sends a request waits for the answer.
+    titled : int
+        Requirements that a title repeats.
+    digits : int
+        Of the values that a summary repeats.
+    rounds : int
+        Faults of a spec that are looked for one after the other, where each hides the next.
+    seconds : float
+        For looking for further faults after the first: a form must answer while somebody types.
+    verify_seconds : float
+        For the proof of a verification where the request says nothing.
+    """
+
+    interactive_steps: int = 12
+    posed_steps: int = 40
+    titled: int = 2
+    digits: int = 4
+    rounds: int = 12
+    seconds: float = 2.0
+    verify_seconds: float = 120.0
+
+
+KIND_SETTINGS = KindSettings()

@@ -1,0 +1,129 @@
+"""The kind ``whatif``: the keys of a spec, ``vary`` and ``breaks``, or ``of`` an earlier job with what changes.
+
+Ends and a count, which Python states as a tuple, are ``{"from": "200 mm", "to": "300 mm", "count": 11}``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from synth.errors import InputError, at
+from synth.feasibility import Status
+from synth.jobs.kinds.asked import (
+    WHERE,
+    by_name,
+    digests,
+    flag,
+    json_record,
+    of_files,
+    question_of,
+    question_record,
+    read_json,
+    settings_of,
+    spec_of,
+    stated_spec,
+    titled,
+    told,
+)
+from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.results.plain import plain
+from synth.studies.whatif.run import POINTS, study_of
+from synth.studies.whatif.steps import check_steps
+from synth.studies.whatif.study_record import study_record
+
+MAIN = "study.json"
+VARY, BREAKS = "vary", "breaks"
+ENDS = ("from", "to", "count")
+
+
+def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+    """Check a request; of many steps some are posed, spread evenly, and all when the work begins.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with it.
+    """
+    spec, own = spec_of(request, sources, (VARY, BREAKS))
+    asked, settings = _asked(spec, sources)
+    vary = _vary(own.get(VARY))
+    varied, count = check_steps(asked, settings, vary, KIND_SETTINGS.posed_steps)
+    stated = stated_spec(asked, settings)
+    return Posed(
+        request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},
+        title=f"{titled(asked)}; {', '.join(varied)}",
+        families=(asked.problem.name,),
+        bulk=count > KIND_SETTINGS.interactive_steps,
+        tables=digests(stated.get("catalogs"), sources),
+    )
+
+
+def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+    """Answer all steps, and find where the best parts or counts change."""
+    spec, own = spec_of(request, sources, (VARY, BREAKS))
+    study = study_of(*_asked(spec, sources), _vary(own[VARY]), told(tell), bool(own.get(BREAKS, True)))
+    main = json_record(MAIN, study_record(study))
+    return {**of_files(study.files()), **by_name(main, question_record("whatif", request, sources))}
+
+
+def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the facts of a study."""
+    content = read_json(records, MAIN)
+    states = [step["status"] for step in content["steps"]]
+    feasible = sum(bool(step["front"] and step["front"]["designs"]) for step in content["steps"])
+    stopped = Status.NOT_SOLVED.value in states
+    outcome = Status.FEASIBLE.value if feasible else Status.NOT_SOLVED.value if stopped else Status.INFEASIBLE.value
+    if feasible and all(state in (Status.OPTIMAL.value, Status.INFEASIBLE.value) for state in states):
+        outcome = Status.OPTIMAL.value  # every step is proven
+    return {
+        "outcome": outcome,
+        "family": content["family"],
+        "varied": [one["label"] for one in content["varied"]],
+        "steps": len(states),
+        "feasible_steps": feasible,
+        "breaks": len(content["breaks"]),
+        "interrupted": content["interrupted"],
+    }
+
+
+def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSettings]:
+    return question_of(spec, sources), settings_of(spec, points=POINTS)
+
+
+def _vary(stated: Any) -> dict[str, Any]:
+    """Return what varies as the verb takes it.
+
+    Raises
+    ------
+    InputError
+        It is no mapping, or ends and a count are not stated as such.
+    """
+    if not isinstance(stated, Mapping):
+        raise InputError(f"{WHERE}: vary", stated, "names with values, {'load_torque': '500:700:50 N*m'}", (VARY,))
+    found = dict[str, Any]()
+    for name, values in stated.items():
+        with at(VARY, str(name)):
+            found[str(name)] = _ends(values) if isinstance(values, Mapping) else values
+    return found
+
+
+def _ends(values: Mapping[str, Any]) -> tuple[Any, ...]:
+    if set(values) != set(ENDS):
+        right = "a text or list of values, or {'from': '200 mm', 'to': '300 mm', 'count': 11}"
+        raise InputError(f"{WHERE}: vary", ", ".join(map(str, values)), right)
+    return tuple(values[key] for key in ENDS)
+
+
+def _stated_vary(stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what varies as it is stored."""
+
+    def entry(values: Any) -> Any:
+        if isinstance(values, Mapping):
+            return {key: values[key] for key in ENDS}
+        return plain(list(values) if isinstance(values, Sequence) and not isinstance(values, str) else values)
+
+    return {str(name): entry(values) for name, values in stated.items()}
