@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
-from synth.jobs.job_queue import BATCH
+from synth.jobs.job_queue import BATCH, Claim
 from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_groups import RowGroups
@@ -296,6 +296,49 @@ class BatchJob:
         if self._is_planned():
             self._reopen()
             return True
+        with self._checked() as rows:
+            job = {
+                "id": self.id,
+                "basis": self.basis,
+                "source": self.table.name,
+                "folder": str(self.folder.resolve()),
+                "content": self._content(),
+            }
+            return not self.store.create(job, rows, self._rows_per_unit())
+
+    def plan_claimed(self, job: str, claim: Claim, owner: str, catalogs: Mapping[str, Any]) -> bool:
+        """Check all rows and write them to a job that stands there without them.
+
+        Parameters
+        ----------
+        job, claim, owner
+            The unit of planning, and who holds it.
+        catalogs : mapping
+            References of the tables of a user's own, under which they are found again.
+
+        Returns
+        -------
+        bool
+            False where somebody else holds the unit; then nothing is written.
+
+        Raises
+        ------
+        InputError
+            No row asks a question; then nothing is written.
+        """
+        with self._checked() as rows:
+            content = {**self._content(), "catalogs": dict(catalogs)}
+            return self.store.plan(job, claim, owner, content, self.basis, rows, self._rows_per_unit())
+
+    @contextmanager
+    def _checked(self) -> Iterator[Iterator[dict[str, Any]]]:
+        """Check all rows, and give them as they are kept.
+
+        Raises
+        ------
+        InputError
+            No row asks a question.
+        """
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
             asked, first, groups = 0, list[ReadRow](), RowGroups(self.numbers.groups)
@@ -312,17 +355,10 @@ class BatchJob:
             company = _Company(groups, WarmStarts(self.numbers.warm_starts))
             for record, where in _read_again(checked, count):
                 company.show(record, where)
-            return not self.store.create(
-                {
-                    "id": self.id,
-                    "basis": self.basis,
-                    "source": self.table.name,
-                    "folder": str(self.folder.resolve()),
-                    "content": self._content(),
-                },
-                (company.placed(record, where) for record, where in _read_again(checked, count)),
-                self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit,
-            )
+            yield (company.placed(record, where) for record, where in _read_again(checked, count))
+
+    def _rows_per_unit(self) -> int:
+        return self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit
 
     def _is_planned(self) -> bool:
         place = self.address if isinstance(self.address, str) else Path(str(self.address.database))

@@ -172,8 +172,8 @@ def answer_of(message: Message) -> Any:
     if message.kind == ANSWERED:
         return message.content
     if message.kind == REFUSED:
-        field, value, expected, path = message.content
-        raise InputError(field, value, expected, path)
+        refusal: InputError = message.content
+        raise refusal
     raise EngineCrashedError(str(message.content))
 
 
@@ -275,7 +275,7 @@ def _serve(pipe: Connection, settings: EngineSettings) -> None:
         try:
             say(ANSWERED, task_of(task)(payload, say.tell))
         except InputError as refusal:
-            say(REFUSED, (refusal.field, refusal.value, refusal.expected, refusal.path))
+            say(REFUSED, refusal)
         except (Exception, SystemExit, KeyboardInterrupt) as error:
             from synth.jobs.solve import told_of
 
@@ -327,5 +327,3 @@ def resident(pid: int) -> int:
     except (OSError, IndexError):
         return 0
     return int(pages) * os.sysconf("SC_PAGE_SIZE")
-
-

@@ -14,9 +14,16 @@ from typing import Any
 Tell = Callable[[Mapping[str, Any]], None]
 Task = Callable[[Any, Tell], Any]
 
+ROWS_TASK, PLAN_TASK, WORK_TASK, READ_TASK = "rows", "plan", "work", "read"
+CHECK_ROWS_TASK, BATCH_FILE_TASK = "check_rows", "batch_file"
 TASKS: Mapping[str, str] = MappingProxyType(
     {
-        "rows": "synth.jobs.engine_work:rows",
+        ROWS_TASK: "synth.jobs.engine_work:rows",
+        PLAN_TASK: "synth.jobs.kinds.batch:plan",
+        WORK_TASK: "synth.jobs.engine_work:work",
+        READ_TASK: "synth.jobs.engine_work:read",
+        CHECK_ROWS_TASK: "synth.jobs.kinds.batch:check",
+        BATCH_FILE_TASK: "synth.jobs.kinds.batch:files",
     }
 )
 

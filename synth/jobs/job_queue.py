@@ -8,7 +8,6 @@ change by compare-and-set: a job that was cancelled cannot end in another way an
 from __future__ import annotations
 
 import gzip
-import hashlib
 import secrets
 import time
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,6 +19,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from synth.jobs.database import Database, digest
+from synth.jobs.kinds.contract import Record
 from synth.jobs.models import (
     Event,
     Job,
@@ -80,6 +80,8 @@ class NewJob:
         In s: how long it may be worked at, and how long it is kept.
     source : str
         Where it comes from, for people.
+    kept : sequence of Record
+        What was brought for it, and stays with it.
     """
 
     kind: str
@@ -97,20 +99,7 @@ class NewJob:
     seconds_limit: float | None = None
     keep: float | None = None
     source: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Record:
-    """A file that is part of a result."""
-
-    name: str
-    media: str
-    content: bytes
-
-    @property
-    def digest(self) -> str:
-        """The SHA-256 of the content."""
-        return hashlib.sha256(self.content).hexdigest()
+    kept: Sequence[Record] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -262,6 +251,8 @@ class JobQueue(Database):
                 connection.execute(sa.insert(Job).values(**columns))
                 unit = {"job": name, "task": new.task, "state": OPEN, "token": 0, "attempts": 0}
                 connection.execute(sa.insert(WorkUnit).values(**unit))
+                for record in new.kept:
+                    self._keep_on(connection, name, record)
                 tell_on(connection, name, "created", new.title)
         except IntegrityError:  # somebody has said the same at the same time
             known = self._known(new)
@@ -636,7 +627,7 @@ class JobQueue(Database):
                 sa.update(Job)
                 .where(
                     Job.state.in_(LIVE),
-                    Job.kind.not_in((BATCH, SIZE_RANGE)),
+                    Job.kind != BATCH,
                     Job.code != code,
                     Job.code.not_in(living),
                 )

@@ -115,6 +115,77 @@ class GroupSettings:
 
 
 @dataclass(frozen=True, kw_only=True)
+class EngineSettings:
+    """How engine processes live.
+
+    Parameters
+    ----------
+    nice : int
+        By how much they yield to others: with two engines on two processors, a server answers eight times faster.
+    memory : int
+        In bytes, that one may use before it is ended.
+    worn : int
+        In bytes, from which on it is replaced between two things: caches grow.
+    calls : int
+        After which it is replaced.
+    start : float
+        In s, that it may take until it is warm; on a machine that computes already, imports take long.
+    tell : float
+        In s, between two reports of how far it is.
+    """
+
+    nice: int = 10
+    memory: int = 2 * 1024**3
+    worn: int = 1024**3
+    calls: int = 500
+    start: float = 120.0
+    tell: float = 0.25
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkerSettings:
+    """How a worker serves the queue.
+
+    Parameters
+    ----------
+    poll : float
+        In s, between two looks at a queue that is empty.
+    watch : float
+        In s, between two looks at whether what is computed is still wanted.
+    weigh : float
+        In s, between two looks at how much memory it takes.
+    lease : float
+        In s, that a claim lasts without a sign of life: so long a job waits whose machine has gone.
+    sign : float
+        In s, between two signs of life.
+    tidy : float
+        In s, between two looks for what others have left behind.
+    alive : float
+        In s, within which a sign of life counts.
+    grace : float
+        In s, that a job may go on beyond its limit, for its search to stop by itself.
+    patience : float
+        In s, that somebody waits before bulk work makes room for him.
+    kept : float
+        In s, between two counts of the rows of a batch.
+    attempts : int
+        At a job whose process ends, before it is given up: what killed it may have been something else.
+    """
+
+    poll: float = 0.25
+    watch: float = 0.2
+    weigh: float = 1.0
+    lease: float = 15.0
+    sign: float = 4.0
+    tidy: float = 30.0
+    alive: float = 30.0
+    grace: float = 5.0
+    patience: float = 0.25
+    kept: float = 1.0
+    attempts: int = 3
+
+
+@dataclass(frozen=True, kw_only=True)
 class JobSettings:
     """All numbers that batches go by.
 
@@ -127,6 +198,8 @@ class JobSettings:
     cluster : ClusterSettings
     warm_starts : WarmStartSettings
     groups : GroupSettings
+    engine : EngineSettings
+    worker : WorkerSettings
     rows_per_unit : int
         Rows of one best design that are a unit of work, each answered alone.
     fronts_per_unit : int
@@ -140,6 +213,8 @@ class JobSettings:
     cluster: ClusterSettings = field(default_factory=ClusterSettings)
     warm_starts: WarmStartSettings = field(default_factory=WarmStartSettings)
     groups: GroupSettings = field(default_factory=GroupSettings)
+    engine: EngineSettings = field(default_factory=EngineSettings)
+    worker: WorkerSettings = field(default_factory=WorkerSettings)
     rows_per_unit: int = 4
     fronts_per_unit: int = 1
     shown_faults: int = 20

@@ -270,6 +270,7 @@ class Catalogue(Base):
     digest: Mapped[str] = mapped_column(String(KEY))
     rows: Mapped[int] = mapped_column(Integer)
     content: Mapped[bytes] = mapped_column(LargeBinary)
+    schema: Mapped[bytes] = mapped_column(LargeBinary)
     created: Mapped[float] = mapped_column(Float)
     note: Mapped[str] = mapped_column(Text)
 

@@ -20,8 +20,9 @@ from synth.jobs.job_queue import CANCELLED, Claim
 from synth.jobs.job_settings import JOBS, RunnerSettings
 from synth.jobs.owners import new_owner
 from synth.jobs.signs import show
-from synth.jobs.solve import ALONE, OtherCodeError, is_group, solve_unit
+from synth.jobs.solve import OtherCodeError, is_group, solve_unit
 from synth.jobs.store import NONE_ALONE, Account, Outcome, Store
+from synth.jobs.unit_results import sorted_out
 from synth.results.provenance import code_digest
 
 T = TypeVar("T")
@@ -154,17 +155,7 @@ class Runner:
         if error is not None:
             self._failed(claim, f"{type(error).__name__}: {error}")
             return
-        outcomes: dict[str, Outcome] = {}
-        errors: dict[str, str] = {}
-        alone: dict[str, str] = {}
-        for key, found in future.result().items():
-            if "error" in found:
-                errors[key] = found["error"]
-            elif ALONE in found:
-                alone[key] = found[ALONE]
-            else:
-                outcomes[key] = Outcome(found["status"], found["seconds"], found["layout"], found["content"])
-        self._finish(claim, outcomes, errors, alone)
+        self._finish(claim, *sorted_out(future.result()))
 
     def _failed(self, claim: Claim, error: str) -> None:
         """Write that a unit has failed as a whole: a group is tried once more, then, as all others, row by row."""

@@ -67,7 +67,7 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
         try:
             found[key] = answer(question, work["settings"], shared)
         except (Exception, SystemExit) as error:
-            found[key] = {"error": _told(error)}
+            found[key] = {"error": told_of(error)}
     return found
 
 
@@ -77,7 +77,7 @@ def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
     return bool(groups) and groups[0] is not None and groups.count(groups[0]) == len(groups) == groups[0]["rows"]
 
 
-def _told(error: BaseException) -> str:
+def told_of(error: BaseException) -> str:
     """Return an error in words, with the place where it came up."""
     last = traceback.extract_tb(error.__traceback__)[-1:]
     place = f" ({last[0].filename.rsplit('/', 1)[-1]}, line {last[0].lineno})" if last else ""
@@ -114,14 +114,14 @@ def answered_together(
         try:
             posed[key] = _posed(question, settings, shared)
         except (Exception, SystemExit) as error:
-            found[key] = {ALONE: "" if isinstance(error, InputError) else _told(error)}
+            found[key] = {ALONE: "" if isinstance(error, InputError) else told_of(error)}
     keys = list(posed)
     for group in groups_of(list(posed.values())):
         some = {keys[k]: posed[keys[k]] for k in group}
         try:
             found |= _settled(some, tell)
         except (Exception, SystemExit) as error:
-            found |= {key: {ALONE: _told(error)} for key in some}
+            found |= {key: {ALONE: told_of(error)} for key in some}
     if tell is not None:
         tell({"incumbents": 0})  # no group is under way any more
     return found

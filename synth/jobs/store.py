@@ -6,6 +6,7 @@ A result is written in one transaction with the end of its unit; written twice, 
 from __future__ import annotations
 
 import itertools
+import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -154,6 +155,17 @@ class Store(JobQueue):
         known = self._copy_known(connection, job)
         units = self._write_units(connection, job, rows_per_unit)
         tell_on(connection, job, "created", f"{count} rows in {units} units, {known} questions answered before")
+
+    def count_rows(self, job: str, pause: float) -> None:
+        """Note how far a batch is among its progress, if that was not done within so many seconds."""
+        found = self.job(job)
+        known = None if found is None else (found.progress or {}).get("counted")
+        now = time.time()
+        if found is None or (known is not None and 0 <= now - known < pause):
+            return
+        account = self.account(job)
+        state = {"rows": account.rows, "done": account.done, "bad": account.bad, "status": dict(account.status)}
+        self.progress(job, {**state, "counted": now})
 
     def settle(self, job: str) -> bool:
         """End a batch of which nothing is left to do; return whether it has ended by this."""

@@ -117,7 +117,7 @@ def size_range(
     per_row: Sequence[str] | None = None,
     candidates: int = VARIANTS.candidates,
     gap: float = 1e-3,
-    time_limit: float = 60.0,
+    time_limit: float = VARIANTS.seconds,
     database: str | None = None,
     job: str | None = None,
 ) -> SizeRange:
@@ -151,7 +151,7 @@ def size_range(
     InputError
         There is no such batch, or so few variants cannot serve all rows.
     """
-    _check(variants, candidates, gap, time_limit)
+    check_size_range(variants, candidates, gap, time_limit)
     started = time.monotonic()
     if isinstance(source, BatchResult):
         database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
@@ -189,7 +189,13 @@ def size_range(
     return batch.result(choice, chosen_from, costs, values, points, (fewest, bound), statistics)
 
 
-def _check(variants: Any, candidates: Any, gap: Any, time_limit: Any) -> None:
+def check_size_range(variants: Any, candidates: Any, gap: Any, time_limit: Any) -> None:
+    """Refuse numbers with which no size range can be asked.
+
+    Raises
+    ------
+    InputError
+    """
     if variants is not None:
         whole_number(variants, "variants", INPUT_LIMITS.listed, path=("variants",))
     whole_number(candidates, "candidates", INPUT_LIMITS.listed, path=("candidates",))
@@ -234,7 +240,7 @@ class _Batch:
         self.problem = own
         if content["catalogs"] == "memory" and catalogs is None:
             raise InputError("DIR", job.source, "the BatchResult itself: its tables were in memory")
-        self.catalogs = as_catalogs(catalogs if content["catalogs"] == "memory" else content["catalogs"])
+        self.catalogs = as_catalogs(content["catalogs"] if catalogs is None else catalogs)
         self.rows = [
             {
                 "line": row.line,

@@ -128,7 +128,7 @@ KINDS: Mapping[str, Kind] = _kinds(
     ),
     Kind(
         name="size_range",
-        module="synth.jobs.kinds.size_range",
+        module="synth.variants.size_range_kind",
         title="A few variants that serve a whole table of applications",
         bulk=True,
         record="size_range.json",

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any
 
 from synth.tables.table_text import TableText
@@ -23,6 +23,7 @@ MEDIA = {
     "zip": "application/zip",
     "txt": "text/plain; charset=utf-8",
 }
+TABLE = "table"  # a batch keeps its rows as a record of this name, with the ending of its kind
 QUESTION = "question.json"  # the record that says what was asked, in every job
 
 
@@ -33,6 +34,11 @@ class Record:
     name: str
     media: str
     content: bytes
+
+    @property
+    def digest(self) -> str:
+        """The SHA-256 of the content."""
+        return hashlib.sha256(self.content).hexdigest()
 
     @staticmethod
     def of(name: str, content: str | bytes) -> Record:
@@ -51,10 +57,16 @@ class Sources:
         Reference, such as ``my_linings@3`` -> its text.
     records : mapping
         Id of an earlier job -> its records by name. What those refer to in turn stands here as well.
+    files : mapping
+        Id of a file that was brought for this request -> that file.
+    database : str
+        Where the rows of earlier batches stand, for kinds that read them.
     """
 
     tables: Mapping[str, TableText] = field(default_factory=dict)
     records: Mapping[str, Mapping[str, bytes]] = field(default_factory=dict)
+    files: Mapping[str, Record] = field(default_factory=dict)
+    database: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +85,10 @@ class Posed:
         Whether it waits behind what somebody waits for.
     tables : mapping
         Reference of every table of the user's own that it reads -> SHA-256 of its text.
+    fingerprint : str
+        What tells it from other requests of its kind, where the request does not: a batch is known by its rows.
+    kept : tuple of Record
+        What has to be kept with the job, because it was brought for it.
     """
 
     request: Mapping[str, Any]
@@ -80,6 +96,8 @@ class Posed:
     families: tuple[str, ...]
     bulk: bool = False
     tables: Mapping[str, str] = field(default_factory=dict)
+    fingerprint: str = ""
+    kept: tuple[Record, ...] = ()
 
     @property
     def text(self) -> str:
@@ -89,10 +107,11 @@ class Posed:
 
 @dataclass(frozen=True, kw_only=True)
 class Mentioned:
-    """What a request refers to by name: tables by their reference, and earlier jobs."""
+    """What a request refers to by name: tables by their reference, earlier jobs, and files."""
 
     tables: tuple[str, ...]
     jobs: tuple[str, ...]
+    files: tuple[str, ...] = ()
 
 
 def mentioned(request: Any) -> Mentioned:
@@ -103,16 +122,20 @@ def mentioned(request: Any) -> Mentioned:
     Examples
     --------
     >>> mentioned({"catalogs": {"friction_materials": ["+", "my_linings@3"]}, "of": "01J"})
-    Mentioned(tables=('my_linings@3',), jobs=('01J',))
+    Mentioned(tables=('my_linings@3',), jobs=('01J',), files=())
     """
     if not isinstance(request, Mapping):
         return Mentioned(tables=(), jobs=())
-    stated, job = request.get("catalogs"), request.get("of")
+    stated, job, file = request.get("catalogs"), request.get("of"), request.get("upload")
     found = dict[str, None]()
     for value in stated.values() if isinstance(stated, Mapping) else ():
         entries = value if isinstance(value, (list, tuple)) else [value]
         found |= dict.fromkeys(entry for entry in entries if isinstance(entry, str) and "@" in entry)
-    return Mentioned(tables=tuple(found), jobs=(job,) if isinstance(job, str) else ())
+    return Mentioned(tables=tuple(found), jobs=_named(job), files=_named(file))
 
 
-NOTHING = Sources(tables=MappingProxyType({}), records=MappingProxyType({}))
+def _named(value: Any) -> tuple[str, ...]:
+    return (value,) if isinstance(value, str) else ()
+
+
+NOTHING = Sources()

@@ -24,6 +24,10 @@ class KindSettings:
         Faults of a spec that are looked for one after the other, where each hides the next.
     seconds : float
         For looking for further faults after the first: a form must answer while somebody types.
+    checked_seconds : float
+        For checking the rows of a table before a batch is started.
+    told_faults : int
+        Of a table that are told one by one.
     verify_seconds : float
         For the proof of a verification where the request says nothing.
     """
@@ -34,6 +38,8 @@ class KindSettings:
     digits: int = 4
     rounds: int = 12
     seconds: float = 2.0
+    checked_seconds: float = 10.0
+    told_faults: int = 200
     verify_seconds: float = 120.0
 
 

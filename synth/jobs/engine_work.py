@@ -1,0 +1,67 @@
+"""What engine processes do, imported there only: everything costly comes with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from synth.jobs.engine_tasks import Tell
+from synth.jobs.kinds import kind
+from synth.jobs.kinds.asked import catalogs_of
+from synth.jobs.kinds.contract import Sources
+from synth.jobs.solve import solve_unit
+from synth.model.registry import families, load
+from synth.results.provenance import code_digest, hash_of, native_code, problem_digest, processor
+
+
+def warm_up() -> str:
+    """Import what every question needs; return the fingerprint of the programs of this process."""
+    import synth.search.question
+    import synth.search.synthesize  # noqa: F401  (it brings the solvers)
+
+    return program_fingerprint()
+
+
+def program_fingerprint() -> str:
+    """Return one hash of everything that decides the digits of an answer: code, compiled or not, processor, families.
+
+    Units of one job are only worked at by programs that have the same.
+    """
+    registered = [type(load(name)) for name in families()]
+    return hash_of([code_digest(), native_code(), processor(), problem_digest(registered)])
+
+
+def rows(payload: Mapping[str, Any], tell: Tell) -> dict[str, dict[str, Any]]:
+    """Answer some rows of a batch: as :func:`synth.jobs.solve.solve_unit`."""
+    asked = payload["request"]  # none, of a batch that the command line has made: its tables are files
+    catalogs = catalogs_of(asked.get("catalogs"), _sources(payload)) if asked else payload["catalogs"]
+    return solve_unit({**payload, "catalogs": catalogs, "code": code_digest(), "tell": tell})
+
+
+def work(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Do what a job of one unit asks for: its records, and the facts of them."""
+    module = kind(payload["kind"]).load()
+    records = module.work(payload["request"], _sources(payload), tell)
+    facts = module.summary({name: record.content for name, record in records.items()})
+    return {"records": list(records.values()), "summary": facts}
+
+
+def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Check a request; return it as it is stored, and what is told of it."""
+    posed = kind(payload["kind"]).load().read(payload["request"], _sources(payload))
+    return {
+        "request": dict(posed.request),
+        "title": posed.title,
+        "families": list(posed.families),
+        "bulk": posed.bulk,
+        "tables": dict(posed.tables),
+        "text": posed.text,
+        "code": program_fingerprint(),
+        "fingerprint": posed.fingerprint or hash_of([payload["kind"], posed.text, dict(posed.tables)]),
+        "kept": list(posed.kept),
+    }
+
+
+def _sources(payload: Mapping[str, Any]) -> Sources:
+    found: Sources = payload["sources"]
+    return found

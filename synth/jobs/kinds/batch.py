@@ -1,0 +1,245 @@
+"""The kind ``batch``: a table of requirements, and what is asked of all its rows.
+
+Its work is done row by row in the tables of the database; here its table is read, checked and planned, and the files
+of its results are made.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from synth.errors import InputError, at
+from synth.jobs.batch import BatchJob
+from synth.jobs.engine_tasks import Tell
+from synth.jobs.kinds.asked import WHERE, catalogs_of, checked_keys, digests, flag, seconds, seed, settings_of
+from synth.jobs.kinds.contract import TABLE, Posed, Record, Sources
+from synth.jobs.kinds.files import UnknownFileError
+from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.jobs.outputs import write_outputs
+from synth.jobs.row_questions import Fault
+from synth.jobs.row_table import EXCEL, RowTable, read_table
+from synth.jobs.store import Store
+from synth.model.registry import load
+from synth.question.settings import SearchSettings
+from synth.question.spec_keys import shown_kind
+
+UPLOAD, ROWS = "upload", "rows"
+COMMON = ("parts", "limits", "fix")
+KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "time_limit", *COMMON, "catalogs")
+KEYS = (UPLOAD, ROWS, *KEPT)
+FILES = ("designs.csv", "rows.csv", "batch.json")
+
+
+def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+    """Check a request: its table as a whole, and its settings; the rows are checked when it is planned.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with it.
+    """
+    stated = checked_keys(request, KEYS)
+    table = table_of(stated, sources)
+    kept = {key: value for key, value in stated.items() if key in KEPT}
+    with _job(kept, table, sources) as job:
+        name = f"{job.table.name}: {counted_lines(job.table)} rows"
+        asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
+        return Posed(
+            request=asked,
+            title=name,
+            families=tuple(sorted(job.questioner.named)),
+            bulk=True,
+            tables=digests(kept.get("catalogs"), sources),
+            fingerprint=job.id,
+            kept=(Record(name=f"{TABLE}{_ending(table.name)}", media=table.media, content=table.content),),
+        )
+
+
+def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return what a table says, and which rows cannot be asked; of a long one the first, as far as time allows.
+
+    Raises
+    ------
+    InputError
+        The table as a whole is wrong.
+    """
+    sources: Sources = payload["sources"]
+    stated = checked_keys(payload["request"], KEYS)
+    table = table_of(stated, sources)
+    kept = {key: value for key, value in stated.items() if key in KEPT}
+    end = time.monotonic() + KIND_SETTINGS.checked_seconds
+    with _job(kept, table, sources) as job:
+        faults: list[Fault] = []
+        unused: dict[str, set[str]] = {}
+        checked = bad = 0
+        for row in job.questioner.rows():
+            checked += 1
+            bad += bool(row.faults)
+            faults += row.faults
+            if row.unused:
+                unused.setdefault(row.family, set()).update(row.unused)
+            if time.monotonic() > end:
+                break
+        return {
+            "rows": counted_lines(job.table),
+            "checked": checked,
+            "bad": bad,
+            "faults": [_told(fault) for fault in faults[: KIND_SETTINGS.told_faults]],
+            "more_faults": max(len(faults) - KIND_SETTINGS.told_faults, 0),
+            "families": sorted(job.questioner.named),
+            "columns": [
+                {"title": column.title, "name": "" if column in job.questioner.carried else column.name}
+                for column in job.questioner.columns
+            ],
+            "carried": [c.title for c in job.questioner.carried],
+            "unused": {family: sorted(columns) for family, columns in sorted(unused.items())},
+        }
+
+
+def plan(payload: Mapping[str, Any], tell: Tell) -> bool:
+    """Check the rows of a batch and write them to its job, unless somebody else does meanwhile.
+
+    Raises
+    ------
+    InputError
+        No row asks a question.
+    """
+    sources: Sources = payload["sources"]
+    request = payload["request"]
+    stated = {key: value for key, value in request.items() if key in KEPT}
+    table = Record(name=request["table"]["name"], media="", content=payload["table"].content)
+    with _job(stated, table, sources) as job:
+        try:
+            return job.plan_claimed(payload["job"], payload["claim"], payload["owner"], stated.get("catalogs", {}))
+        finally:
+            job.close()
+
+
+def files(payload: Mapping[str, Any], tell: Tell) -> Record:
+    """Return one of the files of a batch, as far as its rows are answered.
+
+    Raises
+    ------
+    UnknownFileError
+        There is no such file.
+    """
+    name = payload["name"]
+    if name not in FILES:
+        raise UnknownFileError(name)
+    sources: Sources = payload["sources"]
+    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder, Store(sources.database, create=False) as store:
+        _, place = write_outputs(store, payload["job"], Path(folder))
+        return Record.of(name, (place / name).read_bytes())
+
+
+def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:
+    """Return the table of a request: a file that was brought, or rows that stand in it.
+
+    Raises
+    ------
+    InputError
+        There is neither, or both.
+    """
+    if (UPLOAD in stated) == (ROWS in stated):
+        given = "both upload and rows" if UPLOAD in stated else None
+        raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
+    if ROWS in stated:
+        rows = stated[ROWS]
+        if not isinstance(rows, list) or not rows or not all(isinstance(row, Mapping) for row in rows):
+            right = "a list with an object for each row, such as {'load_torque': '600 N*m'}"
+            raise InputError(f"{WHERE}: {ROWS}", shown_kind(rows), right, (ROWS,))
+        return Record.of("rows.json", json.dumps(rows, ensure_ascii=False))
+    found = sources.files.get(stated[UPLOAD]) if isinstance(stated[UPLOAD], str) else None
+    if found is None:
+        raise InputError(f"{WHERE}: {UPLOAD}", stated[UPLOAD], "the id of a file that was uploaded", (UPLOAD,))
+    return Record.of(f"{Path(found.name).stem or 'rows'}{_ending(found.name)}", found.content)
+
+
+def _ending(name: str) -> str:
+    """Return the ending by which the kind of a table is told: what is neither Excel nor ours is CSV."""
+    ending = Path(name).suffix.lower()
+    return ".xlsx" if ending in EXCEL else ending if ending == ".json" else ".csv"
+
+
+@contextmanager
+def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator[BatchJob]:
+    """Give a batch that knows its table and its settings; nothing of it is written.
+
+    Raises
+    ------
+    InputError
+        Something of it is wrong.
+    """
+    common: dict[str, Any] = {name: stated.get(name) for name in COMMON}
+    grid = stated.get("grid", True)
+    common |= {"objectives": stated.get("objectives"), "grid": flag("grid", grid)}
+    usual = SearchSettings()
+    settings = settings_of(
+        {
+            **{key: stated[key] for key in ("points", "gap") if key in stated},
+            "seed": seed(stated.get("seed")),
+            "time_limit": seconds(stated.get("time_limit")),
+        },
+        points=usual.points,
+    )
+    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
+        yield BatchJob(
+            _family(stated.get("family")),
+            _rows(table, Path(folder)),
+            Path(folder) / "out",
+            _mapping(stated.get("mapping")),
+            catalogs_of(stated.get("catalogs"), sources),
+            sources.database or None,
+            settings,
+            common,
+        )
+
+
+def _family(stated: Any) -> str | None:
+    """Return the family of rows that name none."""
+    with at("family"):
+        if stated is not None and not isinstance(stated, str):
+            raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family")
+        if stated is not None:
+            load(stated)
+        return stated
+
+
+def _mapping(stated: Any) -> dict[str, str]:
+    right = "an object such as {'Lastmoment [Nm]': 'load_torque'} ('carry' for a column that is only carried along)"
+    if stated is None:
+        return {}
+    if not isinstance(stated, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in stated.items()):
+        raise InputError(f"{WHERE}: mapping", shown_kind(stated), right, ("mapping",))
+    return {heading.strip(): name.strip() for heading, name in stated.items()}
+
+
+def _rows(table: Record, folder: Path) -> RowTable:
+    """Return the rows of a table that is in memory; what reads files gets one."""
+    if table.name.endswith(".json"):
+        found: RowTable = read_table(json.loads(table.content))
+        return found
+    file = folder / f"table{_ending(table.name)}"
+    file.write_bytes(table.content)
+    return RowTable(table.name, file)
+
+
+def counted_lines(table: RowTable) -> int:
+    """Return the number of rows of a table that are not blank."""
+    return sum(1 for _ in table.lines())
+
+
+def _told(fault: Fault) -> dict[str, Any]:
+    return {
+        "line": fault.line,
+        "column": fault.column,
+        "value": fault.value,
+        "expected": fault.expected,
+        "message": fault.sentence(),
+    }
