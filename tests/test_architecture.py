@@ -212,9 +212,11 @@ def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_p
     modules = {f"{package}/{path.name}" for package in PACKAGES for path in sources(package)}
     tables = {f"catalogs/{path.name}" for path in (ROOT / "catalogs").iterdir() if path.suffix in (".csv", ".md")}
     templates = {path.relative_to(ROOT).as_posix() for path in (ROOT / "synth").rglob("*.c")}
+    examples = {path.relative_to(ROOT).as_posix() for path in (ROOT / "problems").rglob("*.yaml")}
     assert len(tables) > 2
     assert len(templates) > 2
-    assert modules | tables | templates | {"synth/py.typed"} <= packed
+    assert len(examples) > 2
+    assert modules | tables | templates | examples | {"synth/py.typed"} <= packed
     assert not [name for name in packed if name.startswith(("tests/", "docs/", "examples/"))]
     assert "clutchsynth = synth.terminal.cli:main" in metadata
 

@@ -158,7 +158,8 @@ class Pieces:
         size : array (points, decisions)
         """
         found = self._evaluate(inputs)
-        count = max(np.size(x) for x in inputs)
+        sizes = [np.size(x) for x in inputs]
+        count = max(sizes) if min(sizes) else 0  # no point at all, beside numbers that are the same for all points
         values = iter(np.broadcast_to(np.asarray(x, dtype=float), count) for x in found)
         ways = np.empty((count, len(self)), dtype=bool)
         apart, size = np.empty(ways.shape), np.zeros(ways.shape)

@@ -37,17 +37,27 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     # Whoever gives names gets the model that is asked next: tracing one costs as much as reading all else.
     model = problem.model(frozenset(str(word) for word, value in requirements.items() if value is not None), catalogs)
     result: dict[str, Any] = {}
-    spellings = model.declaration.names()
     for word, value in requirements.items():
-        if str(word) not in spellings:
-            _refuse_of_other_options(problem, str(word), value, model, catalogs)
-        name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
+        name = requirement_named(str(word), value, problem, model, catalogs)
         if name in result:
             right = "each requirement once (name and symbol mean the same)"
             raise InputError(f"requirement {name}", word, right, ("requirements", str(word)))
         if value is not None:
             result[name] = value
     return result
+
+
+def requirement_named(word: str, value: Any, problem: DesignProblem, model: Model, catalogs: Catalogs) -> str:
+    """Return the public name of a requirement.
+
+    Raises
+    ------
+    InputError
+        There is none of that name or symbol, or only with other options.
+    """
+    if word not in model.declaration.names():
+        _refuse_of_other_options(problem, word, value, model, catalogs)
+    return model.name_of(word, "requirements", list(model.declaration.requirements), "a requirement")
 
 
 def _refuse_of_other_options(problem: DesignProblem, word: str, value: Any, model: Model, catalogs: Catalogs) -> None:

@@ -57,8 +57,8 @@ class RequirementValues:
             A value is missing or outside its range, or a row that is always used lacks a number.
         """
         rows = _complete_rows(model, catalogs)
-        missing = tuple(r.name for r in model.declaration.requirements.values() if r.sx is None)
-        return cls(requirements=_numbers(model, asked, rows), given=frozenset(asked), not_asked=missing, rows=rows)
+        left_out = tuple(r.name for r in model.declaration.requirements.values() if r.sx is None)
+        return cls(requirements=_numbers(model, asked, rows), given=frozenset(asked), not_asked=left_out, rows=rows)
 
     def by_symbol(self, model: Model) -> dict[str, float]:
         """Return the values by their symbols in the model."""
@@ -112,18 +112,35 @@ def _numbers(model: Model, asked: Mapping[str, Any], rows: Mapping[str, float]) 
         if r.sx is None:
             continue
         if r.name in asked:
-            with at("requirements", r.name):
-                values[r.name] = parse_quantity(asked[r.name], r.unit, f"requirement {r.name}")
-                _check_range(r, asked[r.name], values[r.name])
+            values[r.name] = value_of(r, asked[r.name])
         elif r.default is None:
-            right = f"a value in {r.unit}, for example {_example(r)}"
-            raise InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
+            raise missing(r)
         elif isinstance(r.default, float):
             values[r.name] = r.default
         else:
             known = {**{model.requirement_symbols[n]: v for n, v in values.items()}, **rows}
             values[r.name] = model.number(r.default, known)
     return values
+
+
+def value_of(r: RequirementRecord, typed: Any) -> float:
+    """Return what was typed for a requirement in SI.
+
+    Raises
+    ------
+    InputError
+        It is no such quantity, or outside of the range.
+    """
+    with at("requirements", r.name):
+        value = parse_quantity(typed, r.unit, f"requirement {r.name}")
+        _check_range(r, typed, value)
+    return value
+
+
+def missing(r: RequirementRecord) -> InputError:
+    """Return what is said of a requirement that must be stated and is not."""
+    right = f"a value in {r.unit}, for example {_example(r)}"
+    return InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
 
 
 def _example(requirement: RequirementRecord) -> str:

@@ -302,6 +302,12 @@ def test_a_branch_that_is_not_taken_does_not_count():
     assert ways[:, kinds.index(ca.OP_LT)].tolist() == [True, False]
 
 
+def test_no_point_at_all_decides_nothing_although_other_numbers_are_given_once():
+    written = (lambda x: [("at_most", ca.fmax(x[1], x[0]), 2.0)], lambda x: x[0] + x[1], False)
+    ways, apart, size = Kinked(2, written).pieces.at([np.empty(0), np.array([0.5])])
+    assert ways.shape == apart.shape == size.shape == (0, 1)
+
+
 # -- the two-spring clutch ---------------------------------------------------------------------
 
 

@@ -117,7 +117,7 @@ KINDS: Mapping[str, Kind] = _kinds(
         name="report",
         module="synth.jobs.kinds.report",
         title="The report of a front, with calculation sheets",
-        record="report.html",
+        record="report.json",
     ),
     Kind(
         name="batch",

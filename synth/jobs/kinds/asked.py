@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -378,8 +378,7 @@ def read_json(records: Mapping[str, bytes], name: str) -> dict[str, Any]:
 
 def front_summary(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the facts of the record of a front."""
-    designs, units = content["designs"], content["units"]
-    best = designs[0]["objectives"] if designs else {}
+    designs = content["designs"]
     return {
         "outcome": content["status"],
         "family": content["family"],
@@ -389,9 +388,11 @@ def front_summary(content: Mapping[str, Any]) -> dict[str, Any]:
         "gap": content["certificate"]["gap"],
         "interrupted": content["interrupted"],
         "objectives": dict(content["objectives"]),
-        "best": {
-            name: format_quantity(float(best[name]), units[name], KIND_SETTINGS.digits)
-            for name in content["objectives"]
-            if name in best
-        },
+        "best": best_of(designs, content["units"]),
     }
+
+
+def best_of(designs: Sequence[Mapping[str, Any]], units: Mapping[str, str]) -> dict[str, str]:
+    """Return the objectives of the first of some designs of a record with their units; nothing where there is none."""
+    best = designs[0]["objectives"] if designs else {}
+    return {name: format_quantity(float(x), units[name], KIND_SETTINGS.digits) for name, x in best.items()}

@@ -10,6 +10,7 @@ from synth.jobs.kinds.asked import (
     FAMILY,
     SPEC,
     WHERE,
+    best_of,
     by_name,
     catalogs_of,
     digests,
@@ -21,10 +22,9 @@ from synth.jobs.kinds.asked import (
     told,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
-from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.request import check_grid, listed_objectives
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import SEARCHED, asks_several, read_keys
+from synth.question.spec_keys import asks_several, read_keys
 from synth.results.calculation import CALCULATION
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON
@@ -39,7 +39,6 @@ from synth.studies.families.requirement_sheet import (
     refuse_all,
     sheet_of,
 )
-from synth.units import format_quantity
 
 KEPT = (FRONT_FILE, CALCULATION)  # of the front of each family; the rest is rendered from these
 
@@ -94,7 +93,8 @@ def _one_can_be_asked(found: list[Applicant], asked: Any, settings: SearchSettin
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Search all families and put their designs on one front."""
     content, settings = _read(request)
-    asked = {key: content[key] or None for key in (*KEYS, "weights") if key != "requirements"}
+    asked: dict[str, Any] = {key: content[key] or None for key in (*KEYS, "weights") if key != "requirements"}
+    how: dict[str, Any] = settings.to_json()
     found = compare(
         content[FAMILY],
         content["requirements"],
@@ -102,8 +102,8 @@ def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, 
         catalogs=catalogs_of(request.get("catalogs"), sources),
         grid=_grid(content),
         progress=told(tell),
-        **{key: value for key, value in settings.to_json().items() if key in SEARCHED},
         **asked,
+        **how,
     )
     own = {name: text for name, text in found.family_files().items() if name.rsplit("/", 1)[-1] in KEPT}
     return {**of_files({**found.files(), **own}), **by_name(question_record("compare", request, sources))}
@@ -127,10 +127,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
         family = designs[0]["family"]
         folder = next(one["folder"] for one in outcomes if one["family"] == family)
         units = read_json(records, f"{folder}/{FRONT_FILE}")["units"]
-        best = {
-            n: format_quantity(float(x), units[n], KIND_SETTINGS.digits) for n, x in designs[0]["objectives"].items()
-        }
-        facts |= {"family": family, "best": best}
+        facts |= {"family": family, "best": best_of(designs, units)}
     return facts
 
 

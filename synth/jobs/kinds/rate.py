@@ -49,7 +49,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    designs, _, tables, block, frame = _designs(request, sources)
+    designs, _, _, block, frame = _designs(request, sources)
     limit = seconds(request.get("time_limit"))
     read_block(block)
     stated: dict[str, Any] = {key: request[key] for key in (OF, FAMILY) if request.get(key) is not None}
