@@ -219,7 +219,7 @@ class _Check:
         spec = self._entries(request)
         family = spec.get(FAMILY)
         if family is None:
-            if not any(fault.path[:1] == (FAMILY,) for fault in self.faults):
+            if isinstance(request, Mapping) and not any(fault.path[:1] == (FAMILY,) for fault in self.faults):
                 right = "the name of a family; clutchsynth families lists them"
                 self.faults.append(InputError(f"{WHERE}: {FAMILY}", None, right, (FAMILY,)))
         elif asks_several(family):

@@ -1,0 +1,336 @@
+"""Every kind of job from its request to its records."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+from synth.errors import InputError
+from synth.jobs.kinds import KINDS, Sources, kind
+from synth.jobs.kinds.contract import mentioned
+from synth.tables.table_text import TableText
+from tests.jobs.kinds.jobs import DISC, PAIR, SPECS, disc, done, earlier, pair, summary
+
+BUILT = [name for name in KINDS if name not in ("batch", "size_range")]
+OF: dict[str, dict[str, Any]] = {
+    "synthesis": DISC,
+    "compare": PAIR,
+    "whatif": {**DISC, "vary": {"load_torque": "50, 60 N*m"}, "breaks": False},
+    "explain": DISC,
+    "prices": {"of": "front", "design": [1]},
+    "near_equals": {"of": "front"},
+    "rate": {"of": "front", "design": 1, "robust": {"load_torque": "+-1 %"}},
+    "verify": {"of": "front"},
+    "report": {"of": "front", "formats": ["html", "json"]},
+}
+
+
+def posed(name: str, request: Any, sources: Sources | None = None) -> Any:
+    return kind(name).load().read(request, sources or earlier())
+
+
+def fault(name: str, request: Any, sources: Sources | None = None) -> InputError:
+    with pytest.raises(InputError) as caught:
+        posed(name, request, sources)
+    return caught.value
+
+
+# ---- the list -------------------------------------------------------------------------------------------------------
+
+
+def test_the_list_of_kinds_loads_nothing_heavy() -> None:
+    heavy = "casadi", "numpy", "pandas", "cvxpy", "scipy", "yaml"
+    code = f"import sys, synth.jobs.kinds; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_kind_that_there_is_not_is_refused_by_name() -> None:
+    with pytest.raises(InputError, match="one of synthesis, compare") as caught:
+        kind("dance")
+    assert caught.value.path == ("kind",)
+    with pytest.raises(InputError):
+        kind(["synthesis"])
+
+
+def test_the_kinds_tell_what_waits_behind_what() -> None:
+    assert {name for name, one in KINDS.items() if one.bulk} == {"batch", "size_range"}
+    assert set(OF) == set(BUILT)
+    assert all(name == one.name and one.title for name, one in KINDS.items())
+
+
+# ---- requests -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_a_stored_request_reads_as_itself(name: str) -> None:
+    first = posed(name, OF[name])
+    again = posed(name, json.loads(first.text))
+    assert (again.text, again.title, again.families) == (first.text, first.title, first.families)
+    assert first.title
+    assert first.families
+    assert not first.bulk
+
+
+def test_the_same_meaning_is_the_same_request() -> None:
+    turned = {**dict(reversed(list(DISC.items()))), "requirements": dict(reversed(list(DISC["requirements"].items())))}
+    symbols = {**DISC["requirements"], "M_load": DISC["requirements"]["load_torque"]}
+    del symbols["load_torque"]
+    said = {**DISC, "gap": 0.001, "grid": True, "seed": 0, "workers": 2, "limits": {}}
+    for other in (turned, {**DISC, "requirements": symbols}, said):
+        assert posed("synthesis", other).text == posed("synthesis", DISC).text
+    assert posed("synthesis", {**DISC, "gap": 0.01}).text != posed("synthesis", DISC).text
+
+
+def test_a_request_of_an_earlier_job_changes_entries_of_its_own() -> None:
+    changed = posed("synthesis", {"of": "front", "requirements": {"load_torque": "55 N*m"}, "points": 2}).request
+    assert changed == posed("synthesis", DISC).request | {
+        "requirements": {**posed("synthesis", DISC).request["requirements"], "load_torque": "55 N*m"},
+        "points": 2,
+    }
+    assert fault("synthesis", {"of": "other"}).path == ("of",)
+    assert fault("synthesis", {"of": 3}).path == ("of",)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "path"),
+    [
+        (
+            "synthesis",
+            {"requirements": {**DISC["requirements"], "load_torque": "6,5"}},
+            ("requirements", "load_torque"),
+        ),
+        ("synthesis", {"colour": "red"}, ("colour",)),
+        ("synthesis", {"points": 10**9}, ("points",)),
+        ("synthesis", {"limits": {"mass": ["<= 3 kg", "<= 3 s"]}}, ("limits", "mass", 1)),
+        ("synthesis", {"family": "any"}, ("family",)),
+        ("synthesis", {"values": {}}, ("values",)),
+        ("synthesis", {"options": {"practice": "dance"}}, ("options", "practice")),
+        ("synthesis", {"robust": {"friction": "wide"}}, ("robust", "friction")),
+        ("explain", {"physics": "yes"}, ("physics",)),
+        ("whatif", {"vary": {}}, ("vary",)),
+        ("whatif", {"vary": 3}, ("vary",)),
+        ("whatif", {"vary": {"load_torque": {"from": 1}}}, ("vary", "load_torque")),
+        (
+            "whatif",
+            {"vary": {"load_torque": {"from": "1 N*m", "to": "2 N*m", "count": 10**8}}},
+            ("vary", "load_torque"),
+        ),
+        ("whatif", {"breaks": 1}, ("breaks",)),
+        ("compare", {"family": "disc_clutch"}, ("family",)),
+        ("compare", {"requirements": {"dance": 3}}, ("requirements", "dance")),
+        ("prices", {"design": 7}, ("design",)),
+        ("prices", {"step": "90 %"}, ("step",)),
+        ("prices", {"of": "other"}, ("of",)),
+        ("prices", {"family": "disc_clutch"}, ("family",)),
+        ("prices", {"time_limit": -1}, ("time_limit",)),
+        ("near_equals", {"design": True}, ("design",)),
+        ("near_equals", {"design": 7}, ("design",)),
+        ("near_equals", {"within": "2 kg"}, ("within",)),
+        ("near_equals", {"count": 0}, ("count",)),
+        ("near_equals", {"seed": -1}, ("seed",)),
+        ("rate", {"robust": {}}, ("robust",)),
+        ("rate", {"design": [1, 9]}, ("design",)),
+        ("verify", {"time_limit": "soon"}, ("time_limit",)),
+        ("report", {"formats": ["doc"]}, ("formats",)),
+        ("report", {"design": "best"}, ("design",)),
+        ("report", {"length": "long"}, ("length",)),
+        ("report", {"about": {"logo": "/etc/passwd"}}, ("about", "logo")),
+        ("report", {"full": -1}, ("full",)),
+    ],
+)
+def test_a_fault_is_told_with_its_place(name: str, change: dict[str, Any], path: tuple[Any, ...]) -> None:
+    assert fault(name, {**OF[name], **change}).path == path
+
+
+@pytest.mark.parametrize("name", BUILT)
+@pytest.mark.parametrize("request_", [None, [], "text", 3, {}, {"family": {}}, {"of": {}}])
+def test_what_is_no_request_is_refused(name: str, request_: Any) -> None:
+    fault(name, request_)
+
+
+def test_studies_of_many_steps_wait_behind_others() -> None:
+    few, many = (
+        {**OF["whatif"], "vary": {"load_torque": {"from": "50 N*m", "to": "60 N*m", "count": n}}} for n in (12, 13)
+    )
+    assert not posed("whatif", few).bulk
+    assert posed("whatif", many).bulk
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+LININGS = TableText(
+    reference="my_linings@3",
+    csv="designation,friction_minimum_dynamic [-],density [kg/m3]\nmine,0.3,1800\n",
+)
+
+
+def test_requests_name_tables_by_reference_and_no_path(tmp_path: Any) -> None:
+    (tmp_path / "linings.csv").write_text(LININGS.csv)
+    paths = [
+        str(tmp_path / "linings.csv"),
+        "/etc/passwd",
+        "/dev/zero",
+        "../x@1",
+        "a/b@1",
+        "x",
+        "my_linings@0",
+        "@1",
+        "",
+        3,
+    ]
+    for value in [*paths, *(["+", p] for p in paths), ["+"], [], {}, ["my_linings@3"]]:
+        found = fault("synthesis", {**DISC, "catalogs": {"friction_materials": value}})
+        assert found.path[:2] == ("catalogs", "friction_materials"), value
+    assert fault("synthesis", {**DISC, "catalogs": str(tmp_path)}).path == ("catalogs",)
+    assert fault("compare", {**PAIR, "catalogs": str(tmp_path)}).path == ("catalogs",)
+    missing = fault("synthesis", {**DISC, "catalogs": {"friction_materials": "my_linings@3"}})
+    assert "a table that there is" in str(missing)
+
+
+def test_what_a_request_refers_to_is_told() -> None:
+    asked = {"catalogs": {"a": "x@1", "b": ["+", "y@2", "x@1"], "c": 3}, "of": "front"}
+    assert (mentioned(asked).tables, mentioned(asked).jobs) == (("x@1", "y@2"), ("front",))
+    for junk in (None, [], {"catalogs": 3, "of": 3}):
+        assert (mentioned(junk).tables, mentioned(junk).jobs) == ((), ())
+
+
+def wires() -> str:
+    """Return the shipped wires without the thickest ones, as a user would keep them."""
+    from synth.tables.catalogs import Catalogs
+
+    table = Catalogs().table("friction_pairs")
+    frame = table.to_frame()
+    return str(frame[frame["designation"].isin(["woven_dry", "wound_yarn_dry", "moulded_dry"])].to_csv(index=False))
+
+
+@pytest.mark.slow
+def test_own_tables_are_used_and_their_digests_kept() -> None:
+    text = TableText(reference="pairs@2", csv=wires())
+    sources = Sources(tables={"pairs@2": text})
+    request = {**DISC, "catalogs": {"friction_pairs": "pairs@2"}}
+    found = posed("synthesis", request, sources)
+    assert found.tables == {"pairs@2": text.digest}
+    assert found.request["catalogs"] == {"friction_pairs": "pairs@2"}
+    records = done("synthesis", request, sources)
+    front = json.loads(records["front.json"])
+    assert front["restated"]["catalogs"] == {"friction_pairs": "pairs@2"}
+    assert json.loads(records["question.json"])["tables"] == {"pairs@2": text.digest}
+    whole = Sources(tables=sources.tables, records={"mine": records})
+    assert summary("verify", done("verify", {"of": "mine"}, whole))["outcome"] == "holds"
+    assert fault("prices", {"of": "mine"}, Sources(records={"mine": records})).path[0] == "of"
+    strange = TableText(reference="pairs@2", csv=text.csv.replace("woven_dry", "wound_yarn_dry"))
+    wrong = fault("synthesis", request, Sources(tables={"pairs@2": strange}))
+    assert "pairs@2, line" in str(wrong)
+    assert wrong.path[:2] == ("catalogs", "friction_pairs")
+
+
+# ---- work -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_a_synthesis_finds_a_front() -> None:
+    facts = summary("synthesis", disc())
+    assert (facts["outcome"], facts["family"], facts["designs"], facts["certificate"]) == (
+        "optimal",
+        "disc_clutch",
+        4,
+        "global",
+    )
+    assert set(facts["best"]) == set(facts["objectives"]) == {"mass", "actuation_force"}
+    assert facts["best"]["mass"].endswith(" kg")
+    assert set(disc()) == {"front.json", "calculation.json", "question.json"}
+
+
+@pytest.mark.slow
+def test_several_families_are_compared_and_checked_again() -> None:
+    facts = summary("compare", pair())
+    assert set(facts["families"]) == set(PAIR["family"])
+    assert facts["outcome"] == "optimal"
+    assert facts["designs"] == 3
+    sources = Sources(records={"pair": pair()})
+    assert summary("verify", done("verify", {"of": "pair"}, sources))["outcome"] == "holds"
+    assert summary("report", done("report", {"of": "pair"}, sources))["files"][0] == "report.html"
+    prices = done("prices", {"of": "pair", "family": "disc_clutch", "design": 1}, sources)
+    assert summary("prices", prices)["designs"] == 1
+    assert fault("prices", {"of": "pair"}, sources).path == ("family",)
+    changed = {
+        **pair(),
+        "designs.csv": b"",
+        "comparison.json": pair()["comparison.json"].replace(b'"rank": 2', b'"rank": 3'),
+    }
+    found = done("verify", {"of": "pair"}, Sources(records={"pair": changed}))
+    assert summary("verify", found)["outcome"] == "refuted"
+
+
+@pytest.mark.slow
+def test_a_study_keeps_the_front_of_every_step() -> None:
+    from pathlib import Path
+
+    from synth.results.loading import front_of_record
+
+    records = done("whatif", OF["whatif"])
+    facts = summary("whatif", records)
+    assert (facts["outcome"], facts["steps"], facts["feasible_steps"]) == ("optimal", 2, 2)
+    content = json.loads(records["study.json"])
+    assert [step["stated"] for step in content["steps"]] == [["50 N*m"], ["60 N*m"]]
+    assert [x["unit"] for x in content["varied"]] == ["N*m"]
+    fronts = [front_of_record(step["front"], Path("study.json")) for step in content["steps"]]
+    assert all(front.designs for front in fronts)
+    assert {"whatif.csv", "breaks.csv", "whatif.svg"} <= set(records)
+
+
+@pytest.mark.slow
+def test_an_explanation_says_how_to_change_the_question() -> None:
+    asked = {"of": "front", "requirements": {"outer_diameter_limit": "150 mm"}}
+    records = done("explain", asked, earlier())
+    facts = summary("explain", records)
+    assert facts["outcome"] == "infeasible"
+    assert facts["ways"] > 0
+    ways = [way for way in json.loads(records["explanation.json"])["ways"] if way["patch"]]
+    applied = posed(
+        "synthesis", {**asked, "requirements": {**asked["requirements"], **ways[0]["patch"]["requirements"]}}
+    )
+    assert summary("synthesis", done("synthesis", applied.request))["designs"] > 0
+    assert summary("explain", done("explain", DISC))["outcome"] == "feasible"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("prices", {"outcome": "feasible", "designs": 1, "asked": 1}),
+        ("near_equals", {"outcome": "infeasible", "found": 0, "complete": True}),
+        ("rate", {"rated": 1, "missing": 0}),
+        ("verify", {"outcome": "holds", "findings": 0}),
+        ("report", {"files": ["report.html", "design_1_sheet.html", "design_1_sheet.json"]}),
+    ],
+)
+def test_what_is_asked_of_a_front(name: str, expected: dict[str, Any]) -> None:
+    facts = summary(name, done(name, OF[name], earlier()))
+    if name == "report":
+        expected = {"files": ["report.html", "design_01_sheet.html", "design_01_sheet.json"]}
+    assert {key: facts[key] for key in expected} == expected
+
+
+@pytest.mark.slow
+def test_a_given_design_is_rated() -> None:
+    design = {**SPECS["lecture_design"], "robust": {"load_torque": "+-1 %"}}
+    assert summary("rate", done("rate", design))["rated"] == 1
+    assert fault("rate", {key: value for key, value in design.items() if key != "values"}).path == ("values",)
+
+
+@pytest.mark.slow
+def test_a_front_that_was_changed_is_found_out() -> None:
+    content = json.loads(disc()["front.json"])
+    content["designs"][0]["objectives"]["mass"] *= 0.9
+    changed = Sources(records={"front": {**disc(), "front.json": json.dumps(content).encode()}})
+    assert summary("verify", done("verify", {"of": "front"}, changed))["outcome"] == "refuted"
+    assert fault("prices", {"of": "front"}, changed).path == ("of",)
+    other = Sources(records={"front": {**disc(), "calculation.json": b"{}"}})
+    found = json.loads(done("verify", {"of": "front"}, other)["verification.json"])
+    assert [finding for finding in found["findings"] if "calculation.json" in finding]
