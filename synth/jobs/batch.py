@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import shutil
 import tempfile
@@ -612,8 +611,3 @@ def resume(
     return work_off(
         store, job, Shares(content["settings"], content["catalogs"], None), workers, scheduler, progress, say
     )
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -152,7 +152,7 @@ def _tell_no_room(error: OSError | InputError) -> None:
 
 
 def _processes(workers: int | None) -> int:
-    from synth.jobs.batch import cores
+    from synth.jobs.owners import cores
 
     return cores() if workers is None else workers
 
