@@ -263,7 +263,7 @@ def _serve(pipe: Connection, settings: EngineSettings) -> None:
         os.environ.setdefault(name, "1")
     if settings.nice and hasattr(os, "nice"):
         os.nice(settings.nice)
-    _bound_memory(2 * settings.memory)
+    _bound_memory(settings.addresses)
     asked: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, asked), name="lifeline", daemon=True).start()
     from synth.jobs.engine_work import warm_up

@@ -124,6 +124,8 @@ class EngineSettings:
         By how much they yield to others: with two engines on two processors, a server answers eight times faster.
     memory : int
         In bytes, that one may use before it is ended.
+    addresses : int
+        In bytes, that it may reserve, where the system bounds that: far more than it uses.
     worn : int
         In bytes, from which on it is replaced between two things: caches grow.
     calls : int
@@ -136,6 +138,7 @@ class EngineSettings:
 
     nice: int = 10
     memory: int = 2 * 1024**3
+    addresses: int = 4 * 1024**3
     worn: int = 1024**3
     calls: int = 500
     start: float = 120.0

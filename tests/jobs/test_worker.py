@@ -1,0 +1,286 @@
+"""Workers: what they do with jobs of every kind, and that nothing is lost however they end."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from synth.jobs.batch import batch
+from synth.jobs.database import file_url
+from synth.jobs.engine_process import EngineCrashedError, EngineProcess, Engines, EngineTimeoutError
+from synth.jobs.engine_tasks import BATCH_FILE_TASK, READ_TASK
+from synth.jobs.job_queue import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
+from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
+from synth.jobs.kinds.contract import NOTHING
+from synth.jobs.models import Job
+from synth.jobs.shelf import Shelf
+from synth.jobs.store import Store
+from synth.jobs.worker import Worker
+from tests.jobs.test_migrations import hoists
+
+pytestmark = pytest.mark.slow
+ROOT = Path(__file__).parents[2]
+HOIST: dict[str, Any] = yaml.safe_load((ROOT / "examples" / "hoist_multi_plate.yaml").read_text(encoding="utf-8"))
+QUICK = {**HOIST, "objectives": ["mass"], "points": 1}
+LONG = {**HOIST, "objectives": ["mass", "length", "friction_work"], "points": 200}
+
+
+@pytest.fixture(scope="module")
+def engines() -> Iterator[Engines]:
+    found = Engines(1)
+    yield found
+    found.close()
+
+
+def submit(store: Store, engines: Engines, kind: str, request: dict[str, Any], **more: Any) -> str:
+    sources = Shelf(store).sources(LOCAL, request)
+    read = engines.call(READ_TASK, {"kind": kind, "request": request, "sources": sources}, 60.0)
+    new = NewJob(
+        kind=kind,
+        title=read["title"],
+        request=read["request"],
+        fingerprint=read["fingerprint"],
+        code=read["code"],
+        kept=read["kept"],
+        task=PLAN if kind == "batch" else WHOLE_JOB,
+        priority=0 if read["bulk"] else 1,
+    )
+    return store.submit(replace(new, **more))[0]
+
+
+@contextmanager
+def serving(store: Store, slots: int = 1, settings: JobSettings = JOBS) -> Iterator[Worker]:
+    worker = Worker(store, slots, settings=settings, spare=False)
+    thread = threading.Thread(target=worker.run)
+    thread.start()
+    try:
+        yield worker
+    finally:
+        worker.stop()
+        thread.join()
+
+
+def ended(store: Store, job: str, within: float = 90.0) -> Job:
+    return until(lambda: store.job(job), lambda found: found is not None and found.state not in (OPEN, RUNNING), within)
+
+
+def until(look: Callable[[], Any], right: Callable[[Any], bool], within: float = 60.0) -> Any:
+    deadline = time.monotonic() + within
+    while time.monotonic() < deadline:
+        found = look()
+        if right(found):
+            return found
+        time.sleep(0.02)
+    pytest.fail(f"not within {within} s: {look()}")
+
+
+def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_path: Path) -> None:
+    rows = hoists("400 N*m", "500 N*m", "many")
+    with Store(database) as store, serving(store, 2):
+        front = submit(store, engines, "synthesis", QUICK)
+        table = submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": rows, "points": 1})
+        found = ended(store, front)
+        assert (found.state, found.outcome, found.summary["designs"]) == (DONE, "optimal", 1)
+        assert {"front.json", "question.json"} <= set(store.records(front))
+        priced = submit(store, engines, "verify", {"of": front})
+        assert ended(store, priced).state == DONE
+        found = ended(store, table)
+        assert (found.state, found.summary["status"]) == (DONE, {"bad_input": 1, "optimal": 2})
+        files = {
+            name: engines.call(
+                BATCH_FILE_TASK, {"job": table, "name": name, "sources": Shelf(store).sources(LOCAL, {})}, 60.0
+            )
+            for name in ("designs.csv", "rows.csv")
+        }
+        few = ended(store, submit(store, engines, "size_range", {"of": table}))
+        assert (few.state, few.summary["variants"]) == (DONE, few.summary["fewest"])
+    alone = batch("multi_plate_clutch", rows, tmp_path / "out", points=1)
+    assert files["designs.csv"].content == (alone.folder / "designs.csv").read_bytes()
+
+
+def test_a_refusal_that_only_the_work_sees_is_told_with_its_place(tmp_path: Path, engines: Engines) -> None:
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store):
+        rows = [{**HOIST["requirements"], "load_torque": "much"}]
+        job = ended(store, submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": rows}))
+        assert job.state == FAILED
+        assert job.error["code"] == "bad_input"
+        (problem,) = job.error["problems"]
+        assert problem["path"] == ["rows", 2, "load_torque"]
+        assert "much" in problem["message"]
+
+
+def test_a_search_that_runs_is_cancelled_and_the_slot_goes_on(database: str, engines: Engines) -> None:
+    with Store(database) as store, serving(store) as worker:
+        job = submit(store, engines, "synthesis", LONG)
+        until(lambda: worker.tasks, bool)
+        until(lambda: store.job(job), lambda found: bool(found.progress))
+        store.cancel(job)
+        until(lambda: worker.tasks, lambda tasks: not tasks, 2.0)
+        assert worker.restarts == {"cancelled": 1}
+        assert ended(store, submit(store, engines, "synthesis", QUICK)).state == DONE
+        found = store.job(job)
+        assert found is not None
+        assert found.state == CANCELLED
+        assert store.records(job) == {}
+
+
+def test_a_process_that_dies_is_replaced_and_its_job_done(tmp_path: Path, engines: Engines) -> None:
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store) as worker:
+        job = submit(store, engines, "synthesis", {**HOIST, "points": 3})
+        task = until(lambda: worker.tasks.get(0), bool)
+        os.kill(task.engine.pid, signal.SIGKILL)
+        assert ended(store, job).state == DONE
+        assert worker.restarts == {"crash": 1}
+        failed = [event.text for event in store.happenings(0, job=job) if event.kind == "failed"]
+        assert failed == ["attempt 1: the process was ended by SIGKILL"]
+
+
+def test_a_job_that_kills_every_process_fails_at_last(tmp_path: Path, engines: Engines) -> None:
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store) as worker:
+        job = submit(store, engines, "synthesis", LONG)
+        for _ in range(JOBS.worker.attempts):
+            task = until(lambda: worker.tasks.get(0), lambda task: task and task.engine.is_alive())
+            os.kill(task.engine.pid, signal.SIGKILL)
+            until(lambda: worker.tasks.get(0), lambda now, task=task: now is not task)
+        found = ended(store, job)
+        assert (found.state, found.error["code"]) == (FAILED, "failed")
+        assert "SIGKILL" in found.error["message"]
+
+
+def test_limits_of_time_and_memory_stop_a_job(tmp_path: Path, engines: Engines) -> None:
+    impatient = replace(JOBS, worker=replace(JOBS.worker, grace=0.2))
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store:
+        with serving(store, settings=impatient):
+            job = ended(store, submit(store, engines, "synthesis", LONG, seconds_limit=0.5))
+            assert (job.state, job.error["code"]) == (STOPPED, "time_limit")
+        small = replace(JOBS, engine=replace(JOBS.engine, memory=90_000_000), worker=replace(JOBS.worker, weigh=0.1))
+        with serving(store, settings=small):
+            job = ended(store, submit(store, engines, "synthesis", LONG))
+            assert (job.state, job.error["code"]) == (STOPPED, "memory_limit")
+
+
+def test_a_search_that_stops_by_itself_keeps_what_it_has_found(tmp_path: Path, engines: Engines) -> None:
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store):
+        job = ended(store, submit(store, engines, "synthesis", {**LONG, "time_limit": 1.0}))
+        assert job.state == STOPPED
+        assert job.error is None
+        assert job.summary["designs"] > 0
+        assert "front.json" in store.records(job.id)
+
+
+def test_bulk_work_makes_room_and_is_done_afterwards(tmp_path: Path, engines: Engines) -> None:
+    quick = replace(JOBS, worker=replace(JOBS.worker, patience=0.0))
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store, settings=quick) as worker:
+        slow = submit(store, engines, "synthesis", LONG, priority=0)
+        until(lambda: worker.tasks.get(0), bool)
+        begun = time.monotonic()
+        waiting = submit(store, engines, "synthesis", QUICK)
+        assert ended(store, waiting).state == DONE
+        assert time.monotonic() - begun < 20
+        assert worker.restarts["preempted"] == 1
+        found = until(lambda: store.job(slow), lambda job: worker.tasks.get(0) is not None)
+        assert found.state == RUNNING
+        store.cancel(slow)
+
+
+def test_a_worker_that_is_stopped_gives_back_what_it_has(tmp_path: Path, engines: Engines) -> None:
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store:
+        with serving(store) as worker:
+            job = submit(store, engines, "synthesis", LONG)
+            until(lambda: worker.tasks.get(0), bool)
+        assert store.open_units(job) == (1, 0)
+        assert store.workers(60.0) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_the_command_is_ended_and_another_one_goes_on(tmp_path: Path, engines: Engines, number: signal.Signals) -> None:
+    url = file_url(tmp_path / "jobs.sqlite").render_as_string()
+    words = [sys.executable, "-c", "from synth.terminal.cli import main; main()", "worker", "--database", url]
+    with Store(url) as store:
+        job = submit(store, engines, "synthesis", {**LONG, "points": 5})
+        first = subprocess.Popen([*words, "--slots", "1"], stderr=subprocess.PIPE, text=True)
+        until(lambda: store.open_units(job), lambda units: units == (0, 1))
+        first.send_signal(number)
+        _, said = first.communicate(timeout=20)
+        assert first.returncode == (0 if number == signal.SIGTERM else -number)
+        assert "working at the jobs of" in said
+        second = subprocess.Popen([*words, "--slots", "1", "--follow"], stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            assert ended(store, job).state == DONE
+        finally:
+            second.communicate(timeout=20)  # it ends with its standard input
+        assert second.returncode == 0
+
+
+def test_answers_do_not_depend_on_how_often_they_were_interrupted(tmp_path: Path, engines: Engines) -> None:
+    asked = {**HOIST, "points": 8}
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store) as worker:
+        whole = submit(store, engines, "synthesis", asked)
+        assert ended(store, whole).state == DONE
+        broken = submit(store, engines, "synthesis", asked)
+        for _ in range(2):
+            task = until(lambda: worker.tasks.get(0), bool)
+            time.sleep(0.2)
+            os.kill(task.engine.pid, signal.SIGKILL)
+            until(lambda: worker.tasks.get(0), lambda now, task=task: now is not task)
+        assert ended(store, broken).state == DONE
+        first, second = (_without_times(store, job) for job in (whole, broken))
+        assert first == second
+
+
+def _without_times(store: Store, job: str) -> Any:
+    content = json.loads(store.records(job, ["front.json"])["front.json"].content)
+    return content["designs"], content["certificate"]["kind"]
+
+
+def test_a_warm_process_answers_and_a_late_one_is_replaced() -> None:
+    engines = Engines(1, EngineSettings(nice=0))
+    try:
+        request = {"kind": "synthesis", "request": QUICK, "sources": NOTHING}
+        assert engines.call(READ_TASK, request, 60.0)["title"].startswith("Multi-plate clutch")
+        with pytest.raises(EngineTimeoutError):
+            engines.call("work", {**request, "request": LONG}, 0.3)
+        assert engines.call(READ_TASK, request, 60.0)["bulk"] is False
+    finally:
+        engines.close()
+
+
+def test_a_process_goes_with_the_one_that_has_started_it(tmp_path: Path) -> None:
+    program = (
+        "import os, sys, time\n"
+        "from synth.jobs.engine_process import EngineProcess\n"
+        "if __name__ == '__main__':\n"
+        "    engine = EngineProcess()\n"
+        "    print(engine.pid, flush=True)\n"
+        "    time.sleep(60)\n"
+    )
+    file = tmp_path / "program.py"
+    file.write_text(program)
+    process = subprocess.Popen([sys.executable, str(file)], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout is not None
+    engine = int(process.stdout.readline())
+    process.kill()
+    process.communicate()
+    until(lambda: Path(f"/proc/{engine}").exists(), lambda there: not there, 20.0)
+
+
+def test_a_process_that_was_ended_says_how() -> None:
+    engine = EngineProcess()
+    assert engine.warm(60.0)
+    os.kill(engine.pid, signal.SIGKILL)
+    with pytest.raises(EngineCrashedError, match="SIGKILL"):
+        engine.call(READ_TASK, {}, 10.0)
+    engine.end()
