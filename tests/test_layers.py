@@ -30,7 +30,7 @@ LAYERS = (
     ("studies",),
     ("jobs",),
     ("variants",),
-    ("terminal",),
+    ("service", "terminal"),
     ("__init__",),
 )
 LEVELS = {place: level for level, places in enumerate(LAYERS) for place in places}

@@ -258,6 +258,10 @@ class Database:
             wanted = f"a database that can be opened ({reason[0] if reason else type(error).__name__})"
             raise InputError("--database", self.url, wanted) from error
 
+    def version(self) -> str | None:
+        """Return of which version the tables are, as the database says now; None where there are none."""
+        return _version(self.engine)
+
     def close(self) -> None:
         """Let go of the connections."""
         self.engine.dispose()

@@ -1,0 +1,338 @@
+"""Who may see and do what: tenants, the tokens that prove who somebody is, and browsers that have shown one.
+
+Of a token and of the cookie of a browser only hashes are kept: whoever reads the database cannot act for anybody.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import secrets
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import sqlalchemy as sa
+from sqlalchemy.exc import IntegrityError
+
+from synth.errors import InputError
+from synth.jobs.database import Database
+from synth.jobs.job_queue import LOCAL
+from synth.jobs.models import BrowserSession, Tenant, Token, moment
+
+READ, SUBMIT, ADMIN = "read", "submit", "admin"
+SCOPES = (READ, SUBMIT, ADMIN)
+BEGINNING = "cs_"  # of every token: programs that look for secrets in texts know them by it
+RANDOM = 32  # bytes of a token, and of the cookie of a browser
+PREFIX_LETTERS = 8  # of a token that are kept, to find it by and to tell it apart
+NAME = 60  # letters of a name at most
+LONGEST_TOKEN = 100  # letters; what is longer is none, and is not even hashed
+
+
+@dataclass(frozen=True, kw_only=True)
+class TenantLimits:
+    """What a tenant may have at most; None is no limit.
+
+    Parameters
+    ----------
+    open_jobs, running : int or None
+        Jobs that are open, and that are worked at, at a time.
+    seconds_limit : float or None
+        Time limit of a job.
+    rows : int or None
+        Rows of a batch.
+    """
+
+    open_jobs: int | None = None
+    running: int | None = None
+    seconds_limit: float | None = None
+    rows: int | None = None
+
+    @classmethod
+    def of(cls, kept: Mapping[str, Any]) -> TenantLimits:
+        """Return the limits that a tenant is kept with; what other versions know besides is theirs."""
+        return cls(**{own.name: kept.get(own.name) for own in fields(cls)})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Principal:
+    """Who has been recognised, and what they may do.
+
+    Parameters
+    ----------
+    tenant : int
+    tenant_name : str
+    scopes : frozenset of str
+        ``read``, ``submit``, ``admin``.
+    token : int or None
+        Number of the token; None for everybody at a machine where no tokens are needed.
+    limits : TenantLimits
+    used : float or None
+        How many s ago the last use of the token was noted.
+    """
+
+    tenant: int
+    tenant_name: str
+    scopes: frozenset[str]
+    token: int | None
+    limits: TenantLimits
+    used: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewToken:
+    """A token that has just been made; ``value`` is shown this once."""
+
+    id: int
+    value: str
+    prefix: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TokenEntry:
+    """A token as lists show it. Times are seconds since 1970, on the clock of the database."""
+
+    id: int
+    name: str
+    prefix: str
+    tenant: str
+    scopes: tuple[str, ...]
+    created: float
+    expires: float | None
+    used: float | None
+    revoked: float | None
+
+
+class Accounts:
+    """The tenants and tokens of a job database.
+
+    Parameters
+    ----------
+    database : Database
+    """
+
+    def __init__(self, database: Database) -> None:
+        self.engine = database.engine
+
+    # -- tenants -------------------------------------------------------------------------------
+
+    def tenant(self, name: str, limits: Mapping[str, Any]) -> int:
+        """Return the number of a tenant; one that is new gets these limits.
+
+        Raises
+        ------
+        InputError
+            The name is empty, or too long.
+        """
+        self._check_name("tenant", name)
+        for _ in range(2):
+            with self.engine.begin() as connection:
+                known = connection.scalar(sa.select(Tenant.id).where(Tenant.name == name))
+                if known is not None:
+                    return int(known)
+            try:
+                with self.engine.begin() as connection:
+                    new = {"name": name, "limits": dict(limits), "created": moment()}
+                    made = connection.execute(sa.insert(Tenant).values(**new).returning(Tenant.id))
+                    return int(made.scalar_one())
+            except IntegrityError:  # somebody has made it at the same time
+                continue
+        raise InputError("tenant", name, "another name")
+
+    def local(self) -> Principal:
+        """Return who everybody is where no tokens are needed: the tenant of the command line, who may do all."""
+        with self.engine.connect() as connection:
+            name, limits = connection.execute(sa.select(Tenant.name, Tenant.limits).where(Tenant.id == LOCAL)).one()
+        return Principal(
+            tenant=LOCAL, tenant_name=name, scopes=frozenset(SCOPES), token=None, limits=TenantLimits.of(limits)
+        )
+
+    # -- tokens --------------------------------------------------------------------------------
+
+    def make_token(self, name: str, tenant: int, scopes: Iterable[str], days: float | None) -> NewToken:
+        """Make a token.
+
+        Parameters
+        ----------
+        name : str
+            Whom or what it is for.
+        tenant : int
+        scopes : iterable of str
+            ``read``, ``submit``, ``admin``.
+        days : float or None
+            For which it is valid; None for ever.
+
+        Raises
+        ------
+        InputError
+            Name or scopes are wrong.
+        """
+        self._check_name("name", name)
+        wanted = set(scopes)
+        if not wanted or not wanted <= set(SCOPES):
+            shown = ",".join(sorted(wanted)) or None
+            raise InputError("scopes", shown, f"one or more of {', '.join(SCOPES)}", ("scopes",))
+        value = BEGINNING + secrets.token_urlsafe(RANDOM)
+        prefix = _prefix(value)
+        columns = {
+            "tenant": tenant,
+            "name": name,
+            "prefix": prefix,
+            "hash": _hash(value),
+            "scopes": " ".join(scope for scope in SCOPES if scope in wanted),
+            "created": moment(),
+            "expires": None if days is None else moment() + 86400.0 * days,
+        }
+        with self.engine.begin() as connection:
+            made = connection.execute(sa.insert(Token).values(**columns).returning(Token.id)).scalar_one()
+        return NewToken(id=int(made), value=value, prefix=prefix)
+
+    def tokens(self) -> list[TokenEntry]:
+        """Return all tokens that there are, or were."""
+        asked = (
+            sa.select(
+                Token.id,
+                Token.name,
+                Token.prefix,
+                Tenant.name,
+                Token.scopes,
+                Token.created,
+                Token.expires,
+                Token.used,
+                Token.revoked,
+            )
+            .join(Tenant, Tenant.id == Token.tenant)
+            .order_by(Token.id)
+        )
+        with self.engine.connect() as connection:
+            rows = connection.execute(asked).all()
+        return [
+            TokenEntry(
+                id=number,
+                name=name,
+                prefix=prefix,
+                tenant=tenant,
+                scopes=tuple(scopes.split()),
+                created=created,
+                expires=expires,
+                used=used,
+                revoked=revoked,
+            )
+            for number, name, prefix, tenant, scopes, created, expires, used, revoked in rows
+        ]
+
+    def revoke(self, token: int) -> bool:
+        """Revoke a token, and sign out the browsers that have shown it; return False where there is none."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.delete(BrowserSession).where(BrowserSession.token == token))
+            done = connection.execute(
+                sa.update(Token).where(Token.id == token, Token.revoked.is_(None)).values(revoked=moment())
+            )
+        return done.rowcount == 1
+
+    def any_token(self) -> bool:
+        """Tell whether a token was ever made: from then on nobody is anybody without one.
+
+        Revoked ones count: the last one revoked must not open the service for all.
+        """
+        with self.engine.connect() as connection:
+            return connection.scalar(sa.select(Token.id).limit(1)) is not None
+
+    def any_valid(self) -> bool:
+        """Tell whether somebody can get in with a token."""
+        with self.engine.connect() as connection:
+            return connection.scalar(sa.select(Token.id).where(*_valid()).limit(1)) is not None
+
+    def recognise(self, value: str) -> Principal | None:
+        """Return who shows a token; None where it is wrong, revoked or too old."""
+        if not value.startswith(BEGINNING) or len(value) > LONGEST_TOKEN:
+            return None
+        wanted = _hash(value)
+        with self.engine.connect() as connection:
+            asked = _principals().add_columns(Token.hash).where(Token.prefix == _prefix(value), *_valid())
+            for row in connection.execute(asked):
+                if hmac.compare_digest(row.hash, wanted):
+                    return _principal(row)
+        return None
+
+    def note_use(self, token: int) -> None:
+        """Note that a token was used."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.update(Token).where(Token.id == token).values(used=moment()))
+
+    # -- browsers ------------------------------------------------------------------------------
+
+    def sign_in(self, token: int, hours: float) -> str:
+        """Let a browser be whoever has shown it this token; return the value of its cookie."""
+        value = secrets.token_urlsafe(RANDOM)
+        with self.engine.begin() as connection:
+            connection.execute(sa.delete(BrowserSession).where(BrowserSession.expires < moment()))
+            new = {"hash": _hash(value), "token": token, "created": moment(), "expires": moment() + 3600.0 * hours}
+            connection.execute(sa.insert(BrowserSession).values(**new))
+        return value
+
+    def browser(self, cookie: str) -> Principal | None:
+        """Return who a browser is; None where it is nobody, or nobody any more."""
+        if len(cookie) > LONGEST_TOKEN:
+            return None
+        wanted = _hash(cookie)
+        asked = _principals().join(BrowserSession, BrowserSession.token == Token.id)
+        with self.engine.connect() as connection:
+            valid = (BrowserSession.hash == wanted, BrowserSession.expires > moment(), *_valid())
+            row = connection.execute(asked.where(*valid)).one_or_none()
+        return None if row is None else _principal(row)
+
+    def sign_out(self, cookie: str) -> None:
+        """Forget a browser."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.delete(BrowserSession).where(BrowserSession.hash == _hash(cookie)))
+
+    @staticmethod
+    def _check_name(field: str, name: str) -> None:
+        if not name.strip() or len(name) > NAME or not name.isprintable():
+            raise InputError(field, name, f"a name of at most {NAME} letters", (field,))
+
+    def find(self, beginning: str) -> TokenEntry:
+        """Return the token that is meant by its number, or by its first letters as lists show them.
+
+        Raises
+        ------
+        InputError
+            There is none, or several.
+        """
+        letters = beginning.removeprefix(BEGINNING)
+        found = [t for t in self.tokens() if str(t.id) == beginning or (letters and t.prefix.startswith(letters))]
+        exact = [t for t in found if str(t.id) == beginning]
+        if len(exact or found) != 1:
+            raise InputError("TOKEN", beginning, "the number of a token, or its first letters, as token list shows")
+        return (exact or found)[0]
+
+
+def _hash(value: str) -> str:
+    return hashlib.sha256(value.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def _prefix(value: str) -> str:
+    return value.removeprefix(BEGINNING)[:PREFIX_LETTERS]
+
+
+def _valid() -> tuple[sa.ColumnElement[bool], ...]:
+    return Token.revoked.is_(None), sa.or_(Token.expires.is_(None), Token.expires > moment())
+
+
+def _principals() -> sa.Select[Any]:
+    used = (moment() - Token.used).label("used")
+    return sa.select(Tenant.id, Tenant.name, Tenant.limits, Token.scopes, Token.id.label("token"), used).join(
+        Tenant, Tenant.id == Token.tenant
+    )
+
+
+def _principal(row: sa.Row[Any]) -> Principal:
+    return Principal(
+        tenant=row.id,
+        tenant_name=row.name,
+        scopes=frozenset(row.scopes.split()),
+        token=row.token,
+        limits=TenantLimits.of(row.limits),
+        used=row.used,
+    )

@@ -1,0 +1,107 @@
+"""The application: settings, a job database and engine processes in, something that answers HTTP out."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, suppress
+from importlib.metadata import version
+
+from fastapi import APIRouter, FastAPI
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.middleware import Middleware
+
+from synth.errors import InputError
+from synth.jobs.accounts import Accounts
+from synth.jobs.store import Store
+from synth.service import figures, health, token_routes
+from synth.service.attempts import FailedTokens
+from synth.service.context import EngineCalls, ServiceContext, SmallWork, in_thread
+from synth.service.errors import REFUSALS, register_errors
+from synth.service.metrics import ServiceMetrics
+from synth.service.recording import Recorder, log
+from synth.service.security import AnswerHeaders, BodyCheck, CrossSiteCheck, HostCheck, RequestLimit
+from synth.service.settings import ServiceSettings
+
+API = "/api/v1"
+ROUTERS: tuple[APIRouter, ...] = (token_routes.router,)  # of the interface, below API
+OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)
+
+
+def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) -> FastAPI:
+    """Return the application.
+
+    Parameters
+    ----------
+    settings : ServiceSettings
+    store : Store
+        The job database; whoever has opened it closes it.
+    engines : EngineCalls
+        For small questions, such as :class:`synth.jobs.engine_process.Engines`.
+    """
+    context = ServiceContext(
+        settings=settings,
+        store=store,
+        accounts=Accounts(store),
+        small=SmallWork(engines, settings),
+        metrics=ServiceMetrics(settings, store),
+        failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
+    )
+    app = FastAPI(
+        title="clutchsynth",
+        version=version("clutchsynth"),
+        summary="Design synthesis of clutches and shaft couplings.",
+        openapi_url=f"{API}/openapi.json",
+        docs_url=None,  # the usual pages load scripts from elsewhere
+        redoc_url=None,
+        redirect_slashes=False,
+        lifespan=_lifespan,
+        middleware=[
+            Middleware(Recorder, context.metrics),
+            Middleware(AnswerHeaders),
+            Middleware(RequestLimit, settings),
+            Middleware(HostCheck, settings),
+            Middleware(CrossSiteCheck),
+            Middleware(BodyCheck, settings),
+        ],
+    )
+    app.state.context = context
+    register_errors(app, settings.retry_after)
+    for router in ROUTERS:
+        app.include_router(router, prefix=API, responses=REFUSALS)
+    for router in OUTSIDE:
+        app.include_router(router, include_in_schema=False)
+    return app
+
+
+# What a server does beside answering, until it ends.
+TASKS: tuple[Callable[[ServiceContext], Awaitable[None]], ...] = ()
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """Do what is done beside answering, while the server runs."""
+    context: ServiceContext = app.state.context
+    tasks = [asyncio.ensure_future(task(context)) for task in (_prune, *TASKS)]
+    try:
+        yield
+    finally:
+        context.ending.set()
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def _prune(context: ServiceContext) -> None:
+    """Remove what is too old, some at a time."""
+    settings = context.settings
+    while True:
+        try:
+            while gone := await in_thread(context.store.prune, settings.prune_most):
+                log("pruned", jobs=gone)
+        except (SQLAlchemyError, InputError, OSError) as error:
+            log("not_pruned", error=type(error).__name__)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(settings.prune_interval):
+                await context.ending.wait()
+                return

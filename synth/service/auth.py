@@ -1,0 +1,86 @@
+"""Who asks: by a token, by the cookie of a browser that has shown one, or as anybody at this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import Annotated
+
+from fastapi import Depends, Request
+from sqlalchemy.exc import DBAPIError
+
+from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
+from synth.service.context import Context, ServiceContext, in_thread
+from synth.service.errors import ServiceError, again
+from synth.service.recording import log
+from synth.service.security import header, session_cookie
+
+SCHEME = "bearer "
+ASK = {"WWW-Authenticate": 'Bearer realm="clutchsynth"'}
+
+
+def address_of(request: Request) -> str:
+    """Return where a request comes from, as far as trusted proxies tell."""
+    return request.client.host if request.client else ""
+
+
+async def principal_of(request: Request, context: Context) -> Principal:
+    """Return who asks.
+
+    Raises
+    ------
+    ServiceError
+        401 without a valid token; 429 where too many wrong ones came from there.
+    """
+    principal = await _recognised(request, context)
+    request.scope["state"]["principal"] = principal
+    if principal.token is not None and (principal.used is None or principal.used > context.settings.token_note):
+        await in_thread(_note_use, context, principal.token)
+    return principal
+
+
+async def _recognised(request: Request, context: ServiceContext) -> Principal:
+    stated, cookie = header(request.scope, "authorization"), session_cookie(request.scope)
+    if not stated and not cookie:
+        if not context.settings.is_public and not await context.read(context.accounts.any_token):
+            return await context.read(context.accounts.local)
+        raise ServiceError(401, "this needs a token: Authorization: Bearer cs_...", headers=ASK)
+    address = address_of(request)
+    wait = context.failed_tokens.wait(address)
+    if wait > 0:
+        raise ServiceError(429, "too many wrong tokens came from there; please come again later", headers=again(wait))
+    found = None
+    if stated[: len(SCHEME)].lower() == SCHEME:
+        found = await context.read(context.accounts.recognise, stated[len(SCHEME) :].strip())
+    elif not stated:
+        found = await context.read(context.accounts.browser, cookie)
+    if found is None:
+        context.failed_tokens.failed(address)
+        context.metrics.refused_tokens.inc()
+        log("wrong_token", address=address, request_id=request.scope["state"].get("request_id"))
+        raise ServiceError(401, "the token is wrong, too old or revoked", headers=ASK)
+    return found
+
+
+def _note_use(context: ServiceContext, token: int) -> None:
+    """Note that a token is used; where the database is busy the next request does."""
+    try:
+        context.accounts.note_use(token)
+    except DBAPIError:
+        log("not_noted", token=token)
+
+
+def needs(scope: str) -> Callable[[Principal], Awaitable[Principal]]:
+    """Return the dependency of routes that need a scope."""
+
+    async def allowed(principal: Annotated[Principal, Depends(principal_of)]) -> Principal:
+        if scope not in principal.scopes:
+            raise ServiceError(403, f"this needs a token with the scope {scope}", "scope")
+        return principal
+
+    return allowed
+
+
+Anybody = Annotated[Principal, Depends(principal_of)]
+Reader = Annotated[Principal, Depends(needs(READ))]
+Submitter = Annotated[Principal, Depends(needs(SUBMIT))]
+Administrator = Annotated[Principal, Depends(needs(ADMIN))]

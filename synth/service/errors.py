@@ -1,0 +1,239 @@
+"""One form of refusal for everything: what is wrong, for programs and for people, and the number of the request.
+
+    {"error": {"code": "bad_input", "message": "...", "problems": [{"path", "value", "expected", "message"}],
+               "request_id": "..."}}
+
+Codes are stable; messages are for people. A fault of the service itself tells its number alone: what happened may hold
+what somebody else has asked.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from types import MappingProxyType
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+from synth.errors import InputError, shortened
+from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.jobs.job_queue import KeyTakenError, QueueFullError
+
+JSON = "application/json"
+DATABASE_FLAG = "--database"  # the field of what is wrong with a database
+NO_HEADERS: Mapping[str, str] = MappingProxyType({})
+CODES: Mapping[int, str] = MappingProxyType(
+    {
+        400: "bad_request",
+        401: "not_signed_in",
+        403: "forbidden",
+        404: "not_found",
+        405: "method_not_allowed",
+        408: "too_slow",
+        409: "conflict",
+        413: "too_large",
+        415: "unsupported_media",
+        421: "wrong_host",
+        422: "bad_input",
+        429: "too_many",
+        500: "internal",
+        501: "not_installed",
+        503: "unavailable",
+    }
+)
+
+
+class Problem(BaseModel):
+    """One thing that is wrong in the input."""
+
+    path: list[str | int]
+    value: Any = None
+    expected: str
+    message: str
+
+
+class Refusal(BaseModel):
+    """Why a request cannot be answered."""
+
+    code: str
+    message: str
+    problems: list[Problem]
+    request_id: str
+
+
+class RefusalBody(BaseModel):
+    """The body of every answer that is none."""
+
+    error: Refusal
+
+
+# What every route may answer, for the description of the interface.
+REFUSALS: dict[int | str, dict[str, Any]] = {
+    status: {"model": RefusalBody, "description": sentence}
+    for status, sentence in {
+        400: "The request cannot be read.",
+        401: "There is no token, or it is not valid.",
+        403: "The token may not do this.",
+        404: "It is not there, or not yours.",
+        413: "The body is too large.",
+        415: "The body is of a kind that is not taken.",
+        422: "Something in the input is wrong; problems tell what, where and what would be right.",
+        429: "Too much at a time; Retry-After tells when to come again.",
+        503: "Something is not there for now; Retry-After tells when to come again.",
+    }.items()
+}
+
+
+class ServiceError(Exception):
+    """What a request cannot have.
+
+    Parameters
+    ----------
+    status : int
+        Of HTTP.
+    message : str
+        One sentence for people.
+    code : str, optional
+        For programs; by default that of the status.
+    problems : sequence, optional
+        What is wrong in the input, place by place, as :func:`problem` makes them.
+    headers : mapping, optional
+    """
+
+    def __init__(
+        self,
+        status: int,
+        message: str,
+        code: str = "",
+        problems: Sequence[Mapping[str, Any]] = (),
+        headers: Mapping[str, str] = NO_HEADERS,
+    ) -> None:
+        super().__init__(message)
+        self.status, self.message, self.code = status, message, code or code_of(status)
+        self.problems, self.headers = problems, headers
+
+
+def code_of(status: int) -> str:
+    """Return the code that goes with a status."""
+    return CODES.get(status) or CODES[400 if status < 500 else 500]
+
+
+def not_found(what: str = "there is nothing here, or it is not yours") -> ServiceError:
+    """Return the refusal of what is not there, or belongs to another tenant: nobody learns which."""
+    return ServiceError(404, what)
+
+
+def problem(error: InputError) -> dict[str, Any]:
+    """Return what is wrong in the input, as programs read it."""
+    value = error.value
+    shown = value if value is None or isinstance(value, (bool, int, float)) else shortened(str(value))
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        shown = value if abs(value) < 1e300 else shortened(str(value))  # neither infinity nor NaN is JSON
+    return {"path": list(error.path), "value": shown, "expected": error.expected, "message": str(error)}
+
+
+def refusal_of(error: InputError) -> ServiceError:
+    """Return the refusal of a request whose input is wrong."""
+    return ServiceError(422, str(error), problems=[problem(error)])
+
+
+def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, Any]] = ()) -> bytes:
+    """Return the body of a refusal."""
+    told = {"code": code, "message": message, "problems": list(problems), "request_id": request_id}
+    return json.dumps({"error": told}, ensure_ascii=True, allow_nan=False).encode("ascii")
+
+
+def error_response(error: ServiceError, request_id: str) -> Response:
+    """Return a refusal as it is sent."""
+    body = error_body(error.code, error.message, request_id, error.problems)
+    return Response(body, error.status, dict(error.headers), JSON)
+
+
+def again(seconds: float) -> dict[str, str]:
+    """Return the header that says when to come again."""
+    return {"Retry-After": str(max(1, round(seconds)))}
+
+
+def register_errors(app: FastAPI, retry_after: float) -> None:
+    """Let every refusal have the one form.
+
+    Parameters
+    ----------
+    app : FastAPI
+    retry_after : float
+        In s, after which whoever met a passing hindrance may come again.
+    """
+
+    def told(kind: type[Exception], make: Any) -> None:
+        async def handle(request: Request, error: Exception) -> Response:
+            return error_response(make(error), request_id_of(request))
+
+        app.add_exception_handler(kind, handle)
+
+    def later(message: str) -> Any:
+        return lambda _: ServiceError(503, message, headers=again(retry_after))
+
+    away = later("the database does not answer; nothing is lost, please come again")
+    told(ServiceError, lambda error: error)
+    told(HTTPException, _of_http)
+    told(RequestValidationError, _of_validation)
+    told(InputError, _of_input)
+    told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
+    told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
+    told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
+    told(EngineCrashedError, later("the process that computes has ended; please come again"))
+    told(DBAPIError, away)
+    told(PoolTimeoutError, away)
+
+
+def request_id_of(request: Request) -> str:
+    """Return the number of a request."""
+    return str(request.scope.get("state", {}).get("request_id", ""))
+
+
+def _full(error: QueueFullError) -> str:
+    return f"{error.most} jobs are open, as many as you may have; please wait for one to end, or cancel one"
+
+
+def _of_input(error: InputError) -> ServiceError:
+    """Return the refusal of an input; what is wrong with the database itself is nobody's input over HTTP."""
+    return ServiceError(503, "the database cannot be used") if error.field == DATABASE_FLAG else refusal_of(error)
+
+
+def _of_http(error: HTTPException) -> ServiceError:
+    sentences = {404: "there is nothing here, or it is not yours", 405: "this cannot be done here"}
+    message = sentences.get(error.status_code) or str(error.detail) or HTTPStatus(error.status_code).phrase
+    return ServiceError(error.status_code, message, headers=error.headers or NO_HEADERS)
+
+
+def _of_validation(error: RequestValidationError) -> ServiceError:
+    """Return what a schema has refused: where, and what would be right; JSON that cannot be read is no input."""
+    found = error.errors()
+    if any(fault["type"] == "json_invalid" for fault in found):
+        return ServiceError(400, "the body is not JSON", "not_json")
+    problems = [problem(_fault(told)) for told in found]
+    return ServiceError(422, str(problems[0]["message"]), problems=problems)
+
+
+def _fault(told: Mapping[str, Any]) -> InputError:
+    """Return what a schema says of one place as a sentence of ours."""
+    place = tuple(told["loc"])
+    path = place[1:] if place[:1] in (("body",), ("query",), ("path",)) else place
+    value = None if told["type"] == "missing" else _short(told.get("input"))
+    return InputError(".".join(map(str, path)) or "body", value, told["msg"], path)
+
+
+def _short(value: Any) -> Any:
+    """Return a value to be repeated: of a whole object only that it is one."""
+    if isinstance(value, Mapping):
+        return "an object"
+    return "a list" if isinstance(value, (list, tuple)) else value

@@ -1,0 +1,342 @@
+"""What a request must pass before anything of it is looked at, and what every answer carries.
+
+All of it wraps the application as plain ASGI, so that event streams pass through as they come.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import json
+from collections.abc import Iterable
+from http.cookies import CookieError, SimpleCookie
+from typing import Any
+from urllib.parse import urlsplit
+
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from synth.errors import InputError
+from synth.service.errors import ServiceError, again, error_response, refusal_of
+from synth.service.settings import ServiceSettings, is_loopback
+
+SAFE = ("GET", "HEAD", "OPTIONS")
+PROBES = ("/healthz", "/readyz", "/metrics")  # whoever watches the service must see it when it is busy, too
+JSON_BODY, FORM_BODY, FILE_BODY = "application/json", "application/x-www-form-urlencoded", "multipart/form-data"
+SESSION_COOKIES = ("clutchsynth_session", "__Host-clutchsynth_session")  # on loopback, and over TLS
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
+    "base-uri 'none'; frame-ancestors 'none'; form-action 'self'"
+)
+HEADERS = (
+    (b"content-security-policy", POLICY.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"x-frame-options", b"DENY"),
+    (b"cache-control", b"private, no-cache"),
+)
+
+
+def header(scope: Scope, name: str) -> str:
+    """Return a header of a request; empty where there is none."""
+    wanted = name.encode()
+    return next((value.decode("latin-1") for key, value in scope["headers"] if key == wanted), "")
+
+
+def session_cookie(scope: Scope) -> str:
+    """Return the cookie by which a browser is signed in; empty where there is none."""
+    try:
+        cookies = SimpleCookie(header(scope, "cookie"))
+    except CookieError:
+        return ""
+    return next((cookies[name].value for name in SESSION_COOKIES if name in cookies), "")
+
+
+async def refuse(scope: Scope, receive: Receive, send: Send, error: ServiceError) -> None:
+    """Answer with a refusal."""
+    await error_response(error, scope["state"].get("request_id", ""))(scope, receive, send)
+
+
+class AnswerHeaders:
+    """Adds to every answer what keeps browsers from doing more with it than show it."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                own = {key.lower() for key, _ in message["headers"]}
+                message["headers"] = [*message["headers"], *(pair for pair in HEADERS if pair[0] not in own)]
+            await send(message)
+
+        await self.app(scope, receive, sent)
+
+
+class RequestLimit:
+    """Asks to come again where too many requests are under way; leaves clients that take no answer."""
+
+    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
+        self.app, self.settings, self.under_way = app, settings, 0
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, unless there are too many."""
+        if scope["type"] != "http" or scope["path"] in PROBES:
+            await self.app(scope, receive, send)
+            return
+        if self.under_way >= self.settings.requests_at_once:
+            busy = ServiceError(
+                503, "too many requests are under way; please come again", headers=again(self.settings.retry_after)
+            )
+            await refuse(scope, receive, send, busy)
+            return
+
+        async def sent(message: Message) -> None:
+            async with asyncio.timeout(self.settings.send_timeout):
+                await send(message)
+
+        self.under_way += 1
+        try:
+            await self.app(scope, receive, sent)
+        finally:
+            self.under_way -= 1
+
+
+class HostCheck:
+    """Refuses names that are not the service's own.
+
+    A page from elsewhere can let its name mean this machine, and would then be of the same origin. Numbers are no
+    names: whoever can let them mean something else needs no browser.
+    """
+
+    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
+        self.app, self.settings = app, settings
+        self.names = {name.lower() for name in settings.hosts}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, if it is meant for this service."""
+        if scope["type"] == "http" and not self.is_ours(header(scope, "host")):
+            wrong = ServiceError(421, "this service is not known by that name; see hosts in its settings")
+            await refuse(scope, receive, send, wrong)
+            return
+        await self.app(scope, receive, send)
+
+    def is_ours(self, host: str) -> bool:
+        """Tell whether a host, as the header has it, is this service."""
+        name = _host_name(host)
+        if name in self.names or is_loopback(name):
+            return True
+        return self.settings.is_public and _is_address(name)
+
+
+def _host_name(host: str) -> str:
+    """Return the name in a header ``Host``, without its port."""
+    if host.startswith("["):
+        return host[: host.find("]") + 1].lower()
+    return host.rsplit(":", 1)[0].lower() if host.count(":") == 1 else host.lower()
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name.strip("[]"))
+    except ValueError:
+        return False
+    return True
+
+
+class CrossSiteCheck:
+    """Refuses what a page from elsewhere wants to change in the name of whoever looks at it.
+
+    Browsers say where a request comes from, programs do not. Who is signed in by a cookie must be a browser that says
+    so; on loopback, where nobody needs to sign in, everything that comes from a page elsewhere is refused as well.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, unless it changes something and comes from elsewhere."""
+        if scope["type"] == "http" and scope["method"] not in SAFE and not self.is_own(scope):
+            foreign = ServiceError(403, "this comes from a page of another site", "cross_site")
+            await refuse(scope, receive, send, foreign)
+            return
+        await self.app(scope, receive, send)
+
+    @staticmethod
+    def is_own(scope: Scope) -> bool:
+        """Tell whether a request comes from a page of this service, or from a program."""
+        site, origin = header(scope, "sec-fetch-site"), header(scope, "origin")
+        if site and site not in ("same-origin", "none"):
+            return False
+        if origin:
+            return _authority(origin) == header(scope, "host").lower()
+        return bool(site) or not session_cookie(scope)
+
+
+def _authority(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return ""
+
+
+class BodyCheck:
+    """Bounds bodies while they arrive, whatever they say of themselves; JSON must be JSON of a reasonable form."""
+
+    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
+        self.app, self.settings = app, settings
+        small = settings.body_limit
+        self.most = {JSON_BODY: small, FORM_BODY: small, FILE_BODY: settings.upload_limit}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on with a body that can be read."""
+        length = header(scope, "content-length") if scope["type"] == "http" else ""
+        if scope["type"] != "http" or (length in ("", "0") and not header(scope, "transfer-encoding")):
+            await self.app(scope, receive, send)
+            return
+        media = header(scope, "content-type").split(";")[0].strip().lower()
+        try:
+            counted = self._bounded(receive, self._most(media, length))
+            if media == JSON_BODY:
+                counted = self._again(await self._json(counted), receive)
+        except HTTPException as error:  # raised while the body arrived
+            await refuse(scope, receive, send, _closing(ServiceError(error.status_code, error.detail)))
+            return
+        except ServiceError as error:
+            await refuse(scope, receive, send, _closing(error))
+            return
+        await self.app(scope, counted, send)
+
+    def _most(self, media: str, length: str) -> int:
+        """Return how large a body of a kind may be; refuse one that says that it is larger."""
+        most = self.most.get(media)
+        if most is None:
+            raise ServiceError(415, f"the body is {media or 'of no stated kind'}; expected {', '.join(self.most)}")
+        if length.isdigit() and int(length) > most:
+            raise _too_large(most)
+        return most
+
+    def _bounded(self, receive: Receive, most: int) -> Receive:
+        """Return what receives a body until it is too large, or too slow.
+
+        Its errors are those of the framework: readers of forms let them through, and no others.
+        """
+        loop = asyncio.get_running_loop()
+        end = loop.time() + self.settings.body_timeout
+        arrived = 0
+
+        async def counted() -> Message:
+            nonlocal arrived
+            try:
+                async with asyncio.timeout_at(end):
+                    message = await receive()
+            except TimeoutError:
+                raise HTTPException(408, "the body did not arrive in time") from None
+            arrived += len(message.get("body", b""))
+            if arrived > most:
+                raise HTTPException(413, _too_large(most).message)
+            return message
+
+        whole = False
+
+        async def received() -> Message:
+            nonlocal whole
+            if whole:
+                return await receive()  # that the client has gone
+            message = await counted()
+            whole = message["type"] != "http.request" or not message.get("more_body")
+            return message
+
+        return received
+
+    async def _json(self, receive: Receive) -> bytes:
+        parts: list[bytes] = []
+        while True:
+            message = await receive()
+            if message["type"] != "http.request":
+                raise HTTPException(400, "the client has gone")
+            parts.append(message.get("body", b""))
+            if not message.get("more_body"):
+                break
+        body = b"".join(parts)
+        check_json(body, self.settings.json_depth, self.settings.json_keys)
+        return body
+
+    @staticmethod
+    def _again(body: bytes, receive: Receive) -> Receive:
+        """Return what gives a body that was read already, and then what comes."""
+        waiting = [body]
+
+        async def received() -> Message:
+            if waiting:
+                return {"type": "http.request", "body": waiting.pop(), "more_body": False}
+            return await receive()
+
+        return received
+
+
+def _too_large(most: int) -> ServiceError:
+    return ServiceError(413, f"the body is larger than {most} bytes")
+
+
+def _closing(error: ServiceError) -> ServiceError:
+    """Return a refusal after which the connection is closed: the rest of the body is not waited for."""
+    return ServiceError(
+        error.status, error.message, error.code, error.problems, {**error.headers, "Connection": "close"}
+    )
+
+
+def check_json(body: bytes, depth: int, keys: int) -> None:
+    """Refuse what is not JSON, nests too deeply, has too many keys, or texts that no database can keep.
+
+    Raises
+    ------
+    ServiceError
+        With 400 where it is no JSON, and 422 where it is.
+    """
+    try:
+        read = json.loads(body, parse_constant=_no_number)
+    except RecursionError:
+        raise _bad_json(f"at most {depth} levels of brackets") from None
+    except (ValueError, UnicodeDecodeError):
+        raise ServiceError(400, "the body is not JSON", "not_json") from None
+    level, counted = [read], 0
+    for _ in range(depth + 1):
+        if not level:
+            return
+        below: list[Any] = []
+        for value in level:
+            if isinstance(value, dict):
+                counted += len(value)
+                _check_texts(value)
+                below += value.values()
+            elif isinstance(value, list):
+                below += value
+            elif isinstance(value, str):
+                _check_texts((value,))
+        if counted > keys:
+            raise _bad_json(f"at most {keys} keys")
+        level = below
+    if level:
+        raise _bad_json(f"at most {depth} levels of brackets")
+
+
+def _check_texts(texts: Iterable[str]) -> None:
+    for text in texts:
+        if "\0" in text or any("\ud800" <= letter <= "\udfff" for letter in text):
+            raise _bad_json("texts of letters: neither the character 0 nor half of one")
+
+
+def _bad_json(expected: str) -> ServiceError:
+    return refusal_of(InputError("body", "JSON", expected))
+
+
+def _no_number(name: str) -> Any:
+    raise ValueError(name)
