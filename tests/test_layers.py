@@ -30,7 +30,8 @@ LAYERS = (
     ("studies",),
     ("jobs",),
     ("variants",),
-    ("service", "terminal"),
+    ("service",),
+    ("terminal",),
     ("__init__",),
 )
 LEVELS = {place: level for level, places in enumerate(LAYERS) for place in places}

@@ -153,7 +153,7 @@ def migrate(engine: sa.Engine) -> None:
     InputError
         The database was made by a later version: its tables are at none of the migrations that this one knows.
     """
-    if _version(engine) == HEAD:
+    if version_of(engine) == HEAD:
         return
     from alembic import command  # costly to import; a database needs it once
     from alembic.config import Config
@@ -183,7 +183,7 @@ def migrate(engine: sa.Engine) -> None:
 
 def _keep_copy(engine: sa.Engine, chain: set[str]) -> None:
     """Copy a SQLite file of an earlier version beside itself, before its tables are changed."""
-    known = _version(engine)
+    known = version_of(engine)
     if engine.dialect.name != "sqlite" or known not in chain:
         return
     copy = f"{engine.url.database}.v{known}"
@@ -192,7 +192,8 @@ def _keep_copy(engine: sa.Engine, chain: set[str]) -> None:
             connection.exec_driver_sql("VACUUM INTO ?", (copy,))
 
 
-def _version(engine: sa.Engine) -> str | None:
+def version_of(engine: sa.Engine) -> str | None:
+    """Return of which version the tables of a database are; None where there are none."""
     with engine.connect() as connection:
         return _version_on(connection)
 
@@ -206,7 +207,7 @@ def _version_on(connection: sa.Connection) -> str | None:
 
 def _refuse_empty(engine: sa.Engine, shown: str) -> None:
     """Refuse a database without tables of ours: somebody has emptied it, or means another one."""
-    if _version(engine) is None:
+    if version_of(engine) is None:
         raise InputError("--database", shown, f"{WHOLE} (there are no jobs in it)")
 
 
@@ -260,7 +261,7 @@ class Database:
 
     def version(self) -> str | None:
         """Return of which version the tables are, as the database says now; None where there are none."""
-        return _version(self.engine)
+        return version_of(self.engine)
 
     def close(self) -> None:
         """Let go of the connections."""

@@ -229,7 +229,8 @@ def _fault(told: Mapping[str, Any]) -> InputError:
     place = tuple(told["loc"])
     path = place[1:] if place[:1] in (("body",), ("query",), ("path",)) else place
     value = None if told["type"] == "missing" else _short(told.get("input"))
-    return InputError(".".join(map(str, path)) or "body", value, told["msg"], path)
+    right = str(told["msg"]).removeprefix("Input should be ")
+    return InputError(".".join(map(str, path)) or "body", value, right, path)
 
 
 def _short(value: Any) -> Any:

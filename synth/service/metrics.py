@@ -104,22 +104,20 @@ class _JobFigures(Collector):
     def _of_workers(self) -> Iterator[Any]:
         """Yield what workers say of themselves: ``slots`` of their signs of life holds these counts."""
         signs = self.store.workers(self.settings.ready_worker)
-        slots = {state: sum(int(sign.slots.get(state, 0)) for sign in signs) for state in ("busy", "idle")}
+        slots, busy = (sum(int(sign.slots.get(name, 0)) for sign in signs) for name in ("slots", "busy"))
         restarts: dict[str, int] = {}
         for sign in signs:
             for reason, count in dict(sign.slots.get("restarts") or {}).items():
                 restarts[reason] = restarts.get(reason, 0) + int(count)
         yield GaugeMetricFamily("clutchsynth_workers", "Workers that have given a sign of life", len(signs))
         places = GaugeMetricFamily("clutchsynth_slots", "Engine processes for jobs", labels=["state"])
-        for state, count in slots.items():
-            places.add_metric([state], count)
+        places.add_metric(["busy"], busy)
+        places.add_metric(["idle"], slots - busy)
         ended = CounterMetricFamily("clutchsynth_engine_restarts", "Engine processes replaced", labels=["reason"])
         for reason, count in sorted(restarts.items()):
             ended.add_metric([reason], count)
-        lost = sum(int(sign.slots.get("leases_lost", 0)) for sign in signs)
         yield places
         yield ended
-        yield CounterMetricFamily("clutchsynth_leases_lost", "Units lost to another owner", lost)
 
 
 class _EndedJobs(Collector):

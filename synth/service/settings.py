@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 from synth.errors import InputError
+from synth.jobs.owners import cores
 
 FILE = "clutchsynth.toml"  # read from the folder in which the service starts, where there is one
 PREFIX = "CLUTCHSYNTH_"
@@ -30,10 +31,6 @@ WORDS: Mapping[type, str] = types.MappingProxyType(
 def _own_folder() -> Path:
     """Return where programs of this user keep what they must not lose."""
     return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "clutchsynth"
-
-
-def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _within(default: Any, least: float, most: float) -> Any:
@@ -161,7 +158,7 @@ class ServiceSettings:
     database: str = ""
     hosts: tuple[str, ...] = ()
     proxies: tuple[str, ...] = ()
-    workers: int = field(default_factory=_processors, metadata={"least": 0, "most": 256})
+    workers: int = field(default_factory=cores, metadata={"least": 0, "most": 256})
     engines: int = _within(1, 1, 64)
     small_deadline: float = _within(5.0, 0.1, 60.0)
     log: bool = True

@@ -19,7 +19,7 @@ from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
 from synth.results.drawings import report
 from synth.terminal import batch_commands as batches
-from synth.terminal import choice_commands, report_commands, robust_commands, worker_commands
+from synth.terminal import choice_commands, report_commands, robust_commands, service_commands, worker_commands
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
 from synth.terminal.options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
@@ -399,6 +399,7 @@ studies.register(app)
 robust_commands.register(app)
 report_commands.register(app)
 worker_commands.register(app)
+service_commands.register(app)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------

@@ -1,0 +1,240 @@
+"""The commands of the service: serve, token, database, and pruning of jobs."""
+
+from __future__ import annotations
+
+import os
+from datetime import UTC, datetime
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from synth.errors import InputError
+from synth.terminal.batch_commands import jobs_app
+from synth.terminal.session import INTERNAL, tell
+
+if TYPE_CHECKING:
+    from synth.jobs.accounts import TokenEntry
+    from synth.service.settings import ServiceSettings
+
+PACKAGES = ("fastapi", "uvicorn", "httptools", "jinja2", "python_multipart", "prometheus_client", "defusedxml")
+
+Config = Annotated[
+    Path | None,
+    typer.Option(
+        help="Settings, TOML; by default clutchsynth.toml where this folder has one.",
+        metavar="FILE",
+        show_default=False,
+    ),
+]
+Data = Annotated[Path | None, typer.Option(help="Folder of the service's database.", metavar="DIR")]
+ServiceDatabase = Annotated[
+    str | None,
+    typer.Option(
+        "--database", help="Database: sqlite:///FILE or postgresql://USER@HOST/NAME; else a file in DIR.", metavar="URL"
+    ),
+]
+TokenName = Annotated[str, typer.Argument(help="Number or first letters of a token, as list shows.", metavar="TOKEN")]
+
+token_app = typer.Typer(help="Make, list and revoke tokens.", no_args_is_help=True, rich_markup_mode=None)
+database_app = typer.Typer(
+    help="Check, back up and migrate a job database.", no_args_is_help=True, rich_markup_mode=None
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="serve")(serve)
+    app.add_typer(token_app, name="token")
+    app.add_typer(database_app, name="database")
+    jobs_app.command(name="prune")(prune)
+
+
+def serve(
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on; by default 127.0.0.1, this machine alone.")
+    ] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; by default 8350.")] = None,
+    data: Data = None,
+    database: ServiceDatabase = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Jobs that this machine works at side by side; by default one per core.")
+    ] = None,
+    no_workers: Annotated[bool, typer.Option("--no-workers", help="Leave the work to workers elsewhere.")] = False,
+    config: Config = None,
+) -> None:
+    """Serve over HTTP until stopped, and work at the jobs that are asked for."""
+    missing = next((package for package in PACKAGES if find_spec(package) is None), None)
+    if missing is not None:
+        raise InputError(f"the package {missing}", None, "the extra of the service: pip install 'clutchsynth[service]'")
+    if no_workers and workers is not None:
+        raise InputError("--no-workers", workers, "either --workers or --no-workers")
+    settings = _settings(config, data, database, host=host, port=port, workers=0 if no_workers else workers)
+    from synth.service.serve import serve as run
+
+    run(settings, lambda sentence: print(sentence, flush=True))
+
+
+def _settings(
+    config: Path | None,
+    data: Path | None,
+    database: str | None,
+    host: str | None = None,
+    port: int | None = None,
+    workers: int | None = None,
+) -> ServiceSettings:
+    """Return the settings of the service, as file, variables and flags state them."""
+    from synth.service.settings import read_settings
+
+    stated = {"data": data, "database": database, "host": host, "port": port, "workers": workers}
+    if data is not None and database is None:
+        stated["database"] = ""  # the folder says where it is
+    return read_settings(config, os.environ, stated)
+
+
+# ---- tokens ---------------------------------------------------------------------------------------------------------
+
+
+@token_app.command(name="create")
+def create_token(
+    name: Annotated[str, typer.Argument(help="Whom or what it is for.", metavar="NAME")],
+    scopes: Annotated[
+        str, typer.Option("--scopes", help="What it may do: read, submit, admin.", metavar="SCOPE,...")
+    ] = "read,submit",
+    tenant: Annotated[
+        str, typer.Option(help="Whose jobs it sees; made where there is none of that name.", metavar="NAME")
+    ] = "local",
+    days: Annotated[float | None, typer.Option(help="For which it is valid; 0 for ever, by default a year.")] = None,
+    data: Data = None,
+    database: ServiceDatabase = None,
+    config: Config = None,
+) -> None:
+    """Make a token, and show it this once."""
+    from synth.jobs.accounts import Accounts
+    from synth.jobs.database import Database
+
+    settings = _settings(config, data, database)
+    wanted = settings.token_days if days is None else days
+    if wanted < 0:
+        raise InputError("--days", days, "0 or more")
+    with Database(_place(settings)) as opened:
+        accounts = Accounts(opened)
+        owner = accounts.tenant(tenant, settings.tenant_limits)
+        asked = [scope.strip() for scope in scopes.split(",") if scope.strip()]
+        made = accounts.make_token(name, owner, asked, wanted or None)
+    print(made.value)
+    tell(f"token {made.id} of {tenant}; it is shown this once, only its hash is kept")
+
+
+@token_app.command(name="list")
+def list_tokens(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """List the tokens, also those that are not valid any more."""
+    from synth.jobs.accounts import Accounts
+    from synth.jobs.database import Database
+
+    with Database(_settings(config, data, database).database_url, create=False) as opened:
+        found = Accounts(opened).tokens()
+    rows = [("token", "begins", "tenant", "scopes", "created", "used", "expires", "name")]
+    rows += [_line(token) for token in found]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+@token_app.command(name="revoke")
+def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """Revoke a token; whoever uses it is nobody from now on."""
+    from synth.jobs.accounts import Accounts
+    from synth.jobs.database import Database
+
+    with Database(_settings(config, data, database).database_url, create=False) as opened:
+        accounts = Accounts(opened)
+        found = accounts.find(token)
+        if not accounts.revoke(found.id):
+            raise InputError("TOKEN", token, "a token that is not revoked yet")
+    print(f"token {found.id} ({found.name}): revoked")
+
+
+def _line(token: TokenEntry) -> tuple[str, ...]:
+    from synth.jobs.accounts import BEGINNING
+
+    return (
+        str(token.id),
+        BEGINNING + token.prefix,
+        token.tenant,
+        ",".join(token.scopes),
+        _day(token.created),
+        _day(token.used),
+        _end(token),
+        token.name,
+    )
+
+
+def _day(moment: float | None) -> str:
+    return "-" if moment is None else datetime.fromtimestamp(moment, UTC).strftime("%Y-%m-%d")
+
+
+def _end(token: TokenEntry) -> str:
+    return "revoked" if token.revoked is not None else _day(token.expires)
+
+
+def _place(settings: ServiceSettings) -> str:
+    """Return the address of a database that may be made."""
+    if not settings.database:
+        settings.data.mkdir(parents=True, exist_ok=True)
+    return settings.database_url
+
+
+# ---- the database ---------------------------------------------------------------------------------------------------
+
+
+@database_app.command(name="check")
+def check_database(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """Look a database over; nothing is changed."""
+    from synth.jobs.database import HEAD
+    from synth.jobs.maintenance import examine
+
+    found = examine(_settings(config, data, database).database_url)
+    for fault in found.faults:
+        print(f"damaged: {fault}")
+    if not found.current:
+        print(f"tables of version {found.version or 'none'}; this program uses {HEAD}: clutchsynth database migrate")
+    if found.faults or not found.current:
+        raise typer.Exit(INTERNAL)
+    print(f"{found.url}: whole, tables of version {found.version}")
+
+
+@database_app.command(name="backup")
+def back_up_database(
+    file: Annotated[Path, typer.Argument(help="Where the copy goes.", metavar="FILE")],
+    data: Data = None,
+    database: ServiceDatabase = None,
+    config: Config = None,
+) -> None:
+    """Copy a database into a file, while it is used."""
+    from synth.jobs.maintenance import back_up
+
+    back_up(_settings(config, data, database).database_url, file)
+    print(f"written to {file}")
+
+
+@database_app.command(name="migrate")
+def migrate_database(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """Bring the tables of a database to the form that this version uses."""
+    from synth.jobs.maintenance import bring_up
+
+    before, after = bring_up(_place(_settings(config, data, database)))
+    print(f"tables of version {after}, as before" if before == after else f"tables of version {after}")
+
+
+def prune(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """Remove jobs whose time is over, apart from pinned ones, and files that nobody has used."""
+    from synth.jobs.store import Store
+
+    settings = _settings(config, data, database)
+    count = 0
+    with Store(settings.database_url, create=False) as store:
+        while gone := store.prune(settings.prune_most):
+            count += gone
+    print("1 job removed" if count == 1 else f"{count} jobs removed")
