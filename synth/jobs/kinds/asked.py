@@ -144,7 +144,7 @@ def catalogs_of(stated: Any, sources: Sources) -> Catalogs:
         for table, source in stated.items():
             with at(str(table)):
                 found.append((str(table), *_texts(str(table), source, sources)))
-        return _catalogs(tuple(found))
+    return _catalogs(tuple(found))
 
 
 def _texts(table: str, source: Any, sources: Sources) -> tuple[bool, tuple[TableText, ...]]:

@@ -242,6 +242,10 @@ class _Check:
             self.faults.append(fault)
             return None
 
+    def _late(self) -> bool:
+        """Tell whether enough is wrong, and time is over for finding more."""
+        return bool(self.faults) and time.monotonic() > self.end
+
     # -- entries by themselves -----------------------------------------------------------------
 
     def _entries(self, request: Any) -> dict[str, Any]:
@@ -286,7 +290,7 @@ class _Check:
         kept = {**{key: value for key, value in spec.items() if key != "catalogs"}}
         for _ in range(self.settings.rounds):
             fault = self._posed(kept, problem, tables)
-            if fault is None or time.monotonic() > self.end or not _left_out(kept, fault):
+            if fault is None or self._late() or not _left_out(kept, fault):
                 return
 
     def _problem(self, spec: dict[str, Any]) -> DesignProblem | None:
@@ -319,6 +323,8 @@ class _Check:
         model, stated = problem.model(frozenset(), tables), dict[str, float]()
         named = set[str]()
         for word, typed in (spec.get("requirements") or {}).items():
+            if self._late():
+                return stated
             name = self._caught(requirement_named, str(word), typed, problem, model, tables)
             if name is None:
                 continue
@@ -341,6 +347,8 @@ class _Check:
         """Look at limits, pins, objectives and what scatters one by one."""
         for key in ("limits", "fix"):
             for word, asked in (spec.get(key) or {}).items():
+                if self._late():
+                    return
                 given: dict[str, dict[str, Any]] = {"limits": {}, "fix": {}, key: {word: asked}}
                 ranges = VariableRanges(model.variables, True)
                 self._caught(UserLimits, model, given["limits"], given["fix"], ranges, True)

@@ -25,7 +25,7 @@ from synth.search.resolution import gap_tolerance
 from synth.tuning import SearchEffort, Tuning
 
 
-class Posed(Protocol):
+class PosedQuestion(Protocol):
     """A question as it is posed: what is asked, what is traded off, how it is searched."""
 
     @property
@@ -58,7 +58,7 @@ class SharedBounds:
         Of several chosen objectives that which comes first; the others settle ties.
     """
 
-    def __init__(self, questions: Sequence[Posed], moving: Collection[str], first: str | None = None) -> None:
+    def __init__(self, questions: Sequence[PosedQuestion], moving: Collection[str], first: str | None = None) -> None:
         self.moving, self._tuning = moving, questions[0].tuning
         self._instance = JointInstance([q.instance for q in questions], moving)
         chosen = dict(questions[0].chosen)
@@ -154,7 +154,7 @@ class JointOptima:
 
     Parameters
     ----------
-    questions : list of Posed
+    questions : list of PosedQuestion
         Alike; threads as the first asks.
     clock : Clock
         ``Stopped`` is raised when its time is over.
@@ -170,7 +170,7 @@ class JointOptima:
 
     def __init__(
         self,
-        questions: Sequence[Posed],
+        questions: Sequence[PosedQuestion],
         clock: Clock,
         shared: SharedBounds | None = None,
         sought: int = 0,

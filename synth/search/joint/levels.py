@@ -15,7 +15,7 @@ from synth.bounds.boxes import Boxes
 from synth.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
-from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, Posed, SharedBounds
+from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, PosedQuestion, SharedBounds
 from synth.search.proven_gap import Level, lowest
 from synth.search.turns import TurnBudget, by_turns
 from synth.tuning import SearchEffort
@@ -83,7 +83,7 @@ class LevelProof:
 
     Parameters
     ----------
-    task : Posed
+    task : PosedQuestion
         The question, of two objectives.
     shared : SharedBounds
         Of the question.
@@ -91,7 +91,7 @@ class LevelProof:
     cutoffs : Cutoffs
     """
 
-    def __init__(self, task: Posed, shared: SharedBounds, clock: Clock, cutoffs: Cutoffs) -> None:
+    def __init__(self, task: PosedQuestion, shared: SharedBounds, clock: Clock, cutoffs: Cutoffs) -> None:
         self.cutoffs, self.clock = cutoffs, clock
         # Settling ties may make a proven design worse by so much; the proof is as much finer.
         self.room = task.tuning.tolerances.rounded
