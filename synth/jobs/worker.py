@@ -52,7 +52,7 @@ CANCEL, TIME, MEMORY, PREEMPTED, SHUTDOWN, CRASH, AGE = (
 
 
 @dataclass
-class Task:
+class UnitAtWork:
     """A unit that a slot works at."""
 
     job: Job
@@ -149,7 +149,7 @@ class Worker:
         self.slots = slots
         self.spares = Spares(slots + spare, settings)
         self.stopping = threading.Event()
-        self.tasks: dict[int, Task] = {}  # by slot; a slot alone changes its own
+        self.tasks: dict[int, UnitAtWork] = {}  # by slot; a slot alone changes its own
         self.restarts: Counter[str] = Counter()
         self.code = ""
         self._threads = [threading.Thread(target=self._slot, args=(k,), name=f"slot {k}") for k in range(slots)]
@@ -192,7 +192,7 @@ class Worker:
             if found is None:
                 self.stopping.wait(self.settings.worker.poll)
                 continue
-            task = self.tasks[number] = Task(*found, engine)
+            task = self.tasks[number] = UnitAtWork(*found, engine)
             try:
                 usable = self._do(task)
             except Exception as error:  # the unit is taken again when its lease ends; the slot must go on
@@ -207,7 +207,7 @@ class Worker:
                 self.spares.add()
                 engine = None
 
-    def _do(self, task: Task) -> bool:
+    def _do(self, task: UnitAtWork) -> bool:
         """Have a unit done and write what comes out; return whether the process can be used again."""
         try:
             name, payload = self._payload(task)
@@ -222,7 +222,7 @@ class Worker:
         self._write(task, message)
         return True
 
-    def _payload(self, task: Task) -> tuple[str, dict[str, Any]]:
+    def _payload(self, task: UnitAtWork) -> tuple[str, dict[str, Any]]:
         """Return the name of a task, and what it is asked."""
         job = task.job
         payload: dict[str, Any] = {"job": job.id, "kind": job.kind, "request": job.request}
@@ -244,7 +244,7 @@ class Worker:
         kept = self.store.records(job.id)
         return next(record for name, record in kept.items() if name.startswith(TABLE))
 
-    def _hear(self, task: Task) -> Message | None:
+    def _hear(self, task: UnitAtWork) -> Message | None:
         """Wait for the end of a task; None where it was ended for a reason of ours."""
         written = 0.0
         while not task.abort:
@@ -267,7 +267,7 @@ class Worker:
 
     # -- what came out -------------------------------------------------------------------------
 
-    def _write(self, task: Task, message: Message) -> None:
+    def _write(self, task: UnitAtWork, message: Message) -> None:
         job, claim = task.job, task.claim
         if claim.task == ROWS:
             if message.kind == ANSWERED:
@@ -297,10 +297,10 @@ class Worker:
         if not self._patiently(lambda: self.store.settle(job.id)):
             self._quietly(lambda: self.store.count_rows(job.id, self.settings.worker.kept))
 
-    def _end(self, task: Task, ending: Ending) -> None:
+    def _end(self, task: UnitAtWork, ending: Ending) -> None:
         self._patiently(lambda: self.store.complete(task.job.id, task.claim, self.owner, ending))
 
-    def _failed(self, task: Task, error: str) -> None:
+    def _failed(self, task: UnitAtWork, error: str) -> None:
         """Note that an attempt failed; after the last one the job has, or these rows have."""
         job, claim, owner = task.job, task.claim, self.owner
         last = claim.attempts + 1 >= self.settings.worker.attempts
@@ -318,7 +318,7 @@ class Worker:
             self._patiently(lambda: self.store.finish(job.id, claim, owner, {}, errors, most))
             self._after_rows(job)
 
-    def _crashed(self, task: Task, reason: str) -> None:
+    def _crashed(self, task: UnitAtWork, reason: str) -> None:
         """Tell apart whether a process has ended because we wanted it, or by itself."""
         if task.abort or self.stopping.is_set():
             self._aborted(task)
@@ -326,7 +326,7 @@ class Worker:
             self.restarts[CRASH] += 1
             self._failed(task, reason)
 
-    def _aborted(self, task: Task) -> None:
+    def _aborted(self, task: UnitAtWork) -> None:
         """End the process of a task, and say what becomes of the unit."""
         task.engine.end()
         reason = task.abort or SHUTDOWN
@@ -385,7 +385,7 @@ class Worker:
                 self._abort(task, TIME)
 
     @staticmethod
-    def _abort(task: Task, reason: str) -> None:
+    def _abort(task: UnitAtWork, reason: str) -> None:
         if not task.abort:
             task.abort = reason
 

@@ -239,7 +239,7 @@ def test_migrations_make_what_the_models_say(store: Store) -> None:
     with store.engine.connect() as connection:
         context = MigrationContext.configure(connection, opts={"version_table": VERSION_TABLE, "compare_type": True})
         assert compare_metadata(context, Base.metadata) == []
-    assert module._version(store.engine) == module.HEAD
+    assert module.version_of(store.engine) == module.HEAD
     with Store(store.engine.url, create=False) as again:
         assert again.jobs() == []
 
