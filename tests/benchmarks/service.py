@@ -1,6 +1,6 @@
 """The service under load, under kills, and how soon it does what somebody waits for.
 
-``python -m tests.benchmarks.service load|cancel|kill|wait [--database URL] [--kills N]`` measures one of them by itself.
+``python -m tests.benchmarks.service load|cancel|kill|wait [--database URL]`` measures one of them by itself.
 Every figure is of a server with its own worker, started as its users start it, and asked over HTTP.
 """
 
@@ -421,10 +421,8 @@ def service(quick: bool) -> list[Report]:
     for name, measure in MEASURES.items():
         few: dict[str, Any] = {"load": {"seconds": 10.0}, "cancel": {"count": 8}, "kill": {"kills": 8}}.get(name, {})
         found = measure(None, **(few if quick else {}))
-        rows += [
-            [name, figure, value if isinstance(value, str) else json.dumps(value)] for figure, value in found.items()
-        ]
-    return [Report("The service", ("measure", "figure", "value"), rows)]
+        rows += [{"measure": name, "figure": figure, "value": str(value)} for figure, value in found.items()]
+    return [Report("The service", rows)]
 
 
 if __name__ == "__main__":
