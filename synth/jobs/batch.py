@@ -35,7 +35,7 @@ from synth.question.count_domain import stated_value
 from synth.question.names import as_mapping
 from synth.question.request import EXAMPLES, check_grid, listed_objectives
 from synth.question.settings import SearchSettings, check_progress
-from synth.results.provenance import code_digest, native_code, problem_digest
+from synth.results.provenance import code_digest, native_code, problem_digest, processor
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -229,7 +229,8 @@ class BatchJob:
         self.hashes = {
             "rows": self.table.digest(),
             "code": code_digest(),
-            "native code": native_code(),  # processors may differ among the workers of one job
+            "native code": native_code(),
+            "processor": processor(),
             "families": problem_digest(self.questioner.problems()),
             "tables": self.catalogs.digest(),
         }
@@ -595,15 +596,21 @@ def resume(
     if found is None:
         raise InputError("job", job, "a job of this database")
     content = found.content
+    if found.kind != BATCH:
+        raise InputError("job", job, f"a batch; this is a job of the kind {found.kind}, which a worker goes on with")
+    if found.request.get("catalogs"):
+        raise InputError("job", job, "the service that has its tables, to go on with it")
     if content["own"] is not None or content["catalogs"] == "memory":
         raise InputError("job", job, "its own script: only that knows the problem or the tables it was made with")
     now = {
         "code": code_digest(),
         "native code": native_code(),
+        "processor": processor(),
         "families": problem_digest([type(load(name)) for name in content["families"]]),
         "tables": as_catalogs(content["catalogs"]).digest(),
     }
-    changed = [name for name, text in now.items() if content["hashes"].get(name) != text]
+    # Of the processor the first version has told nothing.
+    changed = [name for name, text in now.items() if content["hashes"].get(name, text) != text]
     if changed:
         wanted = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
         raise InputError("job", job, wanted)

@@ -11,7 +11,7 @@ from synth.jobs.kinds.asked import catalogs_of
 from synth.jobs.kinds.contract import Sources
 from synth.jobs.solve import solve_unit
 from synth.model.registry import families, load
-from synth.results.provenance import code_digest, hash_of, native_code, problem_digest, processor
+from synth.results.provenance import computing_digest, hash_of, problem_digest
 
 
 def warm_up() -> str:
@@ -28,14 +28,14 @@ def program_fingerprint() -> str:
     Units of one job are only worked at by programs that have the same.
     """
     registered = [type(load(name)) for name in families()]
-    return hash_of([code_digest(), native_code(), processor(), problem_digest(registered)])
+    return hash_of([computing_digest(), problem_digest(registered)])
 
 
 def rows(payload: Mapping[str, Any], tell: Tell) -> dict[str, dict[str, Any]]:
     """Answer some rows of a batch: as :func:`synth.jobs.solve.solve_unit`."""
     asked = payload["request"]  # none, of a batch that the command line has made: its tables are files
     catalogs = catalogs_of(asked.get("catalogs"), _sources(payload)) if asked else payload["catalogs"]
-    return solve_unit({**payload, "catalogs": catalogs, "code": code_digest(), "tell": tell})
+    return solve_unit({**payload, "catalogs": catalogs, "code": computing_digest(), "tell": tell})
 
 
 def work(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from synth.jobs.signs import show
 from synth.jobs.solve import OtherCodeError, is_group, solve_unit
 from synth.jobs.store import NONE_ALONE, Account, Outcome, Store
 from synth.jobs.unit_results import sorted_out
-from synth.results.provenance import code_digest
+from synth.results.provenance import computing_digest
 
 T = TypeVar("T")
 
@@ -136,7 +136,7 @@ class Runner:
                 "settings": dict(self.shares.settings),
                 "catalogs": self.shares.catalogs,
                 "own": self.shares.own,
-                "code": code_digest(),
+                "code": computing_digest(),
                 "tell": self._hear if isinstance(self.executor, Inline) else show,
             }
             with until(math.inf, self.cancelled.is_set):  # for what this process solves itself
@@ -151,7 +151,8 @@ class Runner:
             return
         error = future.exception()
         if isinstance(error, OtherCodeError):
-            raise InputError("--scheduler", "workers with other code", "the same clutchsynth on all machines")
+            right = "the same clutchsynth, compiler and kind of processor on all machines"
+            raise InputError("--scheduler", "workers with other code", right)
         if error is not None:
             self._failed(claim, f"{type(error).__name__}: {error}")
             return

@@ -32,7 +32,7 @@ LONGEST_ERROR = 2000
 
 
 class OtherCodeError(RuntimeError):
-    """A worker has another version of the program than whoever asks it."""
+    """A worker computes other digits than whoever asks it: its program or its processor is another."""
 
 
 def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -42,7 +42,8 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     ----------
     work : mapping
         ``job``, ``questions`` by key, ``settings`` of the search, ``catalogs``, ``own`` (the class of a problem that is
-        not registered, or None) and ``code``, the hash of the program that asks; ``tell``, where progress is wanted.
+        not registered, or None) and ``code``, the hash of what computes where it is asked; ``tell``, where progress is
+        wanted.
 
     Returns
     -------
@@ -53,12 +54,14 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     Raises
     ------
     OtherCodeError
-        When this process has other code than the one that asks.
+        When this process computes with other code, or on another kind of processor, than the one that asks.
     """
-    from synth.results.provenance import code_digest  # this module must be light: workers import it first
+    from synth.results.provenance import computing_digest  # this module must be light: workers import it first
 
-    if work["code"] != code_digest():
-        raise OtherCodeError("the worker has another version of clutchsynth, or of a package that decides its numbers")
+    if work["code"] != computing_digest():
+        raise OtherCodeError(
+            "the worker has other code, another kind of processor, or no compiler where others have one"
+        )
     shared = Shared(work["job"], work["catalogs"], work["own"])
     if is_group(work["questions"]):
         return answered_together(work["questions"], work["settings"], shared, work.get("tell"))

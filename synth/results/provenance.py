@@ -90,6 +90,14 @@ def native_code() -> str:
     return "on" if native_wanted() and c_compiler() is not None else "off"
 
 
+def computing_digest() -> str:
+    """Return one hash of everything on this machine that decides the digits of an answer, apart from families.
+
+    Pieces of one result may only come from machines that have the same.
+    """
+    return hash_of([code_digest(), native_code(), processor()])
+
+
 @cache
 def processor() -> str:
     """Return the kind of processor, and the extensions that NumPy uses of it: they decide how sums are rounded."""

@@ -39,7 +39,7 @@ Database = Annotated[
 ]
 JobName = Annotated[str, typer.Argument(help="The folder of a batch, or the id of a job.", metavar="JOB")]
 
-jobs_app = typer.Typer(help="List, show, cancel and resume batches.", no_args_is_help=True, rich_markup_mode=None)
+jobs_app = typer.Typer(help="List, show, cancel and resume jobs.", no_args_is_help=True, rich_markup_mode=None)
 
 
 def register(app: typer.Typer) -> None:
@@ -208,6 +208,9 @@ def show(job: JobName, database: Database = None) -> None:
 
     store, found = _find(job, database)
     with store:
+        store.release_dead(found.id)
+        store.rest(found.id)
+        found = store.job(found.id) or found
         print_job(found, store.account(found.id), store.open_units(found.id), store.events(found.id, 20))
 
 

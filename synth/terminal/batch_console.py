@@ -156,21 +156,27 @@ def print_jobs(jobs: Sequence[tuple[Job, Account]]) -> None:
     if not jobs:
         print("no jobs")
         return
-    table = plain_table("job", "state", "rows", "done", "made", "source", "folder", right=(2, 3), wide=6)
+    table = plain_table("job", "kind", "state", "rows", "done", "made", "of", "folder", right=(3, 4), wide=7)
     for job, account in sorted(jobs, key=lambda pair: -pair[0].created):
         made = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.created))
-        table.add_row(job.id, job.state, thousands(account.rows), thousands(account.done), made, job.source, job.folder)
+        rows = (thousands(account.rows), thousands(account.done)) if job.rows else ("", "")
+        table.add_row(job.id, job.kind, job.state, *rows, made, job.title, job.folder)
     output().print(table)
 
 
 def print_job(job: Job, account: Account, units: tuple[int, int], events: Sequence[tuple[float, str, str]]) -> None:
     """Print everything about a job."""
-    print(f"{job.id}: {job.source}, {job.state}")
-    print(f"folder: {job.folder}")
-    settings = ", ".join(f"{name} {value}" for name, value in job.content["settings"].items() if value is not None)
-    print(f"settings: {settings}")
-    counts = {**account.status, "bad_input": account.bad, "not_solved": account.rows - account.done}
-    print(f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    print(f"{job.id}: {job.title}, {job.state}")
+    if job.error:
+        print(f"error: {job.error.get('message', '')}")
+    if job.folder:
+        print(f"folder: {job.folder}")
+    if "settings" in job.content:
+        settings = ", ".join(f"{name} {value}" for name, value in job.content["settings"].items() if value is not None)
+        print(f"settings: {settings}")
+    if job.rows:
+        counts = {**account.status, "bad_input": account.bad, "not_solved": account.rows - account.done}
+        print(f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
     print(f"units: {units[0]} open, {units[1]} at work")
     for moment, kind, text in events:
         print(f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(moment))}  {kind}{f': {text}' if text else ''}")

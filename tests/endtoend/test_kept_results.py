@@ -73,9 +73,7 @@ def out(small: Path, tmp_path: Path) -> Path:
 
 def until_it_works(database: Path, rows: int) -> None:
     """Wait until a worker has taken the first rows of a batch of so many."""
-    taken = (
-        "SELECT count(*) FROM unit JOIN job ON unit.job = job.id WHERE rows = ? AND owner <> ''"
-    )
+    taken = "SELECT count(*) FROM unit JOIN job ON unit.job = job.id WHERE rows = ? AND owner <> ''"
     deadline = time.monotonic() + 100
     while time.monotonic() < deadline:
         with closing(sqlite3.connect(database)) as connection:

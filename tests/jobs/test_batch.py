@@ -80,7 +80,7 @@ def test_the_files_say_what_became_of_each_row(plain: synth.BatchResult) -> None
     assert record["state"] == "done"
     assert record["settings"]["seed"] == 0
     assert record["versions"]["clutchsynth"]
-    assert set(record["hashes"]) == {"rows", "code", "native code", "families", "tables"}
+    assert set(record["hashes"]) == {"rows", "code", "native code", "processor", "families", "tables"}
     assert not list(plain.folder.glob(".*"))
 
 
