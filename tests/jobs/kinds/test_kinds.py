@@ -13,6 +13,7 @@ import pytest
 from synth.errors import InputError
 from synth.jobs.kinds import KINDS, Sources, kind
 from synth.jobs.kinds.contract import mentioned
+from synth.question.spec_patch import patched
 from synth.results.loading import front_of_record
 from synth.tables.catalogs import Catalogs
 from synth.tables.table_text import TableText
@@ -292,9 +293,7 @@ def test_an_explanation_says_how_to_change_the_question() -> None:
     assert facts["outcome"] == "infeasible"
     assert facts["ways"] > 0
     ways = [way for way in json.loads(records["explanation.json"])["ways"] if way["patch"]]
-    applied = posed(
-        "synthesis", {**asked, "requirements": {**asked["requirements"], **ways[0]["patch"]["requirements"]}}
-    )
+    applied = posed("synthesis", patched(asked, ways[0]["patch"]))
     assert summary("synthesis", done("synthesis", applied.request))["designs"] > 0
     assert summary("explain", done("explain", DISC))["outcome"] == "feasible"
 
