@@ -7,7 +7,6 @@ that do, a few that differ most are made as good as their parts allow.
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -31,6 +30,8 @@ from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.results.front_record import design_record, record_text
+from synth.results.plain import plain
 from synth.search.archive import Archive, Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
@@ -96,8 +97,16 @@ class NearEquals:
             "interrupted": self.interrupted,
             "sentence": self.sentence(),
             "statistics": dict(self.statistics),
+            "units": dict(self.reference.frame.units),
+            "chosen": plain(design_record(self.reference)),
+            "designs": [
+                {"number": number, "change": plain(change), "differs_in": list(other), **plain(design_record(design))}
+                for number, (design, change, other) in enumerate(
+                    zip(self.designs, self.changes, self.differences, strict=True), start=1
+                )
+            ],
         }
-        found = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": json.dumps(told, indent=1) + "\n"}
+        found = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": record_text(told)}
         for number, design in enumerate([self.reference, *self.designs]):
             found[f"design_{number:02d}.yaml"] = design.yaml()
         return found

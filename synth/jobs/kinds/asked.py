@@ -16,7 +16,7 @@ from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, SEARCHED, refuse_several, refuse_values, shown_kind
+from synth.question.spec_keys import FIELDS, SEARCHED, Described, refuse_several, refuse_values, shown_kind
 from synth.question.spec_patch import patched
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
@@ -46,10 +46,14 @@ def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        It is no mapping, or has a key that is none of these.
+        It is no mapping, has a key that is none of these, or holds what no file can.
     """
     if not isinstance(request, Mapping):
         raise InputError(WHERE, shown_kind(request), "a JSON object")
+    try:
+        json.dumps(request, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, TypeError, RecursionError):  # halves of characters, numbers that are none
+        raise InputError(WHERE, Described("what JSON cannot hold"), "texts in Unicode and finite numbers") from None
     for key in request:
         if key not in keys:
             raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))

@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from synth.errors import shortened
+from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.tables.table_text import TableText
 
 Tell = Callable[[Mapping[str, Any]], None]  # told how far the work is, in mappings that JSON can hold
@@ -98,6 +100,10 @@ class Posed:
     tables: Mapping[str, str] = field(default_factory=dict)
     fingerprint: str = ""
     kept: tuple[Record, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Cut a title that repeats long words of the request."""
+        object.__setattr__(self, "title", shortened(self.title, KIND_SETTINGS.title))
 
     @property
     def text(self) -> str:

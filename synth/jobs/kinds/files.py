@@ -14,12 +14,14 @@ from synth.jobs.kinds.asked import checked_keys, front_in, is_comparison
 from synth.jobs.kinds.contract import NOTHING, Record, Sources
 from synth.jobs.kinds.report import ReportAsked, reported
 from synth.results import ParetoFront
+from synth.results.drawings import report
 from synth.results.front_record import FRONT_FILE
 
 __all__ = ["ExtraNeededError", "UnknownFileError", "files_of", "render"]
 
 BUNDLE = "bundle.zip"
-DESIGNS, WORKBOOK = "designs.csv", "designs.xlsx"
+WORKBOOK = "designs.xlsx"
+PLOT = "front.svg"
 REPORTS = ("report.html", "report.pdf")
 SHEETS = ("_sheet.html", "_sheet.pdf", "_sheet.json", "_live.xlsx")
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all in an archive, so that the same records give the same bytes
@@ -92,6 +94,8 @@ def render(
     derived = _derived(front)
     if name in derived:
         return Record.of(name, derived[name])
+    if name == PLOT:
+        return Record.of(name, _drawn(front))
     sheet = re.fullmatch(r"design_(\d+)(_sheet|_live)\.[a-z]+", name)
     if sheet is not None:
         given["design"] = int(sheet.group(1))
@@ -109,11 +113,20 @@ def _derived(front: ParetoFront) -> dict[str, str]:
     return front.record_files(str((front.record or {}).get("calculation", "")))
 
 
+def _drawn(front: ParetoFront) -> str:
+    """Return the drawing of a front, as notebooks show it."""
+    draw = report("plot")
+    if draw is None:
+        raise UnknownFileError(PLOT)
+    return str(draw(front, (), False))
+
+
 def _front_files(front: ParetoFront) -> list[str]:
     """Return the names of the files of a front beside its records."""
     derived = _derived(front)
     stems = [name.removesuffix(".yaml") for name in derived if name.startswith("design_")]
-    return [*derived, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
+    drawn = [PLOT] if front.designs and report("plot") is not None else []
+    return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
 
 
 def _bundle(records: Mapping[str, bytes]) -> bytes:

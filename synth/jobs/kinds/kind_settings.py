@@ -13,11 +13,15 @@ class KindSettings:
     ----------
     interactive_steps : int
         Of a study that somebody waits for: as many as fill the track of a slider. With more it is bulk work.
+    steps : int
+        Of a study: as many as a drawing shows, and as a record holds whose steps are whole fronts.
     posed_steps : int
         Of a study that are posed when its request is read, spread evenly; the rest is when it is worked at. Posing one
         takes some hundredths of a second, and whoever sends a request waits for the answer.
     titled : int
         Requirements that a title repeats.
+    title : int
+        Characters of a title.
     digits : int
         Of the values that a summary repeats.
     rounds : int
@@ -33,8 +37,10 @@ class KindSettings:
     """
 
     interactive_steps: int = 12
+    steps: int = 200
     posed_steps: int = 40
     titled: int = 2
+    title: int = 160
     digits: int = 4
     rounds: int = 12
     seconds: float = 2.0

@@ -1,5 +1,7 @@
 """The kind ``whatif``: the keys of a spec, ``vary`` and ``breaks``, or ``of`` an earlier job with what changes.
 
+Of an earlier job all is taken over but ``points``, which are those of a study unless the request says otherwise.
+
 Ends and a count, which Python states as a tuple, are ``{"from": "200 mm", "to": "300 mm", "count": 11}``.
 """
 
@@ -11,6 +13,7 @@ from typing import Any
 from synth.errors import InputError, at
 from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
+    OF,
     WHERE,
     by_name,
     digests,
@@ -49,9 +52,13 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         For everything that is wrong with it.
     """
     spec, own = spec_of(request, sources, (VARY, BREAKS))
+    if request.get(OF) is not None and request.get("points") is None:
+        spec.pop("points", None)  # those of a whole front are far more than a step needs
     asked, settings = _asked(spec, sources)
     vary = _vary(own.get(VARY))
     varied, count = check_steps(asked, settings, vary, KIND_SETTINGS.posed_steps)
+    if count > KIND_SETTINGS.steps:
+        raise InputError(f"{WHERE}: vary", f"{count} steps", f"at most {KIND_SETTINGS.steps} steps", (VARY,))
     stated = stated_spec(asked, settings)
     return Posed(
         request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},

@@ -169,6 +169,20 @@ def test_studies_of_many_steps_wait_behind_others() -> None:
     assert posed("whatif", many).bulk
 
 
+def test_a_study_has_steps_that_can_be_drawn_and_few_points_each() -> None:
+    found = fault("whatif", {**OF["whatif"], "vary": {"load_torque": span(201)}})
+    assert (found.path, found.value) == (("vary",), "201 steps")
+    asked = {"of": "front", "vary": {"load_torque": span(3)}}
+    assert posed("whatif", asked).request["points"] == 3
+    assert posed("whatif", {**asked, "points": 2}).request["points"] == 2
+
+
+def test_what_no_file_can_hold_is_refused() -> None:
+    for value in ("\ud800", float("nan"), b"x"):
+        assert fault("report", {**OF["report"], "about": {"project": value}}).path == ()
+    assert len(posed("whatif", {**DISC, "vary": {"parts.friction_pair": [["woven_dry"] * 99]}}).title) <= 160
+
+
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 LININGS = TableText(
