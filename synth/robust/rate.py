@@ -17,8 +17,8 @@ from synth.output_folder import RATING, save_result
 from synth.question.catalogs import catalogs_for
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
-from synth.question.uncertainty import read_block
-from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.question.uncertainty import Uncertainty, read_block
+from synth.results import Design, Frame, ParetoFront, design_columns, design_row
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
 from synth.robust.counterpart import nominal
 from synth.robust.rating import PROVEN, Rater
@@ -105,6 +105,28 @@ def taken_off(count: int) -> str:
     return f"{designs} taken off: not all limits hold over the whole range"
 
 
+def rater_for(frame: Frame, asked: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:
+    """Return what rates the designs of a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+    asked : Uncertainty
+        What scatters.
+    problem, catalogs : optional
+        As for :func:`rate`.
+
+    Raises
+    ------
+    InputError
+        When the block does not fit the family, or its tables cannot be had.
+    """
+    own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
+    tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
+    limits = frame.restated.get("limits") or {}
+    return Rater(Request(problem=own, requirements=frame.requirements, catalogs=tables, limits=limits), asked)
+
+
 def rate(
     source: ParetoFront | Design | Sequence[Design],
     robust: Any = None,
@@ -154,11 +176,7 @@ def rate(
     question = source.question if isinstance(source, ParetoFront) else None
     if question is not None and problem is None:
         problem, catalogs = nominal(question.problem), question.catalogs if catalogs is None else catalogs
-    own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
-    tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
-    limits = frame.restated.get("limits") or {}
-    request = Request(problem=own, requirements=frame.requirements, catalogs=tables, limits=limits)
-    rater = Rater(request, asked)
+    rater = rater_for(frame, asked, problem, catalogs)
     deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
     found, stopped = rater.rate(designs, progress, deadline)
     rated = [replace(d, robust=r) for d, r in zip(designs, found, strict=False)]

@@ -31,7 +31,7 @@ from synth.question.spec_keys import FIELDS
 from synth.question.uncertainty import read_block
 from synth.results import Design, Frame
 from synth.results.plain import plain
-from synth.robust.rate import rate
+from synth.robust.rate import rate, rater_for
 from synth.studies.prices.run import chosen_designs
 from synth.tables.catalogs import Catalogs
 
@@ -49,9 +49,10 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    designs, _, _, block, frame = _designs(request, sources)
+    designs, problem, tables, block, frame = _designs(request, sources)
     limit = seconds(request.get("time_limit"))
-    read_block(block)
+    scattering = read_block(block)
+    rater_for(frame, scattering, problem, tables)
     stated: dict[str, Any] = {key: request[key] for key in (OF, FAMILY) if request.get(key) is not None}
     if OF in request:
         stated["design"] = [int(d.rank or 0) for d in designs]
@@ -60,7 +61,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated |= {ROBUST: plain(block), **({} if limit is None else {"time_limit": limit})}
     return Posed(
         request=stated,
-        title=f"rating: {frame.title}, {', '.join(read_block(block).names)}",
+        title=f"rating: {frame.title}, {', '.join(scattering.names)}",
         families=(frame.family,),
         tables=digests(stated.get("catalogs"), sources),
     )

@@ -142,6 +142,7 @@ def test_a_request_of_an_earlier_job_changes_entries_of_its_own() -> None:
         ("near_equals", {"count": 0}, ("count",)),
         ("near_equals", {"seed": -1}, ("seed",)),
         ("rate", {"robust": {}}, ("robust",)),
+        ("rate", {"robust": {"dance": "+-1 %"}}, ("robust", "dance")),
         ("rate", {"design": [1, 9]}, ("design",)),
         ("verify", {"time_limit": "soon"}, ("time_limit",)),
         ("report", {"formats": ["doc"]}, ("formats",)),
