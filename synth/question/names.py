@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
+from synth.declaration import Declaration
 from synth.errors import InputError
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.tables.catalogs import Catalogs
+
+
+@lru_cache(maxsize=128)
+def _declared(family: type[DesignProblem], options: tuple[tuple[str, str], ...], catalogs: Catalogs) -> Declaration:
+    """Return what a family declares with some options, once: each slip of a name asks for all of them."""
+    return family(**dict(options)).declaration(frozenset(), catalogs)
 
 
 def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
@@ -69,15 +77,14 @@ def _refuse_of_other_options(problem: DesignProblem, word: str, value: Any, mode
         When there is such a value.
     """
     found, groups = dict[str, list[str]](), set[str]()
+    family: Any = problem.declared_by
     for option in model.declaration.options.values():
         for label in option.choices:
             if label == option.chosen:
                 continue
             others = {k: v for k, v in problem.options.items() if k not in (option.name, option.symbol)}
             try:
-                declared = problem.declared_by(**others, **{option.name: label}).declaration(
-                    frozenset({word}), catalogs
-                )
+                declared = _declared(family, tuple(sorted({**others, option.name: label}.items())), catalogs)
             except InputError:  # what was asked beside it does not go with this value
                 continue
             record = declared.requirements.get(declared.names().get(word, ""))
