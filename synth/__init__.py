@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from synth.analysis.evaluate import evaluate
     from synth.analysis.hooks import curves, second_opinion, simulate
     from synth.analysis.operating_state import state
+    from synth.client.connection import connect
     from synth.jobs.batch import BatchResult, batch
     from synth.model.problem import DesignProblem
     from synth.model.registry import families, load
@@ -56,6 +57,7 @@ __all__ = [
     "batch",
     "calculation",
     "compare",
+    "connect",
     "curves",
     "describe",
     "evaluate",
@@ -95,6 +97,7 @@ _HOME = {
     "batch": "synth.jobs.batch",
     "calculation": "synth.analysis.calculation",
     "compare": "synth.studies.families.compare",
+    "connect": "synth.client.connection",
     "curves": "synth.analysis.hooks",
     "describe": "synth.analysis.describe",
     "evaluate": "synth.analysis.evaluate",

@@ -29,7 +29,7 @@ LAYERS = (
     ("parametric", "verification"),
     ("studies",),
     ("jobs",),
-    ("variants",),
+    ("variants", "client"),
     ("service",),
     ("terminal",),
     ("__init__",),

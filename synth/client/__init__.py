@@ -1,0 +1,1 @@
+"""A service of clutchsynth elsewhere, used from Python like ``synth`` itself."""
