@@ -61,7 +61,7 @@ class Problem(BaseModel):
     message: str
 
 
-class Refusal(BaseModel):
+class RequestRefusal(BaseModel):
     """Why a request cannot be answered."""
 
     code: str
@@ -73,7 +73,7 @@ class Refusal(BaseModel):
 class RefusalBody(BaseModel):
     """The body of every answer that is none."""
 
-    error: Refusal
+    error: RequestRefusal
 
 
 # What every route may answer, for the description of the interface.

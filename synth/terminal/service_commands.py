@@ -135,7 +135,7 @@ def list_tokens(data: Data = None, database: ServiceDatabase = None, config: Con
 
     with Database(_settings(config, data, database).database_url, create=False) as opened:
         found = Accounts(opened).tokens()
-    rows = [("token", "begins", "tenant", "scopes", "created", "used", "expires", "name")]
+    rows: list[tuple[str, ...]] = [("token", "begins", "tenant", "scopes", "created", "used", "expires", "name")]
     rows += [_line(token) for token in found]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
