@@ -39,7 +39,7 @@ def digest(value: Any) -> str:
 # ---- opening --------------------------------------------------------------------------------------------------------
 
 
-def engine_for(url: str | sa.URL, patience: float) -> sa.Engine:
+def engine_for(url: str | sa.URL, patience: float, overflow: int = JOBS.store.overflow) -> sa.Engine:
     """Return the engine of a database.
 
     Parameters
@@ -48,6 +48,8 @@ def engine_for(url: str | sa.URL, patience: float) -> sa.Engine:
         ``sqlite:///path`` or ``postgresql://user@host/name``.
     patience : float
         Of :class:`StoreSettings`, for SQLite; PostgreSQL waits by itself.
+    overflow : int
+        Of :class:`StoreSettings`.
 
     Raises
     ------
@@ -72,6 +74,7 @@ def engine_for(url: str | sa.URL, patience: float) -> sa.Engine:
             address,
             connect_args={"timeout": patience} if kind == "sqlite" else {},
             pool_pre_ping=True,
+            max_overflow=overflow,
             json_deserializer=lambda text: _read_back(text, shown),
         )
     except (ImportError, NoSuchModuleError) as error:
@@ -242,7 +245,7 @@ class Database:
 
     def __init__(self, url: str | sa.URL, create: bool = True, settings: StoreSettings = JOBS.store) -> None:
         self.settings = settings
-        self.engine = engine_for(url, settings.patience)
+        self.engine = engine_for(url, settings.patience, settings.overflow)
         self.url = self.engine.url.render_as_string(hide_password=True)
         try:
             if self.engine.dialect.name == "sqlite":

@@ -23,6 +23,9 @@ class StoreSettings:
         In s, that a claim lasts without a sign of life: so long a unit is idle whose worker died on another machine.
     chunk : int
         Rows that are written or read at a time: enough that statements cost little, and little memory.
+    overflow : int
+        Connections at a time beside the five that stay open: more than a server has threads, as whoever waits for one
+        in its loop holds up all others.
     starving : float
         In s, after which bulk work that nobody has served counts as work that somebody waits for.
     forgotten : float
@@ -32,6 +35,7 @@ class StoreSettings:
     patience: float = 60.0
     lease: float = 60.0
     chunk: int = 500
+    overflow: int = 45
     starving: float = 60.0
     forgotten: float = 86400.0
 

@@ -61,7 +61,7 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
             Middleware(AnswerHeaders),
             Middleware(RequestLimit, settings),
             Middleware(HostCheck, settings),
-            Middleware(CrossSiteCheck),
+            Middleware(CrossSiteCheck, settings),
             Middleware(BodyCheck, settings),
         ],
     )

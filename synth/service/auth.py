@@ -39,20 +39,25 @@ async def principal_of(request: Request, context: Context) -> Principal:
 
 
 async def _recognised(request: Request, context: ServiceContext) -> Principal:
-    stated, cookie = header(request.scope, "authorization"), session_cookie(request.scope)
-    if not stated and not cookie:
-        if not context.settings.is_public and not await context.read(context.accounts.any_token):
-            return await context.read(context.accounts.local)
+    accounts = context.accounts
+    if not context.settings.is_public and not await context.read(accounts.any_token):
+        return await context.read(accounts.local)
+    stated = header(request.scope, "authorization")
+    if stated[: len(SCHEME)].lower() == SCHEME:
+        return await _by_token(request, context, stated[len(SCHEME) :].strip())
+    cookie = session_cookie(request.scope, context.settings)
+    found = await context.read(accounts.browser, cookie) if cookie else None
+    if found is None:  # a browser that was signed in for long enough has guessed nothing
         raise ServiceError(401, "this needs a token: Authorization: Bearer cs_...", headers=ASK)
+    return found
+
+
+async def _by_token(request: Request, context: ServiceContext, token: str) -> Principal:
     address = address_of(request)
     wait = context.failed_tokens.wait(address)
     if wait > 0:
         raise ServiceError(429, "too many wrong tokens came from there; please come again later", headers=again(wait))
-    found = None
-    if stated[: len(SCHEME)].lower() == SCHEME:
-        found = await context.read(context.accounts.recognise, stated[len(SCHEME) :].strip())
-    elif not stated:
-        found = await context.read(context.accounts.browser, cookie)
+    found = await context.read(context.accounts.recognise, token)
     if found is None:
         context.failed_tokens.failed(address)
         context.metrics.refused_tokens.inc()

@@ -18,7 +18,7 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -175,7 +175,10 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
 
     def told(kind: type[Exception], make: Any) -> None:
         async def handle(request: Request, error: Exception) -> Response:
-            return error_response(make(error), request_id_of(request))
+            refusal: ServiceError = make(error)
+            if refusal.status >= 500:
+                request.scope["state"]["failure"] = type(error).__name__  # for the log
+            return error_response(refusal, request_id_of(request))
 
         app.add_exception_handler(kind, handle)
 
@@ -191,7 +194,8 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
     told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
     told(EngineCrashedError, later("the process that computes has ended; please come again"))
-    told(DBAPIError, away)
+    told(OperationalError, away)
+    told(InterfaceError, away)
     told(PoolTimeoutError, away)
 
 

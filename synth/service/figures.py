@@ -9,7 +9,7 @@ from synth.jobs.accounts import ADMIN, READ
 from synth.service.auth import address_of, principal_of
 from synth.service.context import Context, in_thread
 from synth.service.errors import ServiceError
-from synth.service.security import header
+from synth.service.security import header, host_name
 from synth.service.settings import is_loopback
 
 router = APIRouter(tags=["health"])
@@ -28,4 +28,5 @@ async def figures(request: Request, context: Context) -> Response:
 
 def is_local(request: Request) -> bool:
     """Tell whether a request was made at this machine, and not through a proxy that runs on it."""
-    return is_loopback(address_of(request)) and not any(header(request.scope, name) for name in FORWARDED)
+    own = is_loopback(address_of(request)) and is_loopback(host_name(header(request.scope, "host")))
+    return own and not any(header(request.scope, name) for name in FORWARDED)

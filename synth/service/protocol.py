@@ -7,7 +7,7 @@ from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
-TIMER_SHARE = 1.5  # of the time limit of a head, after which a connection that idles is looked at once more
+from synth.service.errors import JSON, code_of, error_body
 
 
 class BoundedProtocol(HttpToolsProtocol):
@@ -35,13 +35,23 @@ class BoundedProtocol(HttpToolsProtocol):
 
     def data_received(self, data: bytes) -> None:
         """Take some bytes; of a head not too many."""
+        if self.transport.is_closing():
+            return
         if self in self.waiting:
             self._begin_timer()
             self._head_bytes += len(data)
             if self._head_bytes > self.target_limit + len(data):
-                self.send_400_response("The head of the request is too large.")
+                self.send_400_response("the first line and the headers are too large")
                 return
         super().data_received(data)
+
+    def send_400_response(self, msg: str) -> None:
+        """Refuse what is no request, in the form of all refusals, and hang up."""
+        self._head_is_there()
+        body = error_body(code_of(400), msg, "")
+        head = f"HTTP/1.1 400 Bad Request\r\ncontent-type: {JSON}\r\ncontent-length: {len(body)}\r\n"
+        self.transport.write(f"{head}connection: close\r\n\r\n".encode("ascii") + body)
+        self.transport.close()
 
     def on_headers_complete(self) -> None:
         """Begin the request."""

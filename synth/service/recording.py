@@ -83,6 +83,8 @@ class Recorder:
         principal = scope["state"].get("principal")
         if principal is not None:
             told |= {"tenant": principal.tenant, "token": principal.token}
+        if failed is None and "failure" in scope["state"]:
+            told |= {"error": scope["state"]["failure"]}
         if failed is not None:
             told |= {"error": type(failed).__name__, "where": where_raised(failed)}
         log("request", **told)

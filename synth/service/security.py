@@ -9,11 +9,11 @@ import asyncio
 import ipaddress
 import json
 from collections.abc import Iterable
-from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import urlsplit
 
 from starlette.exceptions import HTTPException
+from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from synth.errors import InputError
@@ -45,13 +45,9 @@ def header(scope: Scope, name: str) -> str:
     return next((value.decode("latin-1") for key, value in scope["headers"] if key == wanted), "")
 
 
-def session_cookie(scope: Scope) -> str:
+def session_cookie(scope: Scope, settings: ServiceSettings) -> str:
     """Return the cookie by which a browser is signed in; empty where there is none."""
-    try:
-        cookies = SimpleCookie(header(scope, "cookie"))
-    except CookieError:
-        return ""
-    return next((cookies[name].value for name in SESSION_COOKIES if name in cookies), "")
+    return cookie_parser(header(scope, "cookie")).get(SESSION_COOKIES[settings.is_public], "")
 
 
 async def refuse(scope: Scope, receive: Receive, send: Send, error: ServiceError) -> None:
@@ -130,13 +126,13 @@ class HostCheck:
 
     def is_ours(self, host: str) -> bool:
         """Tell whether a host, as the header has it, is this service."""
-        name = _host_name(host)
+        name = host_name(host)
         if name in self.names or is_loopback(name):
             return True
         return self.settings.is_public and _is_address(name)
 
 
-def _host_name(host: str) -> str:
+def host_name(host: str) -> str:
     """Return the name in a header ``Host``, without its port."""
     if host.startswith("["):
         return host[: host.find("]") + 1].lower()
@@ -158,8 +154,8 @@ class CrossSiteCheck:
     so; on loopback, where nobody needs to sign in, everything that comes from a page elsewhere is refused as well.
     """
 
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
+    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
+        self.app, self.settings = app, settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on, unless it changes something and comes from elsewhere."""
@@ -169,15 +165,14 @@ class CrossSiteCheck:
             return
         await self.app(scope, receive, send)
 
-    @staticmethod
-    def is_own(scope: Scope) -> bool:
+    def is_own(self, scope: Scope) -> bool:
         """Tell whether a request comes from a page of this service, or from a program."""
         site, origin = header(scope, "sec-fetch-site"), header(scope, "origin")
         if site and site not in ("same-origin", "none"):
             return False
         if origin:
             return _authority(origin) == header(scope, "host").lower()
-        return bool(site) or not session_cookie(scope)
+        return bool(site) or not session_cookie(scope, self.settings)
 
 
 def _authority(origin: str) -> str:

@@ -47,6 +47,7 @@ class Supervisor:
     ) -> None:
         self._command, self._environment, self._settings, self._begun = command, environment, settings, begun
         self._ending = threading.Event()
+        self._told = 0.0  # when the process was told to end
         self._guard = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._thread = threading.Thread(target=self._keep, name="supervisor", daemon=True)
@@ -63,6 +64,8 @@ class Supervisor:
 
     def tell_end(self) -> None:
         """Let the process end, without waiting for it; it is not started again."""
+        if not self._ending.is_set():
+            self._told = time.monotonic()
         self._ending.set()
         with self._guard:
             if self._process is not None:
@@ -74,7 +77,7 @@ class Supervisor:
         process = self._process
         if process is not None:
             try:
-                process.wait(self._settings.worker_patience)
+                process.wait(max(self._told + self._settings.worker_patience - time.monotonic(), 0.0))
             except subprocess.TimeoutExpired:
                 log("worker_killed", pid=process.pid)
                 process.kill()

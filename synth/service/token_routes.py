@@ -140,7 +140,7 @@ async def sign_in(request: Request, response: Response, principal: Anybody, cont
 @router.delete("/session", status_code=204)
 async def sign_out(request: Request, response: Response, context: Context) -> None:
     """Forget this browser."""
-    cookie = session_cookie(request.scope)
+    cookie = session_cookie(request.scope, context.settings)
     if cookie:
         await in_thread(context.accounts.sign_out, cookie)
     secure = context.settings.is_public
