@@ -57,8 +57,8 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
         redirect_slashes=False,
         lifespan=_lifespan,
         middleware=[
-            Middleware(Recorder, context.metrics),
             Middleware(AnswerHeaders),
+            Middleware(Recorder, context.metrics),
             Middleware(RequestLimit, settings),
             Middleware(HostCheck, settings),
             Middleware(CrossSiteCheck, settings),

@@ -42,6 +42,7 @@ class SmallWork:
     def __init__(self, engines: EngineCalls, settings: ServiceSettings) -> None:
         self._engines, self._settings = engines, settings
         self._threads: CapacityLimiter | None = None  # belongs to a running loop
+        self._asked = 0
 
     async def ask(self, task: str, payload: Any) -> Any:
         """Return what a task answers.
@@ -53,11 +54,17 @@ class SmallWork:
         EngineTimeoutError, EngineCrashedError
             It takes too long, too many wait for an answer, or the process has ended.
         """
+        most = (1 + WAITING) * self._settings.engines
         if self._threads is None:
-            self._threads = CapacityLimiter((1 + WAITING) * self._settings.engines)
-        if self._threads.available_tokens < 1:
+            self._threads = CapacityLimiter(most)
+        if self._asked >= most:
             raise EngineTimeoutError(f"{task}: too many wait")
-        return await run_sync(self._engines.call, task, payload, self._settings.small_deadline, limiter=self._threads)
+        self._asked += 1
+        try:
+            deadline = self._settings.small_deadline
+            return await run_sync(self._engines.call, task, payload, deadline, limiter=self._threads)
+        finally:
+            self._asked -= 1
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
+import itertools
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -303,9 +304,7 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
     except (ValueError, UnicodeDecodeError):
         raise ServiceError(400, "the body is not JSON", "not_json") from None
     level, counted = [read], 0
-    for _ in range(depth + 1):
-        if not level:
-            return
+    for nested in itertools.count():
         below: list[Any] = []
         for value in level:
             if isinstance(value, dict):
@@ -318,9 +317,11 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
                 _check_texts((value,))
         if counted > keys:
             raise _bad_json(f"at most {keys} keys")
+        if nested >= depth and any(isinstance(value, (dict, list)) for value in level):
+            raise _bad_json(f"at most {depth} levels of brackets")
+        if not below:
+            return
         level = below
-    if level:
-        raise _bad_json(f"at most {depth} levels of brackets")
 
 
 def _check_texts(texts: Iterable[str]) -> None:

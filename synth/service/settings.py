@@ -11,6 +11,7 @@ import tomllib
 import types
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
@@ -20,7 +21,7 @@ from synth.jobs.owners import cores
 
 FILE = "clutchsynth.toml"  # read from the folder in which the service starts, where there is one
 PREFIX = "CLUTCHSYNTH_"
-OF_OTHERS = ("CLUTCHSYNTH_NATIVE", "CLUTCHSYNTH_DEBUG", "CLUTCHSYNTH_CONFIG")  # variables that are no keys
+CLOSE = 0.8  # likeness of a name to a key, from which on it is one that was misspelt
 JOBS_FILE = "jobs.sqlite"
 TRUE, FALSE = ("1", "true", "yes", "on"), ("0", "false", "no", "off")
 WORDS: Mapping[type, str] = types.MappingProxyType(
@@ -285,9 +286,9 @@ def read_settings(
     for key, value in ({} if file is None else _of_file(file)).items():
         found[key] = _read(f"{file}: {key}", key, value)
     for name, text in sorted(environment.items()):
-        if name.startswith(PREFIX) and name not in OF_OTHERS:
-            key = name.removeprefix(PREFIX).lower()
-            found[key] = _read(name, key, text, spoken=True)
+        key = name.removeprefix(PREFIX).lower()
+        if name.startswith(PREFIX) and (key in FIELDS or get_close_matches(key, FIELDS, 1, CLOSE)):
+            found[key] = _read(name, key, text, spoken=True)  # variables of other programs are none of ours
     for key, value in stated.items():
         if value is not None:
             found[key] = _read(f"--{key}", key, value)

@@ -1,0 +1,95 @@
+"""A service without a wire: the application called directly, and engine processes that answer what tests want."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, Self
+
+import httpx
+from fastapi import FastAPI
+
+from synth.jobs.accounts import Accounts
+from synth.jobs.database import file_url
+from synth.jobs.store import Store
+from synth.service.app import create_app
+from synth.service.context import EngineCalls, ServiceContext
+from synth.service.settings import ServiceSettings
+
+HOME = "http://127.0.0.1:8350"
+
+
+@cache
+def empty_database() -> bytes:
+    """Return a file of a database with its tables; to make one takes a third of a second."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "jobs.sqlite"
+        with Store(file_url(file)) as store, store.engine.connect() as connection:
+            connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
+        return file.read_bytes()
+
+
+class Answering:
+    """Stands in for engine processes: answers by a function."""
+
+    def __init__(self, answer: Callable[[str, Any], Any] = lambda task, payload: payload) -> None:
+        self.answer = answer
+
+    def call(self, task: str, payload: Any, deadline: float) -> Any:
+        return self.answer(task, payload)
+
+
+class Service:
+    """An application with an empty database, and whoever calls it from an address."""
+
+    def __init__(self, folder: Path, answering: EngineCalls | None = None, **numbers: Any) -> None:
+        self.file = folder / "jobs.sqlite"
+        self.file.write_bytes(empty_database())
+        self.store = Store(file_url(self.file))
+        self.settings = dataclasses.replace(ServiceSettings(data=folder), **numbers)
+        self.app: FastAPI = create_app(self.settings, self.store, answering or Answering())
+        self.context: ServiceContext = self.app.state.context
+        self.accounts = Accounts(self.store)
+        self.runner = asyncio.Runner()
+
+    def token(self, *scopes: str, tenant: str = "local", days: float | None = None) -> str:
+        """Make a token; return its value."""
+        number = self.accounts.tenant(tenant, self.settings.tenant_limits)
+        return self.accounts.make_token("test", number, scopes or ("read", "submit"), days).value
+
+    def __call__(self, method: str, path: str, *, address: str = "127.0.0.1", **asked: Any) -> httpx.Response:
+        """Ask something."""
+        return self.runner.run(self.ask(method, path, address=address, **asked))
+
+    async def ask(self, method: str, path: str, *, address: str = "127.0.0.1", **asked: Any) -> httpx.Response:
+        """Ask something, as one of several."""
+        transport = httpx.ASGITransport(app=self.app, client=(address, 50_000))
+        async with httpx.AsyncClient(transport=transport, base_url=HOME) as client:
+            return await client.request(method, path, **asked)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.runner.close()
+        self.store.close()
+
+
+def bearer(token: str) -> dict[str, str]:
+    """Return the header that shows a token."""
+    return {"Authorization": f"Bearer {token}"}
+
+
+def code_of(answer: httpx.Response) -> str:
+    """Return the code of a refusal, which must have the one form."""
+    (error,) = answer.json().values()
+    assert set(error) == {"code", "message", "problems", "request_id"}
+    assert error["message"]
+    assert error["request_id"] == answer.headers["x-request-id"]
+    for problem in error["problems"]:
+        assert set(problem) == {"path", "value", "expected", "message"}
+    return str(error["code"])
