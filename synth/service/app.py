@@ -16,15 +16,15 @@ from synth.jobs.accounts import Accounts
 from synth.jobs.store import Store
 from synth.service import figures, health, token_routes
 from synth.service.attempts import FailedTokens
-from synth.service.context import EngineCalls, ServiceContext, SmallWork, in_thread
+from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
 from synth.service.errors import REFUSALS, register_errors
 from synth.service.metrics import ServiceMetrics
 from synth.service.recording import Recorder, log
 from synth.service.security import AnswerHeaders, BodyCheck, CrossSiteCheck, HostCheck, RequestLimit
 from synth.service.settings import ServiceSettings
 
-API = "/api/v1"
-ROUTERS: tuple[APIRouter, ...] = (token_routes.router,)  # of the interface, below API
+# Of the interface; each states API as its prefix, so that the figures of requests know the whole path.
+ROUTERS: tuple[APIRouter, ...] = (token_routes.router,)
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)
 
 
@@ -68,7 +68,7 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
     app.state.context = context
     register_errors(app, settings.retry_after)
     for router in ROUTERS:
-        app.include_router(router, prefix=API, responses=REFUSALS)
+        app.include_router(router, responses=REFUSALS)
     for router in OUTSIDE:
         app.include_router(router, include_in_schema=False)
     return app

@@ -20,6 +20,7 @@ from synth.service.settings import ServiceSettings
 
 P = ParamSpec("P")
 T = TypeVar("T")
+API = "/api/v1"  # below which the interface stands
 WAITING = 4  # small questions per engine process that wait for it; more are asked to come again
 
 

@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from synth.jobs.accounts import NAME, TokenEntry
 from synth.jobs.database import HEAD
 from synth.service.auth import Administrator, Anybody
-from synth.service.context import Context, in_thread
+from synth.service.context import API, Context, in_thread
 from synth.service.errors import ServiceError, not_found
 from synth.service.security import SESSION_COOKIES, session_cookie
 
-router = APIRouter(tags=["tokens"])
+router = APIRouter(prefix=API, tags=["tokens"])
 LARGEST_NUMBER = 2**31 - 1  # of a key in the database
 
 

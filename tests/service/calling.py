@@ -68,7 +68,8 @@ class Service:
     async def ask(self, method: str, path: str, *, address: str = "127.0.0.1", **asked: Any) -> httpx.Response:
         """Ask something, as one of several."""
         transport = httpx.ASGITransport(app=self.app, client=(address, 50_000))
-        async with httpx.AsyncClient(transport=transport, base_url=HOME) as client:
+        cookies = asked.pop("cookies", None)
+        async with httpx.AsyncClient(transport=transport, base_url=HOME, cookies=cookies) as client:
             return await client.request(method, path, **asked)
 
     def __enter__(self) -> Self:
