@@ -87,9 +87,10 @@ class Supervisor:
 
     def _keep(self) -> None:
         pause = self._settings.worker_restart
-        while self._begin() is not None:
+        while (process := self._begin()) is not None:
             begun = time.monotonic()
-            code = self._process.wait() if self._process is not None else 0
+            code = process.wait()
+            _close(process.stdin)
             if self._ending.is_set():
                 return
             well = time.monotonic() - begun > LIVED * pause
@@ -97,19 +98,19 @@ class Supervisor:
             log("worker_ended", code=code, again_after=pause)
             self._ending.wait(pause)
 
-    def _begin(self) -> int | None:
+    def _begin(self) -> subprocess.Popen[bytes] | None:
         with self._guard:
             if self._ending.is_set():
                 return None
-            self._process = subprocess.Popen(
+            process = self._process = subprocess.Popen(
                 self._command,
                 stdin=subprocess.PIPE,
                 env={**os.environ, **self._environment},
                 start_new_session=True,  # Ctrl-C is for the server, which ends its worker
             )
         self._begun()
-        log("worker_begun", pid=self._process.pid)
-        return self._process.pid
+        log("worker_begun", pid=process.pid)
+        return process
 
 
 def _close(stream: IO[bytes] | None) -> None:
