@@ -1,0 +1,138 @@
+"""A database as a whole: looked over, copied while it is used, brought to the tables of today."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+import threading
+from pathlib import Path
+
+import pytest
+import sqlalchemy as sa
+
+from synth.errors import InputError
+from synth.jobs.database import HEAD, engine_for, file_url
+from synth.jobs.job_queue import NewJob
+from synth.jobs.maintenance import back_up, bring_up, examine
+from synth.jobs.store import Store
+
+NEW = NewJob(kind="synthesis", title="hoist", request={}, fingerprint="f", code="c")
+
+
+def test_a_backup_is_a_database_with_the_same_jobs(database: str, tmp_path: Path) -> None:
+    with Store(database) as store:
+        name, _ = store.submit(NEW)
+        copy = tmp_path / "backup"
+        if store.engine.dialect.name == "postgresql" and shutil.which("pg_dump") is None:
+            with pytest.raises(InputError, match="pg_dump"):
+                back_up(database, copy)
+            return
+        back_up(database, copy)
+    assert not list(tmp_path.glob("backup.part"))
+    if database.startswith("sqlite"):
+        with Store(file_url(copy), create=False) as store:
+            assert store.job(name) is not None
+    else:
+        assert copy.read_bytes().startswith(b"PGDMP")
+
+
+@pytest.mark.slow
+def test_a_backup_is_taken_while_others_write(tmp_path: Path) -> None:
+    url = file_url(tmp_path / "jobs.sqlite").render_as_string()
+    with Store(url) as store:
+        store.submit(NEW)
+        stop = threading.Event()
+        written: list[str] = []
+
+        def write() -> None:
+            while not stop.is_set():
+                written.append(store.submit(NEW)[0])
+
+        thread = threading.Thread(target=write)
+        thread.start()
+        counts = []
+        for k in range(5):
+            back_up(url, tmp_path / f"copy_{k}.sqlite")
+            with Store(file_url(tmp_path / f"copy_{k}.sqlite"), create=False) as copy:
+                jobs, units = (
+                    copy.engine.connect().execute(sa.text(f"SELECT count(*) FROM {t}")).scalar_one()
+                    for t in ("job", "unit")
+                )
+                assert jobs == units
+                counts.append(jobs)
+        stop.set()
+        thread.join()
+    assert written
+    assert counts == sorted(counts)
+
+
+def test_no_backup_is_written_over_another(tmp_path: Path) -> None:
+    url = file_url(tmp_path / "jobs.sqlite").render_as_string()
+    Store(url).close()
+    (tmp_path / "copy").write_text("kept")
+    with pytest.raises(InputError, match="a file that is not there yet"):
+        back_up(url, tmp_path / "copy")
+    assert (tmp_path / "copy").read_text() == "kept"
+    with pytest.raises(InputError, match="a file in a folder that is there"):
+        back_up(url, tmp_path / "nowhere" / "copy")
+
+
+def test_a_damaged_file_is_told_and_not_copied(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    url = file_url(file).render_as_string()
+    with Store(url) as store:
+        for _ in range(50):
+            store.submit(NEW)
+        store.engine.connect().exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
+    assert examine(url).faults == ()
+    content = bytearray(file.read_bytes())
+    content[20 * 4096 : 24 * 4096] = b"\x07" * (4 * 4096)
+    file.write_bytes(bytes(content))
+    try:
+        faults = examine(url).faults
+    except InputError as error:
+        faults = (str(error),)
+    assert faults
+    with pytest.raises(InputError, match="a job database that is whole"):
+        back_up(url, tmp_path / "copy")
+    assert not list(tmp_path.glob("copy*"))
+
+
+def test_rows_that_belong_to_nothing_are_told(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    Store(file_url(file)).close()
+    with sqlite3.connect(file) as connection:
+        connection.execute("INSERT INTO event (job, time, kind, text) VALUES ('nobody', 0, 'a', 'b')")
+    connection.close()
+    (fault,) = examine(file_url(file).render_as_string()).faults
+    assert fault.startswith("event: row ")
+
+
+def test_looking_at_an_old_database_changes_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    with sqlite3.connect(file) as connection:
+        connection.execute("CREATE TABLE batch_version (version_num VARCHAR(32))")
+        connection.execute("INSERT INTO batch_version VALUES ('1')")
+    connection.close()
+    found = examine(file_url(file).render_as_string())
+    assert (found.version, found.current) == ("1", False)
+
+
+def test_what_is_not_there_is_not_made_by_looking(tmp_path: Path) -> None:
+    url = file_url(tmp_path / "jobs.sqlite").render_as_string()
+    with pytest.raises(InputError, match="a job database that exists"):
+        examine(url)
+    assert not list(tmp_path.iterdir())
+
+
+def test_tables_are_brought_to_those_of_today(database: str) -> None:
+    assert bring_up(database) == (None, HEAD)
+    assert bring_up(database) == (HEAD, HEAD)
+    assert examine(database).current
+    engine = engine_for(database, 5.0)
+    with engine.begin() as connection:
+        connection.execute(sa.text("UPDATE batch_version SET version_num = '99'"))
+    engine.dispose()
+    assert not examine(database).current
+    with pytest.raises(InputError, match="99"):
+        bring_up(database)
