@@ -10,6 +10,7 @@ import hashlib
 import json
 import sqlite3
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
@@ -75,7 +76,7 @@ def engine_for(url: str | sa.URL, patience: float, overflow: int = JOBS.store.ov
             connect_args={"timeout": patience} if kind == "sqlite" else {},
             pool_pre_ping=True,
             max_overflow=overflow,
-            json_deserializer=lambda text: _read_back(text, shown),
+            json_deserializer=_ReadBack(shown),
         )
     except (ImportError, NoSuchModuleError) as error:
         wanted = "an installed driver: pip install 'clutchsynth[postgres]'"
@@ -86,12 +87,17 @@ def engine_for(url: str | sa.URL, patience: float, overflow: int = JOBS.store.ov
     return engine
 
 
-def _read_back(text: str, shown: str) -> Any:
-    """Return what a cell of JSON says."""
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError("--database", shown, f"{WHOLE} (a cell that cannot be read)") from error
+@dataclass(frozen=True)
+class _ReadBack:
+    """Reads cells of JSON of one database; a function made for each database would stay in the driver's cache."""
+
+    shown: str
+
+    def __call__(self, text: str | bytes) -> Any:
+        try:
+            return json.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise InputError("--database", self.shown, f"{WHOLE} (a cell that cannot be read)") from error
 
 
 def _tell_fault(context: sa.engine.ExceptionContext) -> None:
