@@ -16,6 +16,10 @@ Task = Callable[[Any, Tell], Any]
 
 ROWS_TASK, PLAN_TASK, WORK_TASK, READ_TASK = "rows", "plan", "work", "read"
 CHECK_ROWS_TASK, BATCH_FILE_TASK = "check_rows", "batch_file"
+FAMILIES_TASK, DECLARATION_TASK, EXAMPLES_TASK = "families", "declaration", "examples"
+CHECK_TASK, EVALUATE_TASK, CHANGED_TASK = "check", "evaluate", "changed"
+FILES_TASK, RENDER_TASK, DESIGNS_TASK = "files", "render", "designs"
+UPLOAD_TASK, PART_TABLE_TASK = "upload", "part_table"
 TASKS: Mapping[str, str] = MappingProxyType(
     {
         ROWS_TASK: "synth.jobs.engine_work:rows",
@@ -24,6 +28,17 @@ TASKS: Mapping[str, str] = MappingProxyType(
         READ_TASK: "synth.jobs.engine_work:read",
         CHECK_ROWS_TASK: "synth.jobs.kinds.batch:check",
         BATCH_FILE_TASK: "synth.jobs.kinds.batch:files",
+        FAMILIES_TASK: "synth.jobs.engine_questions:families",
+        DECLARATION_TASK: "synth.jobs.engine_questions:declaration",
+        EXAMPLES_TASK: "synth.jobs.engine_questions:examples",
+        CHECK_TASK: "synth.jobs.engine_questions:check",
+        EVALUATE_TASK: "synth.jobs.engine_questions:evaluate",
+        CHANGED_TASK: "synth.jobs.engine_questions:changed",
+        FILES_TASK: "synth.jobs.engine_questions:files",
+        RENDER_TASK: "synth.jobs.engine_questions:render",
+        DESIGNS_TASK: "synth.jobs.kinds.designs:page",
+        UPLOAD_TASK: "synth.jobs.kinds.brought:rows_of_file",
+        PART_TABLE_TASK: "synth.jobs.kinds.brought:part_table",
     }
 )
 

@@ -59,6 +59,8 @@ def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         "code": program_fingerprint(),
         "fingerprint": posed.fingerprint or hash_of([payload["kind"], posed.text, dict(posed.tables)]),
         "kept": list(posed.kept),
+        "steps": posed.steps,
+        "rows": posed.rows,
     }
 
 

@@ -18,7 +18,7 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from synth.jobs.database import Database, digest
+from synth.jobs.database import Database, digest, encoded
 from synth.jobs.kinds.contract import Record
 from synth.jobs.models import (
     Event,
@@ -40,6 +40,7 @@ BATCH, SIZE_RANGE = "batch", "size_range"  # kinds that the store itself knows o
 LOCAL = 1  # the tenant of the command line, and of a service without tokens
 LETTERS = "0123456789abcdefghjkmnpqrstvwxyz"  # of ids: none that is read as another
 RUNNING_LIMIT, OPEN_LIMIT = "running", "open_jobs"  # of a tenant
+BODY = "body"  # what is kept with a job of the request that has made it
 
 
 @dataclass(frozen=True)
@@ -170,6 +171,7 @@ class JobQueue(Database):
         *,
         states: Sequence[str] = (),
         kind: str | None = None,
+        family: str | None = None,
         text: str = "",
         parent: str | None = None,
         pinned: bool | None = None,
@@ -182,8 +184,9 @@ class JobQueue(Database):
         ----------
         tenant : int or None
             Of all tenants for None.
-        states, kind, text, parent, pinned
-            Only those in these states, of this kind, with this text in their title or id, that follow from this job.
+        states, kind, family, text, parent, pinned
+            Only those in these states, of this kind, that ask this family, with this text in their title or id, that
+            follow from this job.
         before : tuple of float and str, optional
             ``created`` and ``id`` of the last job of the page before.
         most : int
@@ -193,6 +196,9 @@ class JobQueue(Database):
             wanted.append(Job.state.in_(states))
         if kind is not None:
             wanted.append(Job.kind == kind)
+        if family is not None:
+            named = sa.cast(Job.content["families"], sa.Text)
+            wanted.append(named.contains(encoded(family), autoescape=True))
         if parent is not None:
             wanted.append(Job.parent == parent)
         if pinned is not None:
@@ -236,7 +242,7 @@ class JobQueue(Database):
             "idempotency": new.idempotency,
             "parent": new.parent,
             "request": dict(new.request),
-            "content": {**new.content, "body": new.body},
+            "content": {**new.content, BODY: new.body},
             "rows": 0,
             "seconds_limit": new.seconds_limit,
             "pinned": False,
@@ -261,17 +267,27 @@ class JobQueue(Database):
             return known, False
         return name, True
 
+    def job_with_key(self, key: str, body: str, tenant: int) -> str | None:
+        """Return the job that a request with this key has made before; None where there is none.
+
+        Raises
+        ------
+        KeyTakenError
+            The key was used for a request with another body.
+        """
+        with Session(self.engine) as session:
+            same = session.scalar(sa.select(Job).where(Job.tenant == tenant, Job.idempotency == key))
+            if same is not None and same.content.get(BODY) != body:
+                raise KeyTakenError
+            return None if same is None else same.id
+
     def _known(self, new: NewJob) -> str | None:
         """Return the job that a request has made before."""
+        if new.idempotency is not None:
+            same = self.job_with_key(new.idempotency, new.body, new.tenant)
+            if same is not None:
+                return same
         with Session(self.engine) as session:
-            if new.idempotency is not None:
-                same = session.scalar(
-                    sa.select(Job).where(Job.tenant == new.tenant, Job.idempotency == new.idempotency)
-                )
-                if same is not None:
-                    if same.content.get("body") != new.body:
-                        raise KeyTakenError
-                    return same.id
             if new.kind in (BATCH, SIZE_RANGE):
                 wanted = (Job.tenant == new.tenant, Job.kind == new.kind, Job.fingerprint == new.fingerprint)
                 return session.scalar(sa.select(Job.id).where(*wanted))
@@ -301,6 +317,37 @@ class JobQueue(Database):
             again = {"state": OPEN, "ended": None, "error": None, "updated": moment()}
             connection.execute(sa.update(Job).where(Job.id == job).values(**again))
             tell_on(connection, job, kind, text)
+
+    def resume(self, job: str, tenant: int, code: str) -> bool:
+        """Let a job that was cancelled or stopped, or has failed, go on; return False where it is in another state.
+
+        What has been found stays: answered rows of a batch, and the records of a search until it ends again. A job
+        that is one piece of work begins it anew.
+
+        Parameters
+        ----------
+        job : str
+        tenant : int
+        code : str
+            The fingerprint of the programs that go on with it.
+
+        Raises
+        ------
+        QueueFullError
+            The tenant has as many open jobs as it may have.
+        """
+        self._refuse_beyond(tenant)
+        again = {"state": OPEN, "code": code, "ended": None, "outcome": None, "error": None, "updated": moment()}
+        with self.engine.begin() as connection:
+            ended = (Job.id == job, Job.tenant == tenant, Job.state.in_((CANCELLED, FAILED, STOPPED)))
+            if connection.execute(sa.update(Job).where(*ended).values(**again)).rowcount != 1:
+                return False
+            without_rows = sa.exists().where(Job.id == WorkUnit.job, Job.rows == 0)
+            begun_anew = sa.or_(WorkUnit.task == WHOLE_JOB, sa.and_(WorkUnit.task == PLAN, without_rows))
+            fresh = {"state": OPEN, "owner": None, "lease": None, "attempts": 0}
+            connection.execute(sa.update(WorkUnit).where(WorkUnit.job == job, begun_anew).values(**fresh))
+            tell_on(connection, job, "resumed", "", {"state": OPEN})
+        return True
 
     def rest(self, job: str) -> None:
         """Note that a job waits again, where nobody works at it any more."""

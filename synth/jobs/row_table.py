@@ -198,7 +198,25 @@ def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
         )
     try:
         sheet = book.worksheets[0]
-        for number, cells in enumerate(sheet.iter_rows(values_only=True), start=1):
+        for number, cells in enumerate(_whole(sheet.iter_rows(values_only=True), name), start=1):
             yield number, tuple(as_meant(text_of(cell)) for cell in cells)
     finally:
         book.close()
+
+
+def _whole(rows: Iterator[Any], name: str) -> Iterator[Any]:
+    """Yield the rows of a sheet, which is read as it is gone through: only now what is broken in it shows.
+
+    Raises
+    ------
+    InputError
+        Something of it cannot be read.
+    """
+    while True:
+        try:
+            cells = next(rows)
+        except StopIteration:
+            return
+        except Exception as error:  # whatever a broken sheet may raise
+            raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
+        yield cells

@@ -17,7 +17,7 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
 from synth.jobs.database import digest
-from synth.jobs.job_queue import BATCH, DONE, LOCAL, OPEN, ROWS, Claim, Ending, JobQueue, held_by, tell_on
+from synth.jobs.job_queue import BATCH, BODY, DONE, LOCAL, OPEN, ROWS, Claim, Ending, JobQueue, held_by, tell_on
 from synth.jobs.models import Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 from synth.jobs.solve import GROUP
 
@@ -141,8 +141,10 @@ class Store(JobQueue):
             )
             if held.rowcount != 1:
                 return False
+            asked = connection.execute(sa.select(Job.content).where(Job.id == job)).scalar_one()
+            planned = {**content, BODY: asked.get(BODY, "")}  # by which the same request is known when it comes again
             connection.execute(
-                sa.update(Job).where(Job.id == job).values(content=dict(content), basis=basis, updated=moment())
+                sa.update(Job).where(Job.id == job).values(content=planned, basis=basis, updated=moment())
             )
             self._fill_on(connection, job, rows, rows_per_unit)
         return True

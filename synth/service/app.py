@@ -15,16 +15,35 @@ from synth.errors import InputError
 from synth.jobs.accounts import Accounts
 from synth.jobs.store import Store
 from synth.service import figures, health, token_routes
+from synth.service.api import (
+    batch_routes,
+    catalogue_routes,
+    event_routes,
+    family_routes,
+    file_routes,
+    job_routes,
+    result_routes,
+)
 from synth.service.attempts import FailedTokens
 from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
 from synth.service.errors import REFUSALS, register_errors
+from synth.service.event_hub import EventHub
 from synth.service.metrics import ServiceMetrics
 from synth.service.recording import Recorder, log
 from synth.service.security import AnswerHeaders, BodyCheck, CrossSiteCheck, HostCheck, RequestLimit
 from synth.service.settings import ServiceSettings
 
 # Of the interface; each states API as its prefix, so that the figures of requests know the whole path.
-ROUTERS: tuple[APIRouter, ...] = (token_routes.router,)
+ROUTERS: tuple[APIRouter, ...] = (
+    family_routes.router,
+    job_routes.router,
+    result_routes.router,
+    file_routes.router,
+    event_routes.router,
+    batch_routes.router,
+    catalogue_routes.router,
+    token_routes.router,
+)
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)
 
 
@@ -46,6 +65,7 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
         small=SmallWork(engines, settings),
         metrics=ServiceMetrics(settings, store),
         failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
+        hub=EventHub(settings, store),
     )
     app = FastAPI(
         title="clutchsynth",
@@ -75,7 +95,7 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
 
 
 # What a server does beside answering, until it ends.
-TASKS: tuple[Callable[[ServiceContext], Awaitable[None]], ...] = ()
+TASKS: tuple[Callable[[ServiceContext], Awaitable[None]], ...] = (event_routes.tail,)
 
 
 @asynccontextmanager

@@ -15,6 +15,7 @@ from synth.jobs.accounts import Accounts
 from synth.jobs.engine_process import EngineTimeoutError
 from synth.jobs.store import Store
 from synth.service.attempts import FailedTokens
+from synth.service.event_hub import EventHub
 from synth.service.metrics import ServiceMetrics
 from synth.service.settings import ServiceSettings
 
@@ -45,8 +46,15 @@ class SmallWork:
         self._threads: CapacityLimiter | None = None  # belongs to a running loop
         self._asked = 0
 
-    async def ask(self, task: str, payload: Any) -> Any:
+    async def ask(self, task: str, payload: Any, deadline: float | None = None) -> Any:
         """Return what a task answers.
+
+        Parameters
+        ----------
+        task : str
+        payload : object
+        deadline : float, optional
+            In s; by default that of small questions.
 
         Raises
         ------
@@ -62,8 +70,8 @@ class SmallWork:
             raise EngineTimeoutError(f"{task}: too many wait")
         self._asked += 1
         try:
-            deadline = self._settings.small_deadline
-            return await run_sync(self._engines.call, task, payload, deadline, limiter=self._threads)
+            within = self._settings.small_deadline if deadline is None else deadline
+            return await run_sync(self._engines.call, task, payload, within, limiter=self._threads)
         finally:
             self._asked -= 1
 
@@ -80,6 +88,10 @@ class ServiceContext:
     small : SmallWork
     metrics : ServiceMetrics
     failed_tokens : FailedTokens
+    hub : EventHub
+        Tells event streams what happens to jobs.
+    declared : dict
+        What families declare, as it was found: it depends on the code of this server alone.
     ending : asyncio.Event
         Set when the server is told to end: whoever waits for something, as event streams do, ends then.
     """
@@ -90,6 +102,8 @@ class ServiceContext:
     small: SmallWork
     metrics: ServiceMetrics
     failed_tokens: FailedTokens
+    hub: EventHub
+    declared: dict[Any, Any] = field(default_factory=dict)
     ending: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def read(self, function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:

@@ -63,12 +63,26 @@ class ServiceSettings:
         Processes that answer small questions at once, such as checks of what is being typed.
     small_deadline : float
         That a small question may take; searches are jobs, so that more means that something is wrong.
+    file_deadline : float
+        That a file of a job may take to be made, or rows that were brought to be read and checked.
+    remembered : int
+        Declarations of families, with their options, that a server remembers: they depend on its code alone.
     log : bool
         Whether each request is told on standard error, as one line of JSON.
     body_limit : int
         Of a request's body: the largest spec that makes sense has a few kilobytes.
     upload_limit : int
         Of a file that is brought.
+    upload_entries : int
+        Files in a workbook that is brought; one of a spreadsheet program has some dozens.
+    upload_unpacked : int
+        Of all that is packed in a workbook.
+    upload_ratio : int
+        By which a workbook may be packed; sheets full of the same are packed by fifty.
+    upload_shown : int
+        Rows of a file that are shown to whoever has brought it.
+    tenant_uploads : int
+        Files of a tenant that are kept at a time.
     json_depth : int
         Levels of brackets in a body; a spec has six.
     json_keys : int
@@ -109,6 +123,8 @@ class ServiceSettings:
         Events that wait for a slow listener, before it is told to read the state anew.
     stream_tail : float
         Between two looks for new events, by one reader for all listeners: nobody sees a fifth of a second.
+    stream_margin : float
+        For which it is looked again for events that have come late: a transaction that takes longer shows them late.
     stream_comment : float
         Between signs of life in a stream: proxies close what is silent for half a minute.
     stream_retry : int
@@ -162,9 +178,16 @@ class ServiceSettings:
     workers: int = field(default_factory=cores, metadata={"least": 0, "most": 256})
     engines: int = _within(1, 1, 64)
     small_deadline: float = _within(5.0, 0.1, 60.0)
+    file_deadline: float = _within(30.0, 0.1, 600.0)
+    remembered: int = _within(200, 1, 100_000)
     log: bool = True
     body_limit: int = _within(1_000_000, 1_000, 100_000_000)
     upload_limit: int = _within(20_000_000, 1_000, 1_000_000_000)
+    upload_entries: int = _within(200, 10, 100_000)
+    upload_unpacked: int = _within(100_000_000, 1_000, 1_000_000_000)
+    upload_ratio: int = _within(100, 2, 10_000)
+    upload_shown: int = _within(5, 1, 1_000)
+    tenant_uploads: int = _within(50, 1, 1_000_000)
     json_depth: int = _within(20, 6, 200)
     json_keys: int = _within(2_000, 100, 1_000_000)
     target_limit: int = _within(65_536, 4_096, 1_048_576)
@@ -185,6 +208,7 @@ class ServiceSettings:
     streams: int = _within(20, 1, 10_000)
     stream_queue: int = _within(1_000, 1, 100_000)
     stream_tail: float = _within(0.2, 0.01, 10.0)
+    stream_margin: float = _within(5.0, 0.0, 600.0)
     stream_comment: float = _within(15.0, 0.1, 300.0)
     stream_retry: int = _within(2, 1, 300)
     stream_jobs: int = _within(50, 1, 1_000)

@@ -47,6 +47,8 @@ class Kind:
         Whether it waits behind what somebody waits for; of some kinds ``Posed.bulk`` decides for each request.
     record : str
         Name of the main record.
+    timed : bool
+        Whether its requests take a ``time_limit``.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Kind:
     title: str
     bulk: bool = False
     record: str
+    timed: bool = True
 
     def load(self) -> KindModule:
         """Return its module."""
@@ -118,6 +121,7 @@ KINDS: Mapping[str, Kind] = _kinds(
         module="synth.jobs.kinds.report",
         title="The report of a front, with calculation sheets",
         record="report.json",
+        timed=False,
     ),
     Kind(
         name="batch",

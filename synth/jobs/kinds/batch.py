@@ -33,7 +33,8 @@ UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")
 KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "time_limit", *COMMON, "catalogs")
 KEYS = (UPLOAD, ROWS, *KEPT)
-FILES = ("designs.csv", "rows.csv", "batch.json")
+SUMMARY = "batch.json"
+FILES = ("designs.csv", "rows.csv", SUMMARY)
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -48,7 +49,8 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     table = table_of(stated, sources)
     kept = {key: value for key, value in stated.items() if key in KEPT}
     with _job(kept, table, sources) as job:
-        name = f"{job.table.name}: {counted_lines(job.table)} rows"
+        count = counted_lines(job.table)
+        name = f"{job.table.name}: {count} rows"
         asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
         return Posed(
             request=asked,
@@ -57,6 +59,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
             bulk=True,
             tables=digests(kept.get("catalogs"), sources),
             fingerprint=job.id,
+            rows=count,
             kept=(Record(name=f"{TABLE}{_ending(table.name)}", media=table.media, content=table.content),),
         )
 
@@ -135,7 +138,11 @@ def files(payload: Mapping[str, Any], tell: Tell) -> Record:
     sources: Sources = payload["sources"]
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder, Store(sources.database, create=False) as store:
         _, place = write_outputs(store, payload["job"], Path(folder))
-        return Record.of(name, (place / name).read_bytes())
+        content = (place / name).read_bytes()
+        if name == SUMMARY:  # where the rows stand is nobody's business who asks for them over a network
+            told = {key: value for key, value in json.loads(content).items() if key != "database"}
+            content = (json.dumps(told, indent=1, ensure_ascii=False) + "\n").encode()
+        return Record.of(name, content)
 
 
 def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:

@@ -91,6 +91,8 @@ class Posed:
         What tells it from other requests of its kind, where the request does not: a batch is known by its rows.
     kept : tuple of Record
         What has to be kept with the job, because it was brought for it.
+    steps, rows : int
+        Values of a study, and rows of a table, where it has some: whoever takes requests may bound them.
     """
 
     request: Mapping[str, Any]
@@ -100,6 +102,8 @@ class Posed:
     tables: Mapping[str, str] = field(default_factory=dict)
     fingerprint: str = ""
     kept: tuple[Record, ...] = ()
+    steps: int = 0
+    rows: int = 0
 
     def __post_init__(self) -> None:
         """Cut a title that repeats long words of the request."""

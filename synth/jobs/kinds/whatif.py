@@ -65,6 +65,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         title=f"{titled(asked)}; {', '.join(varied)}",
         families=(asked.problem.name,),
         bulk=count > KIND_SETTINGS.interactive_steps,
+        steps=count,
         tables=digests(stated.get("catalogs"), sources),
     )
 

@@ -1,0 +1,92 @@
+"""What a service asks engine processes while somebody waits: small questions, and files of jobs that have ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from synth.jobs.engine_tasks import Tell
+from synth.jobs.engine_work import program_fingerprint
+from synth.jobs.job_queue import BATCH
+from synth.jobs.kinds import batch, small
+from synth.jobs.kinds.asked import catalogs_of
+from synth.jobs.kinds.contract import Record
+from synth.jobs.kinds.files import UnknownFileError, files_of
+from synth.jobs.kinds.files import render as rendered
+from synth.model.registry import load
+from synth.results.provenance import code_digest, native_code, problem_digest
+
+
+def families(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return all families, and the digest of the code that says so."""
+    return {"families": small.families(), "code": code_digest()}
+
+
+def declaration(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return what a family declares, and the digest of the code that says so; None for a family that is not there."""
+    known = {family["name"] for family in small.families()}
+    if payload["family"] not in known:
+        return {"declaration": None, "code": code_digest()}
+    return {"declaration": small.declaration(payload["family"], payload["options"]), "code": code_digest()}
+
+
+def examples(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return the examples of all families, and the digest of the code that they come with."""
+    return {"examples": small.examples(), "code": code_digest()}
+
+
+def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Tell what is wrong with a question."""
+    return small.check(payload["request"], payload["sources"])
+
+
+def evaluate(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return one design that was stated, evaluated."""
+    return small.evaluate(payload["request"], payload["sources"])
+
+
+def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return what decides answers and is not as it was when a batch was begun, and the fingerprint of programs now.
+
+    Raises
+    ------
+    InputError
+        A table that the batch was made with is not there any more.
+    """
+    content = payload["content"]
+    kept = content.get("hashes") or {}
+    found: list[str] = []
+    if kept:
+        now = {
+            "code": code_digest(),
+            "native code": native_code(),
+            "families": problem_digest([type(load(name)) for name in content["families"]]),
+            "tables": catalogs_of(content.get("catalogs"), payload["sources"]).digest(),
+        }
+        found = [name for name, text in now.items() if kept.get(name) != text]
+    return {"changed": found, "code": program_fingerprint()}
+
+
+def files(payload: Mapping[str, Any], tell: Tell) -> dict[str, int | None]:
+    """Return the names of the files of a job, with their sizes where these are known."""
+    if payload["kind"] == BATCH:
+        return dict.fromkeys(batch.FILES)
+    return files_of(payload["kind"], payload["records"])
+
+
+def render(payload: Mapping[str, Any], tell: Tell) -> Record | None:
+    """Return a file of a job; None where it has none of that name.
+
+    Raises
+    ------
+    ExtraNeededError
+        It needs an extra that is not installed.
+    InputError
+        An option is wrong.
+    """
+    try:
+        if payload["kind"] == BATCH:
+            return batch.files(payload, tell)
+        return rendered(payload["kind"], payload["records"], payload["name"], payload["options"], payload["sources"])
+    except UnknownFileError:
+        return None

@@ -1,0 +1,159 @@
+"""What routes share: jobs by their ids, places in lists, digests that clients send back, and texts in addresses."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from fastapi import Depends, Path, Query, Request, Response
+
+from synth.errors import InputError
+from synth.jobs.job_queue import LIVE
+from synth.jobs.models import Job
+from synth.service.auth import Anybody
+from synth.service.context import Context
+from synth.service.errors import ServiceError, not_found
+from synth.service.security import header
+
+ID = re.compile(r"[0-9A-Za-z_]{1,64}")
+WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0
+LONGEST = 200
+LARGEST = 2**53  # that JSON tells exactly, everywhere
+CHECKED = 16  # digits of a place in a list that tell whether it belongs to the list
+NOT_MODIFIED: dict[int | str, dict[str, Any]] = {304: {"description": "It is as you know it (If-None-Match)."}}
+ENDED: dict[int | str, dict[str, Any]] = {409: {"description": "The job is not in a state in which this can be done."}}
+
+Limit = Annotated[int | None, Query(ge=1, description="Entries at most.")]
+Cursor = Annotated[
+    str | None, Query(max_length=2 * LONGEST, pattern=WORD, description="Of the page before: what it calls `next`.")
+]
+JobId = Annotated[str, Path(description="Id of a job.", examples=["0j3k5m7n9pqrstvwxyz0123456"])]
+
+
+async def own_job(job: JobId, principal: Anybody, context: Context) -> Job:
+    """Return a job of whoever asks.
+
+    Raises
+    ------
+    ServiceError
+        404 where there is none, or it is another tenant's: nobody learns which.
+    """
+    found = await context.read(context.store.job, job, principal.tenant) if ID.fullmatch(job) else None
+    if found is None:
+        raise not_found()
+    return found
+
+
+OwnJob = Annotated[Job, Depends(own_job)]
+
+
+def refuse_live(job: Job) -> None:
+    """Refuse what needs a job that has ended.
+
+    Raises
+    ------
+    ServiceError
+        409 where it has not.
+    """
+    if job.state in LIVE:
+        raise ServiceError(409, f"the job is {job.state}; this is there when it has ended", "not_ended")
+
+
+# ---- pages of lists -------------------------------------------------------------------------------------------------
+
+
+def entries(context: Context, limit: int | None) -> int:
+    """Return how many entries a page has.
+
+    Raises
+    ------
+    InputError
+        More are asked for than a page may have.
+    """
+    settings = context.settings
+    if limit is not None and limit > settings.page_limit:
+        raise InputError("limit", limit, f"at most {settings.page_limit}", ("limit",))
+    return min(settings.page, settings.page_limit) if limit is None else limit
+
+
+def cursor_of(place: Sequence[Any], scope: Sequence[Any]) -> str:
+    """Return a place in a list as clients hand it back; ``scope`` says which list it is."""
+    text = json.dumps([*place, _check(place, scope)], separators=(",", ":"))
+    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+
+
+def place_of(cursor: str | None, scope: Sequence[Any], kinds: Sequence[type]) -> list[Any] | None:
+    """Return the place in a list that a client hands back, of values of these kinds; None where it hands back none.
+
+    Raises
+    ------
+    InputError
+        It is none, or one of another list.
+    """
+    if cursor is None:
+        return None
+    place: list[Any] = []
+    try:
+        *place, check = json.loads(base64.b64decode(cursor + "=" * (-len(cursor) % 4), b"-_", validate=True))
+        right = check == _check(place, scope) and [*map(type, place)] == [*kinds] and all(map(_is_place, place))
+    except (ValueError, TypeError, RecursionError):
+        right = False
+    if not right:
+        raise InputError("cursor", cursor, "what the page before of the same list calls next", ("cursor",))
+    return place
+
+
+def _is_place(value: Any) -> bool:
+    return bool(ID.fullmatch(value)) if isinstance(value, str) else 0 <= value <= LARGEST
+
+
+def _check(place: Sequence[Any], scope: Sequence[Any]) -> str:
+    text = json.dumps([place, scope], separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()[:CHECKED]
+
+
+# ---- what clients know already --------------------------------------------------------------------------------------
+
+
+def knows(request: Request, etag: str) -> bool:
+    """Tell whether a client has said that it has this version."""
+    stated = header(request.scope, "if-none-match")
+    known = [entry.strip().removeprefix("W/") for entry in stated.split(",")]
+    return etag.removeprefix("W/") in known or known == ["*"]
+
+
+def tagged(
+    request: Request, content: bytes, media: str, etag: str, headers: Mapping[str, str] | None = None
+) -> Response:
+    """Return an answer with the tag of its version, or 304 where the client has it."""
+    more = {"ETag": etag, **(headers or {})}
+    if knows(request, etag):
+        return Response(status_code=304, headers=more)
+    return Response(content, media_type=media, headers=more)
+
+
+def tag_of(content: bytes) -> str:
+    """Return the tag of a content."""
+    return f'"{hashlib.sha256(content).hexdigest()[:32]}"'
+
+
+def accepts_gzip(request: Request) -> bool:
+    """Tell whether a client takes an answer that is packed with gzip.
+
+    Examples
+    --------
+    >>> from starlette.requests import Request
+    >>> def asked(text):
+    ...     return Request({"type": "http", "headers": [(b"accept-encoding", text.encode())]})
+    >>> [accepts_gzip(asked(text)) for text in ("gzip, br", "br;q=1.0, gzip;q=0", "*", "identity")]
+    [True, False, False, False]
+    """
+    for entry in header(request.scope, "accept-encoding").split(","):
+        name, _, weight = entry.partition(";")
+        if name.strip().lower() == "gzip":
+            return not re.fullmatch(r"q=0(\.0*)?", weight.replace(" ", ""))
+    return False

@@ -1,0 +1,85 @@
+"""Tables of requirements: brought, checked before they are asked, and asked."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, File, Request, Response, UploadFile
+
+from synth.errors import InputError
+from synth.jobs.engine_tasks import CHECK_ROWS_TASK, UPLOAD_TASK
+from synth.jobs.job_queue import BATCH
+from synth.jobs.shelf import Shelf
+from synth.jobs.views import uploads_kept
+from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted
+from synth.service.api.schemas import BATCH_BODY, BatchCheck, FirstRow, JobAnswer, UploadAnswer
+from synth.service.api.submission import Wish
+from synth.service.api.uploads import FIELD, kind_of, plain_name
+from synth.service.auth import Reader, Submitter
+from synth.service.context import API, Context, in_thread
+from synth.service.errors import ServiceError, again, not_found
+
+router = APIRouter(prefix=API, tags=["batches"])
+HOUR = 3600.0  # s
+BatchBody = Annotated[
+    dict[str, Any],
+    Body(
+        openapi_examples={"rows": {"value": BATCH_BODY}},
+        description="`upload` (the id of a file) or `rows`, and what is asked of all: family, mapping, objectives, ...",
+    ),
+]
+
+
+@router.post("/uploads", status_code=201, summary="Bring a file with rows")
+async def bring_file(
+    principal: Submitter,
+    context: Context,
+    file: Annotated[UploadFile, File(description="CSV in UTF-8, or an .xlsx workbook.")],
+) -> UploadAnswer:
+    """Keep a file for a day, to be asked as a batch; its content says what it is, not its name."""
+    settings, shelf = context.settings, Shelf(context.store)
+    if await in_thread(uploads_kept, context.store, principal.tenant) >= settings.tenant_uploads:
+        message = f"{settings.tenant_uploads} files are kept, as many as you may have; they go by themselves"
+        raise ServiceError(429, message, headers=again(HOUR))
+    content = await file.read()
+    name = plain_name(file.filename, await in_thread(kind_of, content, settings))
+    payload = {"name": name, "content": content, "most": settings.upload_shown}
+    try:
+        told = await context.small.ask(UPLOAD_TASK, payload, settings.file_deadline)
+    except InputError as fault:
+        fault.path = (FIELD,)
+        raise
+    number = await in_thread(shelf.add_upload, principal.tenant, name, content, HOUR * settings.upload_hours)
+    kept = await in_thread(shelf.upload, principal.tenant, number)
+    if kept is None:
+        raise not_found()
+    return UploadAnswer(
+        id=kept.id,
+        name=kept.name,
+        size=kept.size,
+        digest=kept.digest,
+        expires=kept.expires,
+        header=told["header"],
+        rows=[FirstRow(**row) for row in told["rows"]],
+    )
+
+
+@router.post("/batches/check", summary="Check a table")
+async def check_batch(asked: BatchBody, principal: Reader, context: Context) -> BatchCheck:
+    """Tell how a table is understood, and which of its rows cannot be asked; of a long one the first rows."""
+    sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
+    payload = {"request": asked, "sources": sources}
+    told = await context.small.ask(CHECK_ROWS_TASK, payload, context.settings.file_deadline)
+    return BatchCheck.model_validate(told)
+
+
+@router.post("/batches", status_code=202, response_model=JobAnswer, responses=SUBMITTED, summary="Ask for a batch")
+async def make_batch(
+    request: Request,
+    asked: BatchBody,
+    principal: Submitter,
+    context: Context,
+    idempotency_key: IdempotencyKey = None,
+) -> Response:
+    """Ask all rows of a table: a job of the kind batch. The same table, asked the same way, is the same job."""
+    return await submitted(request, context, principal, Wish(kind=BATCH, request=asked), idempotency_key)

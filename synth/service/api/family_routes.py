@@ -1,0 +1,132 @@
+"""What there is to ask, and what somebody wants to know while he types."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Path, Query, Request, Response
+
+from synth.errors import InputError
+from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
+from synth.jobs.shelf import Shelf
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged
+from synth.service.api.schemas import (
+    DESIGN,
+    INCOMPLETE,
+    CheckAnswer,
+    DeclarationAnswer,
+    ExampleList,
+    FamilyList,
+)
+from synth.service.auth import Reader
+from synth.service.context import API, Context, ServiceContext, in_thread
+from synth.service.errors import JSON, not_found
+
+router = APIRouter(prefix=API, tags=["families"])
+OPTIONS = "such as lubrication:dry,guide_model:cz"
+
+
+async def remembered(context: ServiceContext, key: tuple[Any, ...], task: str, payload: dict[str, Any]) -> Any:
+    """Return what depends on the code alone; of what was asked last."""
+    found = context.declared.get(key)
+    if found is None:
+        found = await context.small.ask(task, payload)
+        while len(context.declared) >= context.settings.remembered:
+            context.declared.pop(next(iter(context.declared)))
+        context.declared[key] = found
+    return found
+
+
+async def _answer(request: Request, context: ServiceContext, task: str, name: str) -> Response:
+    found = await remembered(context, (task,), task, {})
+    content = json.dumps({name: found[name]}, ensure_ascii=False, allow_nan=False).encode()
+    return tagged(request, content, JSON, f'"{found["code"]}"')
+
+
+@router.get("/families", response_model=FamilyList, responses=NOT_MODIFIED, summary="The families")
+async def list_families(request: Request, principal: Reader, context: Context) -> Response:
+    """Tell which families there are, with their options and the names of their examples."""
+    return await _answer(request, context, FAMILIES_TASK, "families")
+
+
+@router.get(
+    "/families/{name}", response_model=DeclarationAnswer, responses=NOT_MODIFIED, summary="What a family declares"
+)
+async def read_family(
+    request: Request,
+    name: Annotated[str, Path(description="Name of a family.", examples=["multi_plate_clutch"])],
+    principal: Reader,
+    context: Context,
+    options: Annotated[
+        str | None,
+        Query(max_length=LONGEST, pattern=WORD, description=f"Options that are chosen, {OPTIONS}."),
+    ] = None,
+) -> Response:
+    """Tell what a form has to show: requirements, options, parts and objectives, with units, ranges and sources."""
+    chosen = read_options(options)
+    key = (DECLARATION_TASK, name, *sorted(chosen.items()))
+    found = await remembered(context, key, DECLARATION_TASK, {"family": name, "options": chosen})
+    if found["declaration"] is None:
+        raise not_found()
+    content = json.dumps(found["declaration"], ensure_ascii=False, allow_nan=False).encode()
+    return tagged(request, content, JSON, f'"{found["code"]}"')
+
+
+def read_options(stated: str | None) -> dict[str, str]:
+    """Return options as an address states them.
+
+    Raises
+    ------
+    InputError
+        There is an entry without a name or a word.
+
+    Examples
+    --------
+    >>> read_options("lubrication:dry, guide_model:cz")
+    {'lubrication': 'dry', 'guide_model': 'cz'}
+    """
+    found: dict[str, str] = {}
+    for entry in (stated or "").split(","):
+        name, colon, word = (part.strip() for part in entry.partition(":"))
+        if not entry.strip():
+            continue
+        if not (name and colon and word):
+            raise InputError("options", stated, f"names and words, {OPTIONS}", ("options",))
+        found[name] = word
+    return found
+
+
+@router.get("/examples", response_model=ExampleList, responses=NOT_MODIFIED, summary="The examples")
+async def list_examples(request: Request, principal: Reader, context: Context) -> Response:
+    """Give the examples of all families: specs to begin with."""
+    return await _answer(request, context, EXAMPLES_TASK, "examples")
+
+
+@router.post("/check", summary="Check a spec")
+async def check(
+    spec: Annotated[dict[str, Any], Body(openapi_examples={"incomplete": {"value": INCOMPLETE}})],
+    principal: Reader,
+    context: Context,
+) -> CheckAnswer:
+    """Tell everything that is wrong with a spec, which may be incomplete, and how it is understood.
+
+    What is wrong in it is the answer, not a refusal.
+    """
+    return CheckAnswer.model_validate(await _asked(context, principal.tenant, CHECK_TASK, spec))
+
+
+@router.post("/evaluate", summary="Evaluate a design", response_model=dict[str, Any])
+async def evaluate(
+    design: Annotated[dict[str, Any], Body(openapi_examples={"design": {"value": DESIGN}})],
+    principal: Reader,
+    context: Context,
+) -> dict[str, Any]:
+    """Compute one design that is stated with its sizes and parts: a spec with `values`."""
+    found: dict[str, Any] = await _asked(context, principal.tenant, EVALUATE_TASK, design)
+    return found
+
+
+async def _asked(context: ServiceContext, tenant: int, task: str, asked: dict[str, Any]) -> Any:
+    sources = await in_thread(Shelf(context.store).sources, tenant, asked)
+    return await context.small.ask(task, {"request": asked, "sources": sources})

@@ -1,0 +1,403 @@
+"""What goes over the interface: bodies of requests, each with an example that a test runs, and of answers."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from synth.jobs.kinds import KINDS
+from synth.service.api.asking import LONGEST, WORD
+
+DUTY = {
+    "load_torque": "600 N*m",
+    "driver_speed": "26.6 rad/s",
+    "driven_inertia": "30 kg*m2",
+    "engagements_per_hour": "50 1/h",
+    "jerk_limit": "18 rad/s3",
+    "wear_life_min": 200000,
+}
+SPEC = {
+    "family": "multi_plate_clutch",
+    "requirements": DUTY,
+    "fix": {"ramp_time": "2 s"},
+    "objectives": ["mass"],
+    "points": 1,
+}
+INCOMPLETE = {"family": "multi_plate_clutch", "requirements": {"load_torque": "6,5"}}
+DESIGN = {
+    "family": "multi_plate_clutch",
+    "options": {"practice": "off", "guide_model": "cz"},
+    "requirements": {
+        "load_torque": "600 N*m",
+        "driver_speed": "26.6 rad/s",
+        "driven_inertia": "30 kg*m2",
+        "engagements_per_hour": "50 1/h",
+        "startup_torque": "1080 N*m",
+        "jerk_limit": "18 rad/s3",
+    },
+    "values": {"z": 10, "dm": "206.4885 mm", "c": 0.25, "F0": "13394.966 N", "t_r": "2 s"},
+    "parts": {"friction_pair": "seed_multiplate_ref", "inner_plate": "core 4", "outer_plate": "core 2"},
+}
+ROWS = [{**DUTY, "load_torque": "400 N*m"}, {**DUTY, "load_torque": "500 N*m"}]
+BATCH_BODY = {
+    "family": "multi_plate_clutch",
+    "rows": ROWS,
+    "fix": SPEC["fix"],
+    "objectives": ["mass"],
+    "points": 1,
+}
+CATALOGUE_BODY = {
+    "name": "my_linings",
+    "table": "my_linings",
+    "csv": "designation,mu [-],source,confidence\nL1,0.3,data sheet,typical\n",
+    "schema": (
+        "column,type,unit,minimum,maximum,required,symbol,description\n"
+        "designation,text,,,,1,,Name\nmu,number,-,0,1,1,mu,Friction\n"
+        "source,text,,,,1,,Source\nconfidence,text,,,,1,,How sure\n"
+    ),
+    "note": "from the supplier",
+}
+STRICT = ConfigDict(extra="forbid", strict=True)
+
+Words = Annotated[str, Field(max_length=LONGEST, pattern=WORD)]
+Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=r"^[^\x00-\x1f\x7f]*$")]
+
+
+def _example(body: Any) -> ConfigDict:
+    return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [body]})
+
+
+# ---- families -------------------------------------------------------------------------------------------------------
+
+
+class OptionAnswer(BaseModel):
+    """An option of a family."""
+
+    name: str
+    symbol: str
+    choices: list[str]
+    default: str
+    text: str
+    source: str
+    group: str
+
+
+class FamilyAnswer(BaseModel):
+    """A family that can be asked."""
+
+    name: str
+    title: str
+    line: str
+    sources: list[str]
+    options: list[OptionAnswer]
+    understands: list[str]
+    examples: list[str]
+
+
+class FamilyList(BaseModel):
+    """All families."""
+
+    families: list[FamilyAnswer]
+
+
+class DeclarationAnswer(BaseModel):
+    """What a family declares: a row for everything that has a name; `section` tells where a form shows it."""
+
+    name: str
+    title: str
+    sources: list[str]
+    options: dict[str, str]
+    rows: list[dict[str, Any]]
+
+
+class ExampleAnswer(BaseModel):
+    """An example: a spec, as JSON and as it was written."""
+
+    name: str
+    family: str
+    description: str
+    design: bool
+    spec: dict[str, Any]
+    text: str
+
+
+class ExampleList(BaseModel):
+    """The examples of all families."""
+
+    examples: list[ExampleAnswer]
+
+
+class CheckProblem(BaseModel):
+    """One thing that is wrong with a spec."""
+
+    path: list[str | int]
+    value: Any = None
+    expected: str
+    message: str
+
+
+class CheckAnswer(BaseModel):
+    """What is wrong with a spec, and how it is understood."""
+
+    ready: bool
+    problems: list[CheckProblem]
+    read: dict[str, str]
+    combinations: int | None
+
+
+# ---- jobs -----------------------------------------------------------------------------------------------------------
+
+
+class JobRequest(BaseModel):
+    """What is asked as a job."""
+
+    model_config = _example({"kind": "synthesis", "request": SPEC, "title": "Lifting drive"})
+
+    kind: str = Field(json_schema_extra={"enum": list(KINDS)}, description="What is wanted.")
+    request: dict[str, Any] = Field(description="A spec, or what the kind takes; `of` names an earlier job.")
+    title: Title | None = Field(None, description="For people; by default made of the request.")
+    parent: Words | None = Field(None, description="Id of the job that it follows from.")
+    priority: int | None = Field(None, ge=0, le=1, description="0 lets it wait behind what others wait for.")
+    seconds_limit: float | None = Field(None, gt=0, le=1e9, description="In s, after which it is stopped.")
+
+
+class JobChange(BaseModel):
+    """What may be changed of a job."""
+
+    model_config = _example({"title": "Lifting drive, second try", "pinned": True})
+
+    title: Title | None = None
+    pinned: bool | None = Field(None, description="Whether it is kept for good.")
+
+
+class JobLinks(BaseModel):
+    """Where the rest of a job is."""
+
+    self: str
+    request: str
+    result: str
+    designs: str
+    files: str
+    events: str
+    rows: str | None
+
+
+class JobFault(BaseModel):
+    """Why a job has no result."""
+
+    code: str
+    message: str
+    problems: list[CheckProblem] = []
+
+
+class JobAnswer(BaseModel):
+    """A job. Times are seconds since 1970."""
+
+    id: str
+    kind: str
+    title: str
+    state: str = Field(json_schema_extra={"enum": ["open", "running", "done", "cancelled", "failed", "stopped"]})
+    outcome: str | None = Field(description="How its question stands: optimal, feasible, infeasible, not_solved.")
+    progress: dict[str, Any] | None
+    summary: dict[str, Any] | None
+    error: JobFault | None
+    families: list[str]
+    priority: int
+    parent: str | None
+    pinned: bool
+    rows: int
+    seconds_limit: float | None
+    created: float
+    started: float | None
+    updated: float
+    ended: float | None
+    expires: float | None
+    links: JobLinks
+
+
+class JobList(BaseModel):
+    """A page of jobs, the latest first."""
+
+    jobs: list[JobAnswer]
+    next: str | None = Field(description="The cursor of the next page, where there is one.")
+
+
+class ColumnAnswer(BaseModel):
+    """A column of designs."""
+
+    name: str
+    unit: str | None
+
+
+class DesignPage(BaseModel):
+    """A page of designs as flat rows: values by column, in the units of the columns."""
+
+    total: int = Field(description="Designs that fit the condition.")
+    columns: list[ColumnAnswer]
+    designs: list[dict[str, Any]]
+    next: str | None
+
+
+class FileAnswer(BaseModel):
+    """A file of a job; `size` is known before it is made only of those that are kept."""
+
+    name: str
+    size: int | None
+    href: str
+
+
+class FileList(BaseModel):
+    """The files of a job."""
+
+    files: list[FileAnswer]
+
+
+class RowAnswer(BaseModel):
+    """A row of a batch, and what became of it."""
+
+    line: int
+    key: str | None
+    family: str
+    status: str
+    designs: int
+    seconds: float | None
+    certificate: str | None
+    gap: float | None
+    best_design: str
+    explanation: str
+    remarks: str
+    cells: list[str]
+
+
+class RowPage(BaseModel):
+    """A page of the rows of a batch, in the order of the table."""
+
+    header: list[str]
+    rows: list[RowAnswer]
+    next: str | None
+
+
+class RowRecord(BaseModel):
+    """A row of a batch in full: what it asks, its faults, and its designs as far as they are kept."""
+
+    row: RowAnswer
+    header: list[str]
+    faults: list[dict[str, Any]]
+    question: dict[str, Any] | None
+    columns: list[ColumnAnswer]
+    designs: list[dict[str, Any]]
+
+
+# ---- tables ---------------------------------------------------------------------------------------------------------
+
+
+class FirstRow(BaseModel):
+    """One of the first rows of a file."""
+
+    line: int
+    cells: list[str]
+
+
+class UploadAnswer(BaseModel):
+    """A file that was brought for a batch."""
+
+    id: str
+    name: str
+    size: int
+    digest: str
+    expires: float
+    header: list[str]
+    rows: list[FirstRow]
+
+
+class TableColumn(BaseModel):
+    """A column of a table of requirements, and what it is understood as; nothing where it is carried along."""
+
+    title: str
+    name: str
+
+
+class TableFault(BaseModel):
+    """What is wrong in a line of a table."""
+
+    line: int
+    column: str | None
+    value: Any = None
+    expected: str
+    message: str
+
+
+class BatchCheck(BaseModel):
+    """What a table says, and which rows cannot be asked."""
+
+    rows: int
+    checked: int
+    bad: int
+    faults: list[TableFault]
+    more_faults: int
+    families: list[str]
+    columns: list[TableColumn]
+    carried: list[str]
+    unused: dict[str, list[str]]
+
+
+class CatalogueRequest(BaseModel):
+    """A version of a part table."""
+
+    model_config = _example(CATALOGUE_BODY)
+
+    name: str = Field(min_length=1, max_length=60, description="By which questions name it: `my_linings@3`.")
+    table: Words = Field("", description="The table of a family that it is rows for; by default its name.")
+    csv: str = Field(min_length=1, description="The rows.")
+    schema_: str = Field("", alias="schema", description="What its columns are, where the table is none of ours.")
+    note: Words = ""
+
+
+class CatalogueEntry(BaseModel):
+    """A version of a part table as lists show it."""
+
+    name: str
+    version: int
+    reference: str
+    table: str
+    rows: int
+    digest: str
+    created: float
+    note: str
+
+
+class CatalogueList(BaseModel):
+    """All versions of all part tables that you have brought."""
+
+    catalogues: list[CatalogueEntry]
+
+
+class CatalogueAnswer(BaseModel):
+    """A version of a part table in full, and the jobs that name it."""
+
+    entry: CatalogueEntry
+    csv: str
+    schema_: str = Field(alias="schema")
+    used_by: list[str]
+
+
+class ChangedCell(BaseModel):
+    """A cell that differs between two versions."""
+
+    designation: str
+    column: str
+    before: str
+    after: str
+
+
+class CatalogueDiff(BaseModel):
+    """What is different between two versions of a part table: rows by designation."""
+
+    before: CatalogueEntry
+    after: CatalogueEntry
+    added: list[str]
+    removed: list[str]
+    changed: list[ChangedCell]
+    columns_added: list[str]
+    columns_removed: list[str]

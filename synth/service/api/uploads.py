@@ -1,0 +1,90 @@
+"""Files that are brought, looked at before anything reads them: what they are by their content, and how large."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from pathlib import PurePosixPath
+
+from synth.errors import InputError
+from synth.service.errors import ServiceError
+from synth.service.settings import ServiceSettings
+
+ZIP = b"PK"
+WORKBOOK = "xl/workbook.xml"  # in every file of Excel
+MACROS = "vbaproject.bin"
+LONGEST_NAME = 100  # of a file, without its ending
+FIELD = "file"
+
+
+def kind_of(content: bytes, settings: ServiceSettings) -> str:
+    """Return the ending that a file should have by its content: ``.csv`` or ``.xlsx``.
+
+    Parameters
+    ----------
+    content : bytes
+    settings : ServiceSettings
+
+    Raises
+    ------
+    ServiceError
+        415: it is neither.
+    InputError
+        It is a workbook that would be too large when it is unpacked, or cannot be read.
+    """
+    if content.startswith(ZIP):
+        check_workbook(content, settings)
+        return ".xlsx"
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise _neither() from None
+    if "\0" in text or text.lstrip()[:1] in ("<", "{", "%"):  # pages, JSON, PDF
+        raise _neither()
+    if not text.strip():
+        raise InputError(FIELD, None, "a header, and rows below it", (FIELD,))
+    return ".csv"
+
+
+def _neither() -> ServiceError:
+    return ServiceError(415, "the file is neither CSV in UTF-8 nor an .xlsx workbook")
+
+
+def check_workbook(content: bytes, settings: ServiceSettings) -> None:
+    """Refuse a workbook that says of itself that it unpacks to too much; unpackers stop at what it says.
+
+    Raises
+    ------
+    ServiceError
+        415: it is an archive of something else.
+    InputError
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            found = archive.infolist()
+    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
+        raise InputError(FIELD, "a broken archive", "a workbook that can be read", (FIELD,)) from error
+    names = {entry.filename.lower() for entry in found}
+    if WORKBOOK not in names or any(name.endswith(MACROS) for name in names):
+        raise _neither()
+    if len(found) > settings.upload_entries:
+        raise InputError(FIELD, f"{len(found)} entries", f"a workbook of at most {settings.upload_entries}", (FIELD,))
+    unpacked = sum(entry.file_size for entry in found)
+    most = min(settings.upload_unpacked, settings.upload_ratio * len(content))
+    if unpacked > most:
+        raise InputError(FIELD, f"{unpacked} bytes when unpacked", f"a workbook of at most {most}", (FIELD,))
+
+
+def plain_name(stated: str | None, ending: str) -> str:
+    """Return the name of a file as it is shown and kept: no folders, nothing that acts on a terminal.
+
+    Examples
+    --------
+    >>> plain_name("../../etc/Lasten 2024.CSV", ".csv"), plain_name(None, ".xlsx")
+    ('Lasten 2024.csv', 'rows.xlsx')
+    """
+    base = PurePosixPath((stated or "").replace("\\", "/")).name
+    stem = base.rpartition(".")[0] or base
+    kept = "".join(letter for letter in re.sub(r"[<>:\"|?*]", "", stem) if letter.isprintable()).strip(" .")
+    return f"{kept[:LONGEST_NAME] or 'rows'}{ending}"

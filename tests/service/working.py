@@ -1,0 +1,101 @@
+"""A service that works: real engine processes, and a real worker beside it."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from synth.jobs.engine_process import Engines
+from synth.jobs.store import Store
+from synth.jobs.worker import Worker
+from tests.service.calling import Service, bearer
+
+API = "/api/v1"
+DUTY: dict[str, Any] = {
+    "load_torque": "600 N*m",
+    "driver_speed": "26.6 rad/s",
+    "driven_inertia": "30 kg*m2",
+    "engagements_per_hour": "50 1/h",
+    "jerk_limit": "18 rad/s3",
+    "wear_life_min": 200000,
+}
+FAMILY = "multi_plate_clutch"
+QUICK: dict[str, Any] = {
+    "family": FAMILY,
+    "requirements": DUTY,
+    "fix": {"ramp_time": "2 s"},
+    "objectives": ["mass"],
+    "points": 1,
+}
+FRONT = {**QUICK, "objectives": ["mass", "length"], "points": 3}
+LONG = {**QUICK, "objectives": ["mass", "length", "friction_work"], "points": 200}
+BATCH = {
+    "family": FAMILY,
+    "rows": [{**DUTY, "load_torque": torque, "note": "=1+1"} for torque in ("400 N*m", "500 N*m", "many")],
+    "fix": {"ramp_time": "2 s"},
+    "objectives": ["mass"],
+    "points": 1,
+}
+LIVE = ("open", "running")
+
+
+class Client:
+    """Somebody with a token, or without one where none is needed."""
+
+    def __init__(self, service: Service, token: str = "") -> None:
+        self.service, self.headers = service, bearer(token) if token else {}
+
+    def __call__(self, method: str, path: str, headers: dict[str, str] | None = None, **asked: Any) -> httpx.Response:
+        where = path if path.startswith("/") else f"{API}/{path}"
+        return self.service(method, where, headers={**self.headers, **(headers or {})}, **asked)
+
+    def get(self, path: str, **asked: Any) -> httpx.Response:
+        return self("GET", path, **asked)
+
+    def post(self, path: str, body: Any = None, **asked: Any) -> httpx.Response:
+        return self("POST", path, **({} if body is None else {"json": body}), **asked)
+
+    def submit(self, kind: str, request: dict[str, Any], **more: Any) -> str:
+        answer = self.post("jobs", {"kind": kind, "request": request, **more})
+        assert answer.status_code == 202, answer.text
+        return str(answer.json()["id"])
+
+    def ended(self, job: str, within: float = 90.0) -> dict[str, Any]:
+        """Wait until a job has ended; return how it stands."""
+        return self.until(job, lambda told: told["state"] not in LIVE, within)
+
+    def until(self, job: str, right: Any, within: float = 60.0) -> dict[str, Any]:
+        end = time.monotonic() + within
+        told: dict[str, Any] = {}
+        while time.monotonic() < end:
+            told = self.get(f"jobs/{job}").json()
+            if right(told):
+                return told
+            time.sleep(0.05)
+        raise AssertionError(told)
+
+
+@contextmanager
+def working(folder: Path, engines: Engines, database: str = "", slots: int = 1, **numbers: Any) -> Iterator[Service]:
+    """Give a service whose jobs are worked at."""
+    with Service(folder, engines, database, **numbers) as service:
+        worker = Worker(Store(service.store.engine.url), slots, spare=False)
+        thread = threading.Thread(target=worker.run)
+        thread.start()
+        lifespan = service.app.router.lifespan_context(service.app)
+        service.runner.run(lifespan.__aenter__())
+        try:
+            yield service
+        finally:
+            service.runner.run(lifespan.__aexit__(None, None, None))
+            worker.stop()
+            thread.join()
+            with contextlib.suppress(Exception):
+                worker.store.close()
