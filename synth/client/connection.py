@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import io
+import uuid
 import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from synth.client.remote_job import Progress, RemoteJob, job_of
-from synth.client.transport import CLIENT, ClientSettings, Transport
+from synth.client.transport import CLIENT, ClientSettings, ServiceRefusedError, Transport
 from synth.errors import InputError
 from synth.files import read_bytes
 from synth.question.count_domain import stated_value
@@ -117,7 +118,9 @@ class ServiceClient:
             Something in the request is wrong.
         """
         body = {"kind": kind, "request": _plain(request), **_given(**more)}
-        return RemoteJob(self._transport, str(self._transport.ask("POST", "/jobs", json=body).json()["id"]))
+        once = {"Idempotency-Key": uuid.uuid4().hex}  # asked again after a broken connection, it makes no second job
+        answer = self._transport.ask("POST", "/jobs", json=body, headers=once)
+        return RemoteJob(self._transport, str(answer.json()["id"]))
 
     # -- verbs ---------------------------------------------------------------------------------
 
@@ -304,7 +307,12 @@ class ServiceClient:
         """
         text = read_bytes(source, "source", "a CSV file").decode("utf-8-sig")
         body = {"name": name or Path(source).stem, "table": table, "csv": text, **_given(note=note or None)}
-        told = self._transport.ask("POST", "/catalogues", json=body).json()
+        try:
+            told = self._transport.ask("POST", "/catalogues", json=body).json()
+        except ServiceRefusedError as refusal:
+            if refusal.code != "same_content":
+                raise
+            told = dict(zip(("name", "version"), refusal.location.rsplit("/", 2)[1:], strict=True))
         return f"{told['name']}@{told['version']}"
 
     # -- inside --------------------------------------------------------------------------------

@@ -51,11 +51,13 @@ class ServiceRefusedError(Exception):
         Of HTTP.
     code, message : str
         What the service says: for programs and for people.
+    location : str
+        The address of what there is instead; empty where there is nothing.
     """
 
-    def __init__(self, status: int, code: str, message: str) -> None:
+    def __init__(self, status: int, code: str, message: str, location: str = "") -> None:
         super().__init__(f"{message} ({code})")
-        self.status, self.code = status, code
+        self.status, self.code, self.location = status, code, location
 
 
 class Transport:
@@ -160,7 +162,8 @@ def _refusal(answer: httpx.Response) -> Exception:
     problems = told.get("problems") or []
     if answer.status_code == BAD_INPUT and problems:
         return told_input_error(problems[0])
-    return ServiceRefusedError(answer.status_code, str(told["code"]), str(told["message"]))
+    location = answer.headers.get("Location", "")
+    return ServiceRefusedError(answer.status_code, str(told["code"]), str(told["message"]), location)
 
 
 def told_input_error(problem: Mapping[str, Any]) -> InputError:
