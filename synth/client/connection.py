@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import uuid
 import weakref
 from collections.abc import Mapping, Sequence
@@ -12,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Self
 from synth.client.remote_job import Progress, RemoteJob, job_of
 from synth.client.transport import CLIENT, ClientSettings, ServiceRefusedError, Transport
 from synth.errors import InputError
-from synth.files import read_bytes
+from synth.files import csv_text, read_bytes
+from synth.jobs.row_table import ROWS, read_table
 from synth.question.count_domain import stated_value
 from synth.results import ParetoFront
 
@@ -238,8 +238,7 @@ class ServiceClient:
             ``mapping``, ``objectives``, ``points``, ``catalogs``, ``parts``, ``limits``, ``fix``, ``gap``, ``grid``,
             ``seed``, ``time_limit``.
         """
-        source = {"rows": [_row(row) for row in table]} if isinstance(table, list) else {"upload": self.upload(table)}
-        return self.submit("batch", {**_given(family=p, **asked), **source}).wait(progress)
+        return self.submit("batch", {**_given(family=p, **asked), "upload": self.upload(table)}).wait(progress)
 
     def size_range(
         self,
@@ -274,21 +273,18 @@ class ServiceClient:
 
         Parameters
         ----------
-        table : path or DataFrame
+        table : path, DataFrame or list of mappings
 
         Raises
         ------
         InputError
-            It is neither, or cannot be read.
+            It is none of these, or cannot be read.
         """
         if isinstance(table, (str, Path)):
-            name, content = Path(table).name, read_bytes(table, "rows", "a CSV or .xlsx file")
-        elif hasattr(table, "to_csv"):
-            text = io.StringIO()
-            table.to_csv(text, index=False)
-            name, content = "rows.csv", text.getvalue().encode()
+            name, content = Path(table).name, read_bytes(table, "rows", ROWS)
         else:
-            raise InputError("rows", type(table).__name__, "a CSV or .xlsx file, a DataFrame, or a list of mappings")
+            rows = read_table(table)
+            name, content = f"{rows.name}.csv", csv_text(rows.header(), [cells for _, cells in rows.lines()]).encode()
         answer = self._transport.ask("POST", "/uploads", files={"file": (name, content)})
         return str(answer.json()["id"])
 
@@ -348,10 +344,6 @@ def _spec(p: str | DesignProblem, requirements: Mapping[str, Any], **asked: Any)
 def _given(**asked: Any) -> dict[str, Any]:
     """Return what was asked: None is nothing."""
     return {name: value for name, value in asked.items() if value is not None}
-
-
-def _row(row: Mapping[str, Any]) -> dict[str, Any]:
-    return {str(name): value for name, value in row.items()}
 
 
 def _plain(value: Any) -> Any:

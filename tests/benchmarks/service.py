@@ -395,7 +395,9 @@ def wait(database: str | None = None, rows: int = 1000, count: int = 20) -> dict
     base = {name: str(value) for name, value in spec()["requirements"].items()}
     table = [{**base, "load_torque": f"{300 + 0.5 * k} N*m"} for k in range(rows)]
     with served(database) as service, httpx.Client(base_url=service.url, timeout=60.0) as client:
-        batch = submit(client, {"family": "multi_plate_clutch", "rows": table, "points": 5}, "batch")
+        text = "\n".join([",".join(table[0]), *(",".join(row.values()) for row in table)])
+        upload = client.post(f"{API}/uploads", files={"file": ("rows.csv", text.encode())}).json()["id"]
+        batch = submit(client, {"family": "multi_plate_clutch", "upload": upload, "points": 5}, "batch")
         until(lambda: (status(client, batch)["progress"] or {}).get("done", 0) > 2, 300.0)
         for k in range(count):
             job = submit(client, spec(**QUICK, seed=k))
