@@ -83,7 +83,7 @@ class EventStream(StreamingResponse):
             self._context.hub.leave(self._listener)
 
 
-@router.get("/jobs/{job}/events", response_class=EventStream, responses=STREAM, summary="What happens to a job")
+@router.get("/jobs/{job}/events", response_class=StreamingResponse, responses=STREAM, summary="What happens to a job")
 async def job_events(
     request: Request, found: OwnJob, principal: Reader, context: Context, last_event_id: LastEventId = None
 ) -> EventStream:
@@ -91,7 +91,7 @@ async def job_events(
     return _stream(request, context, principal, [found.id], last_event_id)
 
 
-@router.get("/events", response_class=EventStream, responses=STREAM, summary="What happens to several jobs")
+@router.get("/events", response_class=StreamingResponse, responses=STREAM, summary="What happens to several jobs")
 async def events(
     request: Request,
     jobs: Annotated[
