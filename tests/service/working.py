@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import threading
 import time
@@ -15,6 +16,7 @@ import httpx
 from synth.jobs.engine_process import Engines
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
+from synth.service.serve import ServiceServer, listening, server_config
 from tests.service.calling import Service, bearer
 
 API = "/api/v1"
@@ -82,20 +84,47 @@ class Client:
         raise AssertionError(told)
 
 
+async def _entered(lifespan: Any) -> None:
+    await lifespan.__aenter__()
+
+
+async def _left(lifespan: Any) -> None:
+    await lifespan.__aexit__(None, None, None)
+
+
 @contextmanager
-def working(folder: Path, engines: Engines, database: str = "", slots: int = 1, **numbers: Any) -> Iterator[Service]:
-    """Give a service whose jobs are worked at."""
+def working(
+    folder: Path, engines: Engines, database: str = "", slots: int = 1, called: bool = True, **numbers: Any
+) -> Iterator[Service]:
+    """Give a service whose jobs are worked at; one that is called directly does what it does beside, too."""
     with Service(folder, engines, database, **numbers) as service:
         worker = Worker(Store(service.store.engine.url), slots, spare=False)
         thread = threading.Thread(target=worker.run)
         thread.start()
-        lifespan = service.app.router.lifespan_context(service.app)
-        service.runner.run(lifespan.__aenter__())
+        lifespan = service.app.router.lifespan_context(service.app) if called else contextlib.nullcontext()
         try:
+            service.runner.run(_entered(lifespan))
             yield service
+            service.runner.run(_left(lifespan))
         finally:
-            service.runner.run(lifespan.__aexit__(None, None, None))
             worker.stop()
             thread.join()
             with contextlib.suppress(Exception):
                 worker.store.close()
+
+
+@contextmanager
+def listened(service: Service) -> Iterator[str]:
+    """Let a service listen at an address of this machine; yield it."""
+    ready = threading.Event()
+    with listening("127.0.0.1", 0) as listener:
+        config = server_config(service.app, service.settings)
+        server = ServiceServer(config, service.context, ready.set, lambda: None)
+        thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
+        thread.start()
+        try:
+            assert ready.wait(20.0)
+            yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+        finally:
+            server.handle_exit(0, None)
+            thread.join()
