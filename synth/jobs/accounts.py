@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import re
 import secrets
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
@@ -26,6 +27,9 @@ BEGINNING = "cs_"  # of every token: programs that look for secrets in texts kno
 RANDOM = 32  # bytes of a token, and of the cookie of a browser
 PREFIX_LETTERS = 8  # of a token that are kept, to find it by and to tell it apart
 NAME = 60  # letters of a name at most
+# Neither characters that act on a terminal nor blanks alone.
+NAME_PATTERN = r"^[^\u0000-\u0020\u007f-\u00a0][^\u0000-\u001f\u007f-\u009f]*$"
+HALF = re.compile(r"[\ud800-\udfff]")  # of a letter: what no database keeps
 LONGEST_TOKEN = 100  # letters; what is longer is none, and is not even hashed
 
 
@@ -289,7 +293,7 @@ class Accounts:
 
     @staticmethod
     def _check_name(field: str, name: str) -> None:
-        if not name.strip() or len(name) > NAME or not name.isprintable():
+        if len(name) > NAME or not re.fullmatch(NAME_PATTERN, name) or HALF.search(name):
             raise InputError(field, name, f"a name of at most {NAME} letters", (field,))
 
     def find(self, beginning: str) -> TokenEntry:

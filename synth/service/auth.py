@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from typing import Annotated
 
 from fastapi import Depends, Request
+from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 from sqlalchemy.exc import DBAPIError
 
 from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
@@ -23,8 +24,12 @@ def address_of(request: Request) -> str:
     return request.client.host if request.client else ""
 
 
-async def principal_of(request: Request, context: Context) -> Principal:
-    """Return who asks.
+DESCRIBED = HTTPBearer(auto_error=False, scheme_name="token", description="A token, cs_...")
+Described = Annotated[HTTPAuthorizationCredentials | None, Depends(DESCRIBED)]
+
+
+async def principal_of(request: Request, context: Context, described: Described = None) -> Principal:
+    """Return who asks; ``described`` is for the description of the interface alone.
 
     Raises
     ------

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from synth.jobs.accounts import NAME, TokenEntry
+from synth.jobs.accounts import NAME, NAME_PATTERN, TokenEntry
 from synth.jobs.database import HEAD
 from synth.service.auth import Administrator, Anybody
 from synth.service.context import API, Context, in_thread
@@ -56,8 +56,8 @@ class TokenRequest(BaseModel):
         extra="forbid", json_schema_extra={"examples": [{"name": "office", "scopes": ["read", "submit"], "days": 90}]}
     )
 
-    name: str = Field(min_length=1, max_length=NAME, description="Whom or what it is for.")
-    tenant: str | None = Field(None, min_length=1, max_length=NAME, description="By default your own.")
+    name: str = Field(max_length=NAME, pattern=NAME_PATTERN, description="Whom or what it is for.")
+    tenant: str | None = Field(None, max_length=NAME, pattern=NAME_PATTERN, description="By default your own.")
     scopes: list[Literal["read", "submit", "admin"]] = Field(["read", "submit"], min_length=1, max_length=3)
     days: float | None = Field(None, gt=0, le=36_500, description="For which it is valid.")
 
