@@ -171,12 +171,12 @@ def listening(host: str, port: int) -> socket.socket:
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         listener = socket.create_server((host, port), family=family, backlog=BACKLOG)
-        # Else an answer waits 40 ms for the client to confirm its first packet. Connections inherit it.
-        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return listener
     except OSError as error:
         where = f"{host}, port {port}"
         raise InputError("--host", where, f"an address and a port that are free here ({error.strerror})") from error
+    # Else an answer waits 40 ms for the client to confirm its first packet. Connections inherit it.
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener
 
 
 def address_of(listener: socket.socket) -> str:

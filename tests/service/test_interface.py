@@ -65,9 +65,10 @@ def public(tmp_path: Path) -> Iterator[Service]:
 
 @pytest.mark.slow
 def test_the_interface_keeps_to_its_description(public: Service) -> None:
-    """All operations that there are, with bodies and parameters that fit their description and that do not."""
+    """Operations that need neither jobs nor engines, asked with what fits their description and what does not."""
     admin = bearer(public.token("read", "submit", "admin"))
     schema = schemathesis.openapi.from_asgi("/api/v1/openapi.json", public.app)
+    schema = schema.include(path_regex="/(tokens|session|version)")
     asked = 0
     for found in schema.get_all_operations():
         operation = found.ok()
@@ -75,7 +76,7 @@ def test_the_interface_keeps_to_its_description(public: Service) -> None:
         for mode in modes if operation.body or operation.path_parameters or operation.query else modes[:1]:
             check(operation, mode, admin)
             asked += 1
-    assert asked > 8
+    assert asked >= 7
 
 
 def check(operation: Any, mode: GenerationMode, headers: dict[str, str]) -> None:
@@ -125,7 +126,7 @@ def test_it_is_the_same_on_both_databases(elsewhere: Service) -> None:
 
 @pytest.mark.slow
 def test_a_database_that_others_write_into_lets_requests_wait_but_not_the_server(service: Service) -> None:
-    """A writer holds the only lock of SQLite for a second: reading goes on, writing waits for it."""
+    """A writer holds the only lock of SQLite for two seconds: reading goes on, writing waits for it."""
     admin = bearer(service.token("admin"))
     service("GET", "/api/v1/session", headers=admin)  # its use is noted
     held = threading.Event()
@@ -134,16 +135,16 @@ def test_a_database_that_others_write_into_lets_requests_wait_but_not_the_server
         with service.store.engine.begin() as connection:
             connection.exec_driver_sql("UPDATE tenant SET name = name")
             held.set()
-            time.sleep(1.0)
+            time.sleep(2.0)
 
     thread = threading.Thread(target=write)
     thread.start()
     held.wait()
     begun = time.monotonic()
     assert service("GET", "/api/v1/tokens", headers=admin).status_code == 200
-    assert time.monotonic() - begun < 0.5
+    assert time.monotonic() - begun < 1.5
     assert service("POST", "/api/v1/tokens", headers=admin, json={"name": "a"}).status_code == 201
-    assert time.monotonic() - begun > 0.5
+    assert time.monotonic() - begun > 1.0
     thread.join()
 
 
