@@ -30,6 +30,10 @@ from synth.service.recording import log
 router = APIRouter(prefix=API, tags=["events"])
 MEDIA = "text/event-stream"
 HEADERS = {"X-Accel-Buffering": "no", "Cache-Control": "no-store"}
+EVENT = {
+    "type": "object",
+    "properties": {name: {"type": "string"} for name in ("event", "data", "id")} | {"retry": {"type": "integer"}},
+}
 COMMENT = b": \n\n"
 STREAM: dict[int | str, dict[str, Any]] = {
     200: {
@@ -37,7 +41,7 @@ STREAM: dict[int | str, dict[str, Any]] = {
             "Events: `snapshot` (the job as it stands), then `created`, `started`, `resumed`, `progress`, `remark` as "
             "they happen, `resync` before a new snapshot for who was too slow, and `end` with state and outcome."
         ),
-        "content": {MEDIA: {"schema": {"type": "string"}}},
+        "content": {MEDIA: {"schema": EVENT}},
     }
 }
 LastEventId = Annotated[

@@ -15,7 +15,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from synth.errors import ExtraNeededError
 from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
 from synth.jobs.job_queue import BATCH, LIVE
-from synth.jobs.kinds.contract import Record
+from synth.jobs.kinds.contract import MEDIA, Record
 from synth.jobs.models import Job
 from synth.jobs.shelf import Shelf
 from synth.plain_text import as_meant
@@ -32,7 +32,7 @@ VERSION = version("clutchsynth")
 ANY_FILE: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "The file.",
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+        "content": {media.partition(";")[0]: {"schema": {}} for media in MEDIA.values()},
     },
     501: {"description": "It needs an extra that is not installed here."},
     **NOT_MODIFIED,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from synth.errors import InputError
 from synth.files import yaml_text
 from synth.jobs.engine_tasks import CHANGED_TASK
 from synth.jobs.job_queue import LIVE
@@ -36,7 +35,7 @@ from synth.service.security import header
 
 router = APIRouter(prefix=API, tags=["jobs"])
 YAML = "application/yaml"
-STATES = ("open", "running", "done", "cancelled", "failed", "stopped")
+State = Literal["open", "running", "done", "cancelled", "failed", "stopped"]
 RESUMABLE = "cancelled, failed or stopped"
 PLACE = {"Location": {"description": "Where the job is.", "schema": {"type": "string"}}}
 SUBMITTED: dict[int | str, dict[str, Any]] = {
@@ -87,10 +86,7 @@ async def list_jobs(
     request: Request,
     principal: Reader,
     context: Context,
-    state: Annotated[
-        list[str] | None,
-        Query(description="Only those in these states.", json_schema_extra={"items": {"enum": [*STATES]}}),
-    ] = None,
+    state: Annotated[list[State] | None, Query(description="Only those in these states.")] = None,
     kind: Word = None,
     family: Word = None,
     q: Annotated[
@@ -103,9 +99,6 @@ async def list_jobs(
 ) -> JobList:
     """List your jobs, the latest first."""
     states = tuple(state or ())
-    for word in states:
-        if word not in STATES:
-            raise InputError("state", word, f"one of {', '.join(STATES)}", ("state",))
     most = entries(context, limit)
     scope = [principal.tenant, list(states), kind, family, q, parent, pinned]
     place = place_of(cursor, scope, (float, str))
