@@ -25,7 +25,7 @@ READ_AT_ONCE = 1000
 
 
 @dataclass(frozen=True)
-class Told:
+class StreamEvent:
     """Something that a listener is told: of what kind, of which job, and its number where it is kept."""
 
     kind: str
@@ -34,21 +34,21 @@ class Told:
     id: int | None = None
 
 
-def told_of(happening: Happening) -> Told:
+def told_of(happening: Happening) -> StreamEvent:
     """Return an event as listeners are told of it."""
     text = "" if happening.kind == "started" else happening.text  # which process does it is for the log
     data = {"job": happening.job, "time": happening.time, "text": text, **(happening.data or {})}
     state = (happening.data or {}).get("state")
     if state is not None and state not in LIVE:
-        return Told(END, happening.job, {"outcome": None, **data}, happening.id)
+        return StreamEvent(END, happening.job, {"outcome": None, **data}, happening.id)
     kind = happening.kind if happening.kind in SAME else REMARK
-    return Told(kind, happening.job, data, happening.id)
+    return StreamEvent(kind, happening.job, data, happening.id)
 
 
-def end_of(job: str, standing: Standing | None) -> Told:
+def end_of(job: str, standing: Standing | None) -> StreamEvent:
     """Return how a job has ended, by how it stands; None stands for one that is gone."""
     state, outcome = (DELETED, None) if standing is None else (standing.state, standing.outcome)
-    return Told(END, job, {"job": job, "state": state, "outcome": outcome})
+    return StreamEvent(END, job, {"job": job, "state": state, "outcome": outcome})
 
 
 class Listener:
@@ -65,14 +65,14 @@ class Listener:
         self.jobs = frozenset(jobs)
         self.closed = False
         self._most = most
-        self._waiting: deque[Told] = deque()
+        self._waiting: deque[StreamEvent] = deque()
         self._news = asyncio.Event()
 
-    def put(self, told: Told) -> None:
+    def put(self, told: StreamEvent) -> None:
         """Let something wait to be told."""
         if len(self._waiting) >= self._most:
             self._waiting.clear()
-            self._waiting.append(Told(RESYNC, "", {}))
+            self._waiting.append(StreamEvent(RESYNC, "", {}))
         else:
             self._waiting.append(told)
         self._news.set()
@@ -82,7 +82,7 @@ class Listener:
         self.closed = True
         self._news.set()
 
-    async def next(self, within: float) -> Told | None:
+    async def next(self, within: float) -> StreamEvent | None:
         """Return what comes next; None where nothing comes in time, or any more."""
         if not self._waiting and not self.closed:
             try:
@@ -166,10 +166,10 @@ class EventHub:
             if now is None or now.state not in LIVE:
                 self._hand_out(end_of(job, now))
             elif now.progress and now.updated != self._told.get(job):
-                self._hand_out(Told(PROGRESS, job, {"job": job, "state": now.state, **now.progress}))
+                self._hand_out(StreamEvent(PROGRESS, job, {"job": job, "state": now.state, **now.progress}))
         self._told = {job: now.updated for job, now in standing.items()}
 
-    def _hand_out(self, told: Told) -> None:
+    def _hand_out(self, told: StreamEvent) -> None:
         for listener in self._listeners:
             if told.job in listener.jobs:
                 listener.put(told)

@@ -12,7 +12,7 @@ from synth.jobs.job_queue import BATCH
 from synth.jobs.shelf import Shelf
 from synth.jobs.views import uploads_kept
 from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted
-from synth.service.api.schemas import BATCH_BODY, BatchCheck, FirstRow, JobAnswer, UploadAnswer
+from synth.service.api.schemas import EXAMPLES, BatchCheck, FirstRow, JobAnswer, UploadAnswer
 from synth.service.api.submission import Wish
 from synth.service.api.uploads import FIELD, kind_of, plain_name
 from synth.service.auth import Reader, Submitter
@@ -24,7 +24,7 @@ HOUR = 3600.0  # s
 BatchBody = Annotated[
     dict[str, Any],
     Body(
-        openapi_examples={"rows": {"value": BATCH_BODY}},
+        openapi_examples={"rows": {"value": EXAMPLES["batch"]}},
         description="`upload` (the id of a file) or `rows`, and what is asked of all: family, mapping, objectives, ...",
     ),
 ]

@@ -24,7 +24,7 @@ from synth.service.api.presenting import job_answer
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, again
-from synth.service.event_hub import END, RESYNC, SNAPSHOT, EventHub, Listener, Told, end_of, told_of
+from synth.service.event_hub import END, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, told_of
 from synth.service.recording import log
 
 router = APIRouter(prefix=API, tags=["events"])
@@ -173,11 +173,14 @@ class _Telling:
 
     def _snapshots(self, standing: dict[str, Job | None]) -> list[bytes]:
         found = [job for job in standing.values() if job is not None]
-        return [_event(Told(SNAPSHOT, job.id, job_answer(self.request, job).model_dump(mode="json"))) for job in found]
+        return [
+            _event(StreamEvent(SNAPSHOT, job.id, job_answer(self.request, job).model_dump(mode="json")))
+            for job in found
+        ]
 
-    def _missed(self, after: int) -> list[Told]:
+    def _missed(self, after: int) -> list[StreamEvent]:
         """Return what has happened since an event that was seen, as far as a stream holds."""
-        found: list[Told] = []
+        found: list[StreamEvent] = []
         for job in self.open:
             happened = self.context.store.happenings(after, job=job, most=self.context.settings.stream_queue)
             found += [told_of(one) for one in happened]
@@ -192,7 +195,7 @@ class _Telling:
                 parts += self._said(end_of(name, stands))
         return parts
 
-    def _said(self, told: Told) -> list[bytes]:
+    def _said(self, told: StreamEvent) -> list[bytes]:
         """Return what is said of something; nothing where it was said before."""
         if told.job not in self.open or told.id in self.known:
             return []
@@ -203,6 +206,6 @@ class _Telling:
         return [_event(told)]
 
 
-def _event(told: Told) -> bytes:
+def _event(told: StreamEvent) -> bytes:
     number = None if told.id is None else str(told.id)
     return format_sse_event(event=told.kind, data_str=json.dumps(told.data, allow_nan=False), id=number)

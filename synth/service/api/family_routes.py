@@ -12,8 +12,7 @@ from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK,
 from synth.jobs.shelf import Shelf
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged
 from synth.service.api.schemas import (
-    DESIGN,
-    INCOMPLETE,
+    EXAMPLES,
     CheckAnswer,
     DeclarationAnswer,
     ExampleList,
@@ -55,7 +54,7 @@ async def list_families(request: Request, principal: Reader, context: Context) -
 )
 async def read_family(
     request: Request,
-    name: Annotated[str, Path(description="Name of a family.", examples=["multi_plate_clutch"])],
+    name: Annotated[str, Path(description="Name of a family.", examples=[EXAMPLES["spec"]["family"]])],
     principal: Reader,
     context: Context,
     options: Annotated[
@@ -105,7 +104,7 @@ async def list_examples(request: Request, principal: Reader, context: Context) -
 
 @router.post("/check", summary="Check a spec")
 async def check(
-    spec: Annotated[dict[str, Any], Body(openapi_examples={"incomplete": {"value": INCOMPLETE}})],
+    spec: Annotated[dict[str, Any], Body(openapi_examples={"incomplete": {"value": EXAMPLES["incomplete"]}})],
     principal: Reader,
     context: Context,
 ) -> CheckAnswer:
@@ -118,7 +117,7 @@ async def check(
 
 @router.post("/evaluate", summary="Evaluate a design", response_model=dict[str, Any])
 async def evaluate(
-    design: Annotated[dict[str, Any], Body(openapi_examples={"design": {"value": DESIGN}})],
+    design: Annotated[dict[str, Any], Body(openapi_examples={"design": {"value": EXAMPLES["design"]}})],
     principal: Reader,
     context: Context,
 ) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from importlib.resources import files
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -9,56 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from synth.jobs.kinds import KINDS
 from synth.service.api.asking import LONGEST, WORD
 
-DUTY = {
-    "load_torque": "600 N*m",
-    "driver_speed": "26.6 rad/s",
-    "driven_inertia": "30 kg*m2",
-    "engagements_per_hour": "50 1/h",
-    "jerk_limit": "18 rad/s3",
-    "wear_life_min": 200000,
-}
-SPEC = {
-    "family": "multi_plate_clutch",
-    "requirements": DUTY,
-    "fix": {"ramp_time": "2 s"},
-    "objectives": ["mass"],
-    "points": 1,
-}
-INCOMPLETE = {"family": "multi_plate_clutch", "requirements": {"load_torque": "6,5"}}
-DESIGN = {
-    "family": "multi_plate_clutch",
-    "options": {"practice": "off", "guide_model": "cz"},
-    "requirements": {
-        "load_torque": "600 N*m",
-        "driver_speed": "26.6 rad/s",
-        "driven_inertia": "30 kg*m2",
-        "engagements_per_hour": "50 1/h",
-        "startup_torque": "1080 N*m",
-        "jerk_limit": "18 rad/s3",
-    },
-    "values": {"z": 10, "dm": "206.4885 mm", "c": 0.25, "F0": "13394.966 N", "t_r": "2 s"},
-    "parts": {"friction_pair": "seed_multiplate_ref", "inner_plate": "core 4", "outer_plate": "core 2"},
-}
-ROWS = [{**DUTY, "load_torque": "400 N*m"}, {**DUTY, "load_torque": "500 N*m"}]
-BATCH_BODY = {
-    "family": "multi_plate_clutch",
-    "rows": ROWS,
-    "fix": SPEC["fix"],
-    "objectives": ["mass"],
-    "points": 1,
-}
-CATALOGUE_BODY = {
-    "name": "my_linings",
-    "table": "my_linings",
-    "csv": "designation,mu [-],source,confidence\nL1,0.3,data sheet,typical\n",
-    "schema": (
-        "column,type,unit,minimum,maximum,required,symbol,description\n"
-        "designation,text,,,,1,,Name\nmu,number,-,0,1,1,mu,Friction\n"
-        "source,text,,,,1,,Source\nconfidence,text,,,,1,,How sure\n"
-    ),
-    "note": "from the supplier",
-}
-STRICT = ConfigDict(extra="forbid", strict=True)
+# Bodies to begin with. They name families, which the programs do not.
+EXAMPLES: dict[str, Any] = json.loads((files("synth.service.api") / "examples.json").read_text(encoding="utf-8"))
 
 Words = Annotated[str, Field(max_length=LONGEST, pattern=WORD)]
 Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=r"^[^\x00-\x1f\x7f]*$")]
@@ -152,7 +106,7 @@ class CheckAnswer(BaseModel):
 class JobRequest(BaseModel):
     """What is asked as a job."""
 
-    model_config = _example({"kind": "synthesis", "request": SPEC, "title": "Lifting drive"})
+    model_config = _example({"kind": "synthesis", "request": EXAMPLES["spec"], "title": "Lifting drive"})
 
     kind: str = Field(json_schema_extra={"enum": list(KINDS)}, description="What is wanted.")
     request: dict[str, Any] = Field(description="A spec, or what the kind takes; `of` names an earlier job.")
@@ -345,7 +299,7 @@ class BatchCheck(BaseModel):
 class CatalogueRequest(BaseModel):
     """A version of a part table."""
 
-    model_config = _example(CATALOGUE_BODY)
+    model_config = _example(EXAMPLES["catalogue"])
 
     name: str = Field(min_length=1, max_length=60, description="By which questions name it: `my_linings@3`.")
     table: Words = Field("", description="The table of a family that it is rows for; by default its name.")

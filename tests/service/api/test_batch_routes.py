@@ -11,11 +11,12 @@ from typing import Any
 import openpyxl
 import pytest
 
-from synth.service.api.schemas import CATALOGUE_BODY
+from synth.service.api.schemas import EXAMPLES
 from tests.service.calling import Service, code_of
 from tests.service.working import BATCH, DUTY, QUICK, Client
 
 pytestmark = pytest.mark.slow
+CATALOGUE_BODY: dict[str, Any] = EXAMPLES["catalogue"]
 ROOT = Path(__file__).parents[3]
 HEADER = [*DUTY, "note"]
 LINES = [[*map(str, {**DUTY, "load_torque": torque}.values()), "=1+1"] for torque in ("400 N*m", "lots", "500 N*m")]

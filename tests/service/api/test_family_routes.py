@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.service.api.schemas import DESIGN, INCOMPLETE
+from synth.service.api.schemas import EXAMPLES
 from tests.service.calling import Answering, Service, code_of
 from tests.service.working import DUTY, FAMILY, QUICK, Client
 
@@ -69,7 +69,7 @@ def test_what_depends_on_the_code_is_asked_once(tmp_path: Path) -> None:
 
 
 def test_a_check_tells_all_that_is_wrong(client: Client) -> None:
-    found = client.post("check", INCOMPLETE).json()
+    found = client.post("check", EXAMPLES["incomplete"]).json()
     assert not found["ready"]
     paths = [problem["path"] for problem in found["problems"]]
     assert ["requirements", "load_torque"] in paths
@@ -88,7 +88,7 @@ def test_a_check_refuses_no_content(client: Client, spec: dict[str, object]) -> 
 
 
 def test_a_design_is_evaluated(client: Client) -> None:
-    found = client.post("evaluate", DESIGN).json()
+    found = client.post("evaluate", EXAMPLES["design"]).json()
     assert found["design"]["values"]["required_torque"] == pytest.approx(1412, rel=0.01)
     refused = client.post("evaluate", {"family": FAMILY, "requirements": DUTY})
     assert (refused.status_code, code_of(refused)) == (422, "bad_input")
