@@ -165,7 +165,9 @@ class Store(JobQueue):
         now = time.time()
         if found is None or (known is not None and 0 <= now - known < pause):
             return
-        account = self.account(job)
+        self._tell_rows(job, self.account(job), now)
+
+    def _tell_rows(self, job: str, account: Account, now: float) -> None:
         state = {"rows": account.rows, "done": account.done, "bad": account.bad, "status": dict(account.status)}
         self.progress(job, {**state, "counted": now})
 
@@ -174,11 +176,19 @@ class Store(JobQueue):
         if sum(self.open_units(job)):
             return False
         account = self.account(job)
+        self._tell_rows(job, account, time.time())  # all of them, once it has ended
         counts = {**account.status, "bad_input": account.bad} if account.bad else dict(account.status)
         found = any(counts.get(status) for status in WITH_DESIGNS)
         outcome = next((status for status in WITH_DESIGNS if counts.get(status)), "infeasible")
         summary = {"rows": account.rows, "status": dict(sorted(counts.items())), "designs": found}
         return self.end(job, Ending(state=DONE, outcome=outcome, summary=summary))
+
+    def resume(self, job: str, tenant: int, code: str) -> bool:
+        """Let a job go on, as :meth:`JobQueue.resume`; a batch of which all rows are answered ends at once."""
+        goes_on = super().resume(job, tenant, code)
+        if goes_on:
+            self.settle(job)
+        return goes_on
 
     def _write_rows(self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, Any]]) -> int:
         count = 0

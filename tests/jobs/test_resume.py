@@ -23,7 +23,7 @@ from synth.jobs.job_queue import (
 )
 from synth.jobs.kinds.contract import Record
 from synth.jobs.models import Job, Row, RowQuestion, Tenant
-from synth.jobs.store import Store
+from synth.jobs.store import Outcome, Store
 from synth.jobs.views import layouts_of, packed_record, row_at, rows_after, standings, uploads_kept
 
 CODE, NEW_CODE = "c" * 64, "d" * 64
@@ -126,6 +126,20 @@ def test_a_batch_that_was_planned_is_not_planned_again(store: Store) -> None:
     found = store.job(job)
     assert found is not None
     assert found.state == RUNNING
+
+
+def test_a_batch_that_was_cancelled_with_its_last_row_ends_when_it_goes_on(store: Store) -> None:
+    job, _ = store.submit(asked(kind="batch", task=PLAN))
+    (claim,) = store.claim(job, "me", 1)
+    assert store.plan(job, claim, "me", {"families": ["f"]}, "basis", rows(2), 1)
+    (claim,) = store.claim(job, "me", 1)
+    answers = {key: Outcome("optimal", 0.1, None, {}) for key in claim.questions}
+    assert store.finish(job, claim, "me", answers, {}, 3)
+    assert store.cancel(job)
+    assert store.resume(job, LOCAL, CODE)
+    found = store.job(job)
+    assert found is not None
+    assert (found.state, found.outcome) == (DONE, "optimal")
 
 
 def test_rows_and_standings_are_looked_at_in_pieces(store: Store) -> None:

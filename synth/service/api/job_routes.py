@@ -156,6 +156,10 @@ async def resume_job(request: Request, found: OwnJob, principal: Submitter, cont
     """
     if found.state in LIVE:
         raise ServiceError(409, f"the job is {found.state}; there is nothing to go on with", "not_ended")
+    if found.code is None:
+        raise ServiceError(
+            409, "only the command line, or the script, that has made this job can go on with it", "not_here"
+        )
     sources = await in_thread(Shelf(context.store).sources, principal.tenant, found.request)
     told = await context.small.ask(CHANGED_TASK, {"content": found.content, "sources": sources})
     if told["changed"]:
