@@ -10,7 +10,7 @@ import asyncio
 import time
 from collections import Counter, deque
 from collections.abc import Collection, Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from synth.jobs.job_queue import LIVE, Happening
@@ -49,6 +49,11 @@ def end_of(job: str, standing: Standing | None) -> StreamEvent:
     """Return how a job has ended, by how it stands; None stands for one that is gone."""
     state, outcome = (DELETED, None) if standing is None else (standing.state, standing.outcome)
     return StreamEvent(END, job, {"job": job, "state": state, "outcome": outcome})
+
+
+def _has_ended(standing: Standing | None) -> bool:
+    """Tell whether a job has ended: one that has gone on since, as far as events tell, has not."""
+    return standing is None or standing.state not in LIVE
 
 
 class Listener:
@@ -160,10 +165,12 @@ class EventHub:
         """Tell what was read."""
         self._note(found)
         for happening in found:
-            self._hand_out(told_of(happening))
+            told = told_of(happening)
+            ended = told.job in jobs and _has_ended(standing.get(told.job))
+            self._hand_out(told if ended or told.kind != END else replace(told, kind=REMARK))
         for job in jobs:
             now = standing.get(job)
-            if now is None or now.state not in LIVE:
+            if now is None or _has_ended(now):
                 self._hand_out(end_of(job, now))
             elif now.progress and now.updated != self._told.get(job):
                 self._hand_out(StreamEvent(PROGRESS, job, {"job": job, "state": now.state, **now.progress}))

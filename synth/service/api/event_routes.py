@@ -6,6 +6,7 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
@@ -24,7 +25,7 @@ from synth.service.api.presenting import job_answer
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, again
-from synth.service.event_hub import END, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, told_of
+from synth.service.event_hub import END, REMARK, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, told_of
 from synth.service.recording import log
 
 router = APIRouter(prefix=API, tags=["events"])
@@ -147,7 +148,7 @@ class _Telling:
         for part in self._snapshots(standing):
             yield part
         if after is not None:
-            for told in await in_thread(self._missed, after):
+            for told in await in_thread(self._missed, after, standing):
                 for part in self._said(told):
                     yield part
         for part in self._ends(standing):
@@ -178,12 +179,14 @@ class _Telling:
             for job in found
         ]
 
-    def _missed(self, after: int) -> list[StreamEvent]:
-        """Return what has happened since an event that was seen, as far as a stream holds."""
+    def _missed(self, after: int, standing: dict[str, Job | None]) -> list[StreamEvent]:
+        """Return what has happened since an event that was seen, as far as a stream holds; no end but the last."""
         found: list[StreamEvent] = []
-        for job in self.open:
-            happened = self.context.store.happenings(after, job=job, most=self.context.settings.stream_queue)
-            found += [told_of(one) for one in happened]
+        for name, job in standing.items():
+            happened = self.context.store.happenings(after, job=name, most=self.context.settings.stream_queue)
+            told = [told_of(one) for one in happened]
+            last = None if job is not None and job.state in LIVE else told[-1:]
+            found += [replace(one, kind=REMARK) if one.kind == END and [one] != last else one for one in told]
         return sorted(found, key=lambda told: told.id or 0)
 
     def _ends(self, standing: dict[str, Job | None]) -> list[bytes]:

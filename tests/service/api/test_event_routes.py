@@ -17,6 +17,7 @@ import pytest
 from synth.jobs.engine_process import Engines
 from synth.jobs.job_queue import Happening
 from synth.jobs.store import Store
+from synth.jobs.views import Standing
 from synth.service.event_hub import EventHub
 from synth.service.settings import ServiceSettings
 from tests.service.calling import Service, bearer, code_of
@@ -184,6 +185,43 @@ def test_events_that_are_seen_late_are_told_once(monkeypatch: pytest.MonkeyPatch
     store.seen += [happening(number) for number in range(9, 2500)]
     assert len(take()) == 5 + 2491
     assert sorted(set(told), key=lambda number: number or 0) == [3, *range(5, 2500)]
+
+
+def test_an_end_from_before_a_job_went_on_is_none() -> None:
+    store: Any = LateStore()
+    hub = EventHub(ServiceSettings(), store)
+    listener = hub.listen(["j"], "me")
+    assert listener is not None
+    cancelled = Happening(1, "j", 0.0, "cancelled", "", {"state": "cancelled"})
+    hub.tell(["j"], [cancelled], {"j": Standing("open", None, 1.0, None)})
+    hub.tell([], [replace(cancelled, id=2)], {})  # it was not looked how the job stands
+    hub.tell(["j"], [replace(cancelled, id=3)], {"j": Standing("cancelled", None, 2.0, None)})
+    hub.tell(["j"], [], {})
+    told = [(one.kind, one.id, one.data["state"]) for one in listener._waiting]
+    assert told == [
+        ("remark", 1, "cancelled"),
+        ("remark", 2, "cancelled"),
+        ("end", 3, "cancelled"),
+        ("end", None, "cancelled"),
+        ("end", None, "deleted"),
+    ]
+
+
+def test_a_stream_of_a_job_that_goes_on_does_not_end_with_its_first_end(client: Client, works: Service) -> None:
+    job = client.submit("synthesis", LONG)
+    client.post(f"jobs/{job}/cancel")
+    client.post(f"jobs/{job}/resume")
+    thread = threading.Timer(1.0, works.store.cancel, [job])
+    thread.start()
+    begun = time.monotonic()
+    events = events_of(client.get(f"jobs/{job}/events", headers={"Last-Event-ID": "0"}).text)
+    thread.join()
+    assert time.monotonic() - begun > 0.8
+    assert [event["kind"] for event in events].count("end") == 1
+    assert events[-1]["state"] == "cancelled"
+    assert [event["state"] for event in events if event["kind"] == "remark"] == ["cancelled"]
+    again = events_of(client.get(f"jobs/{job}/events", headers={"Last-Event-ID": "0"}).text)
+    assert [event["kind"] for event in again].count("end") == 1
 
 
 def test_a_slow_listener_is_told_to_read_anew() -> None:
