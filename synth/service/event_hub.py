@@ -10,7 +10,7 @@ import asyncio
 import time
 from collections import Counter, deque
 from collections.abc import Collection, Hashable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from synth.jobs.job_queue import LIVE, Happening
@@ -43,6 +43,12 @@ def told_of(happening: Happening) -> StreamEvent:
         return StreamEvent(END, happening.job, {"outcome": None, **data}, happening.id)
     kind = happening.kind if happening.kind in SAME else REMARK
     return StreamEvent(kind, happening.job, data, happening.id)
+
+
+def remark_of(end: StreamEvent) -> StreamEvent:
+    """Return the end of a job that has gone on since as what it was: a remark, which tells no state."""
+    told = {"job": end.job, "time": end.data["time"], "text": str(end.data["state"])}
+    return StreamEvent(REMARK, end.job, told, end.id)
 
 
 def end_of(job: str, standing: Standing | None) -> StreamEvent:
@@ -167,7 +173,7 @@ class EventHub:
         for happening in found:
             told = told_of(happening)
             ended = told.job in jobs and _has_ended(standing.get(told.job))
-            self._hand_out(told if ended or told.kind != END else replace(told, kind=REMARK))
+            self._hand_out(told if ended or told.kind != END else remark_of(told))
         for job in jobs:
             now = standing.get(job)
             if now is None or _has_ended(now):

@@ -6,7 +6,6 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
@@ -25,7 +24,7 @@ from synth.service.api.presenting import job_answer
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, again
-from synth.service.event_hub import END, REMARK, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, told_of
+from synth.service.event_hub import END, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, remark_of, told_of
 from synth.service.recording import log
 
 router = APIRouter(prefix=API, tags=["events"])
@@ -186,7 +185,7 @@ class _Telling:
             happened = self.context.store.happenings(after, job=name, most=self.context.settings.stream_queue)
             told = [told_of(one) for one in happened]
             last = None if job is not None and job.state in LIVE else told[-1:]
-            found += [replace(one, kind=REMARK) if one.kind == END and [one] != last else one for one in told]
+            found += [remark_of(one) if one.kind == END and [one] != last else one for one in told]
         return sorted(found, key=lambda told: told.id or 0)
 
     def _ends(self, standing: dict[str, Job | None]) -> list[bytes]:
