@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import time
@@ -22,6 +23,7 @@ from tests.service.working import API, BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, 
 
 pytestmark = pytest.mark.slow
 METHODS = ("get", "post", "patch", "delete", "put")
+PATIENCE = 4.0  # s, for an answer that takes less than 2 where the machine is not shared
 WITHOUT_SCOPE = {"/version", "/session"}  # of whoever asks, or of nobody
 
 
@@ -156,6 +158,25 @@ def test_scopes_are_needed(works: Service, described: dict[str, Any]) -> None:
             connection.execute(sa.delete(Token))
 
 
+EVIL = ("..%2f..%2fetc%2fpasswd", "%2e%2e", "%2Fetc%2Fpasswd", "a%00b", "http:%2f%2fexample.com%2fx", "a" * 3000, "%ff")
+
+
+def test_no_place_of_a_machine_or_a_network_is_taken(client: Client, described: dict[str, Any]) -> None:
+    seen = 0
+    for method, path, _ in operations(described):
+        names = re.findall(r"{(\w+)}", path)
+        for wrong in names:
+            for evil in EVIL:
+                place = path
+                for name in names:
+                    place = place.replace(f"{{{name}}}", evil if name == wrong else "1")
+                asked = {"json": {}} if method == "PATCH" else {}
+                answer = client(method, f"{place}{'?since=1' if place.endswith('changes') else ''}", **asked)
+                assert answer.status_code in (404, 405, 422), (method, place, answer.text)
+                seen += 1
+    assert seen >= 100
+
+
 # ---- every status ---------------------------------------------------------------------------------------------------
 
 
@@ -229,7 +250,7 @@ def test_any_spec_can_be_checked(client: Client, spec: dict[str, Any]) -> None:
     begun = time.monotonic()
     answer = client.post("check", spec)
     assert answer.status_code in (200, 422), answer.text
-    assert time.monotonic() - begun < 2 * 2  # the machine may be busy
+    assert time.monotonic() - begun < PATIENCE
 
 
 @FEW
@@ -238,7 +259,7 @@ def test_any_job_can_be_asked(client: Client, kind: str, spec: dict[str, Any], t
     begun = time.monotonic()
     answer = client.post("jobs", {"kind": kind, "request": spec, "title": title})
     assert answer.status_code in (200, 202, 422), answer.text
-    assert time.monotonic() - begun < 2 * 2
+    assert time.monotonic() - begun < PATIENCE
     if answer.status_code == 202:
         assert client("DELETE", f"jobs/{answer.json()['id']}").status_code == 204
 
