@@ -92,7 +92,7 @@ def test_jobs_are_listed_shown_cancelled_and_resumed(done: tuple[Path, Completed
     folder, _ = done
     job = json.loads((folder / "out" / "batch.json").read_text())["job"]
     listed = clutchsynth("jobs", "list", folder=folder).stdout
-    assert re.search(rf"{job} +done +6 +6 .*rows.csv", listed)
+    assert re.search(rf"{job} +batch +done +6 +6 .*rows.csv", listed)
     assert clutchsynth("jobs", "list", "out", folder=folder).stdout == listed
     url = f"sqlite:///{folder}/out/jobs.sqlite"
     assert clutchsynth("jobs", "list", "--database", url, folder=folder).stdout == listed
