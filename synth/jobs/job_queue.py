@@ -10,7 +10,7 @@ from __future__ import annotations
 import gzip
 import secrets
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -551,14 +551,13 @@ class JobQueue(Database):
     def _until(self, lease: float | None) -> sa.ColumnElement[float]:
         return moment() + (self.settings.lease if lease is None else lease)
 
-    def renew(self, owner: str, lease: float | None = None) -> None:
-        """Give a sign of life: everything that an owner works on stays its own."""
+    def renew(self, owner: str, lease: float | None = None, units: Collection[int] | None = None) -> None:
+        """Give a sign of life: everything that an owner works on stays its own, or only the units that are named."""
+        held = [WorkUnit.owner == owner, WorkUnit.state == RUNNING]
+        if units is not None:
+            held.append(WorkUnit.id.in_(units))
         with self.engine.begin() as connection:
-            connection.execute(
-                sa.update(WorkUnit)
-                .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
-                .values(lease=self._until(lease))
-            )
+            connection.execute(sa.update(WorkUnit).where(*held).values(lease=self._until(lease)))
 
     def release(self, owner: str) -> None:
         """Give back everything that an owner works on; that is no failed attempt."""

@@ -356,7 +356,8 @@ class Worker:
                     weighed = now
                     self._weigh()
                 if now - signed >= worker.sign:
-                    self.store.renew(self.owner, worker.lease)
+                    # Only what is at work: a unit that could not be written is to be free again when its lease ends.
+                    self.store.renew(self.owner, worker.lease, [t.claim.unit for t in list(self.tasks.values())])
                     self._sign()
                     signed = now
                 if now - tidied >= worker.tidy and self.code:

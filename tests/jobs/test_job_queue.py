@@ -280,3 +280,16 @@ def test_every_job_is_taken_by_one_worker_only(store: Store) -> None:
     for thread in threads:
         thread.join()
     assert len(taken) == len(set(taken)) == 12
+
+
+def test_only_units_that_are_named_stay_with_their_owner(store: Store) -> None:
+    for k in range(2):
+        store.submit(asked(str(k)))
+    kept, lost = (store.claim_next("me", CODE, lease=-1.0) for _ in range(2))
+    assert kept is not None
+    assert lost is not None
+    store.renew("me", 60.0, [kept[1].unit])
+    taken = store.claim_next("you", CODE)
+    assert taken is not None
+    assert taken[0].id == lost[0].id
+    assert store.claim_next("you", CODE) is None
