@@ -17,7 +17,7 @@ from synth.search.polishing import polish_extremes
 from synth.search.proven_gap import LevelBound
 from synth.search.pruning import NonImprovement, PruningRule
 from synth.search.stages.best_by_turns import prove_end
-from synth.search.stages.first_designs import search_neighbourhoods
+from synth.search.stages.first_designs import few_known, search_neighbourhoods
 from synth.search.stages.spreading import different
 from synth.search.stages.trees import leave_open
 from synth.search.turns import TurnBudget
@@ -87,9 +87,10 @@ def fill_levels(state: FrontState) -> bool:
         phi, before = np.array([c.phi[: state.task.m] for c in known]), state.form.archive.phi
         if len(known) >= state.task.settings.points:
             return True
-        _look_at(state, 0.5 * (phi[1:, CAPPED] + phi[:-1, CAPPED]))
-        if not np.array_equal(before, state.form.archive.phi):
-            continue
+        if not few_known(state):
+            _look_at(state, 0.5 * (phi[1:, CAPPED] + phi[:-1, CAPPED]))
+            if not np.array_equal(before, state.form.archive.phi):
+                continue
         # Nothing within what is as good as a design in the first objective is better than its neighbour in the second.
         gaps = np.stack([phi[1:, CAPPED] - tolerance[CAPPED], phi[:-1, SOUGHT]], axis=1)
         left = np.array([not _covered(state, *gap) for gap in gaps], dtype=bool)
