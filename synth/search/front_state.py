@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from synth.bounds.boxes import Boxes
+from synth.bounds.branching import BranchingStatistics
 from synth.compiled.execution import Execution
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
@@ -244,6 +245,7 @@ class FrontState:
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.given = GivenFront.nothing(task.m)
         self.by_levels = False  # whether a front at once has turned out to cost too much
+        self.learned_at_levels: BranchingStatistics | None = None
         self.looked_harder = False  # whether a few combinations were searched to the bottom
         self._shared: SharedBounds | None = None
         self.sampled = False  # whether parts were drawn for what several levels leave open
@@ -313,7 +315,7 @@ class FrontState:
         if self._shared is None:
             self._shared = SharedBounds([self.task], ())
         proof = LevelProof(self.task, self._shared, self.clock, cutoffs)
-        proof.begin_with(self.form.archive)
+        proof.begin_with(self.form.archive, self.learned_at_levels)
         return proof
 
     def hopeless(self, looked: int, waiting: int) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.bounds.boxes import Boxes
+from synth.bounds.branching import BranchingStatistics
 from synth.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
@@ -102,8 +103,8 @@ class LevelProof:
         self.known_before: set[bytes] = set()
         self.trees: list[LevelTree] = []
 
-    def begin_with(self, known: Archive) -> None:
-        """Know designs of the question at every level that they keep."""
+    def begin_with(self, known: Archive, learned: BranchingStatistics | None = None) -> None:
+        """Know designs of the question at every level that they keep, and what other levels have taught."""
         search, levels = self.search, np.arange(len(self.cutoffs))
         rows = np.tile(np.arange(len(known)), len(levels))
         every = search.instance.combinations.joined(np.repeat(levels, len(known)), known.combination[rows])
@@ -113,6 +114,17 @@ class LevelProof:
             some = spread_subset(known.phi[:, : SOUGHT + 1], most).tolist()
             search.heuristics.starts = {int(known.combination[k]): known.variables[k] for k in some}
         self.known_before = {x.tobytes() for x in known.phi}
+        if learned is not None:
+            search.form.bounding.branching.adopt(learned)
+
+    def learned(self) -> BranchingStatistics:
+        """Return what solved problems have taught about where to split."""
+        return self.search.form.bounding.branching.statistics()
+
+    def learn(self) -> None:
+        """Try the designs known at all levels: what is solved for them tells where boxes are worth splitting."""
+        search = self.search
+        search.heuristics.warm_start(search.rule(self.unproven))
 
     def look(self) -> None:
         """Look for good designs of the levels of which it is not proven what is best."""

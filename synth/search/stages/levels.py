@@ -129,7 +129,7 @@ def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: Prun
         levels, budget = state.levels_within(cutoffs.told_apart()), state.turn_budget()
         state.begin_tree(None)
         try:
-            levels.prove(budget, state.task.limits.by_levels.first)
+            (levels.prove_soon if few_known(state) else levels.prove)(budget, state.task.limits.by_levels.first)
         finally:
             state.budget.take(budget)
             state.proof.levels += levels.levels()
@@ -153,6 +153,8 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
         levels = state.levels_within(cutoffs.told_apart())
         state.begin_tree(None)
         try:
+            if state.learned_at_levels is None:
+                levels.learn()
             levels.prove_soon(
                 TurnBudget(limits.by_levels.before_looking, replace(limits.further, seconds=0.0)),
                 limits.by_levels.first,
@@ -166,6 +168,7 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
 def _take(state: FrontState, levels: LevelProof) -> None:
     """Take the designs that were found at levels, and count the work."""
     found, own, form = levels.found(), levels.search.form.counters, state.form
+    state.learned_at_levels = levels.learned()
     if found:
         form.archive.add(*rows_of(found))
     state.counters.scalar_problems += len(levels.cutoffs)
