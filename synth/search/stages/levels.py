@@ -159,7 +159,8 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
                 TurnBudget(limits.by_levels.before_looking, replace(limits.further, seconds=0.0)),
                 limits.by_levels.first,
             )
-            levels.look()
+            if not few_known(state):
+                levels.look()
         finally:
             state.proof.levels += [level for level in levels.levels() if not len(level.corners)]
             _take(state, levels)
