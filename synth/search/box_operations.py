@@ -111,12 +111,15 @@ class BoxOperations:
 
     # -- tightening --------------------------------------------------------------------------------
 
-    def contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
+    def contract(
+        self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int | None = None, every_goal: bool = False
+    ) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
 
         ``cutoffs`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
-        that only settle ties.
+        that only settle ties. ``passes``: sweeps over the formulas, if not as many as usual.
         """
+        passes = self.tuning.tree.sweeps if passes is None else passes
         if boxes.low.shape[1] < self.width:
             boxes = self._with_auxiliary(boxes)
         width = boxes.bounds.shape[1]
@@ -134,12 +137,12 @@ class BoxOperations:
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
 
-    def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int, passes: int = 2) -> Subtrees | None:
+    def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Subtrees | None:
         """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
 
         The boxes carry their auxiliary variables and the bounds of the first objectives alone.
         """
-        found = self.bounding.compiled.grow(boxes, cutoffs, passes, levels)
+        found = self.bounding.compiled.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
         if found is None:
             return None
         self.counters.contracted += found.looked

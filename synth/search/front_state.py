@@ -245,7 +245,7 @@ class FrontState:
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.given = GivenFront.nothing(task.m)
         self.by_levels = False  # whether a front at once has turned out to cost too much
-        self.learned_at_levels: BranchingStatistics | None = None
+        self.learned_at_levels: BranchingStatistics | None = None  # where boxes of levels are worth splitting
         self.looked_harder = False  # whether a few combinations were searched to the bottom
         self._shared: SharedBounds | None = None
         self.sampled = False  # whether parts were drawn for what several levels leave open

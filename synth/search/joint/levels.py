@@ -121,8 +121,8 @@ class LevelProof:
         """Return what solved problems have taught about where to split."""
         return self.search.form.bounding.branching.statistics()
 
-    def learn(self) -> None:
-        """Try the designs known at all levels: what is solved for them tells where boxes are worth splitting."""
+    def try_known(self) -> None:
+        """Try the parts of the designs known at all levels: what is solved tells where boxes are worth splitting."""
         search = self.search
         search.heuristics.warm_start(search.rule(self.unproven))
 
@@ -166,10 +166,13 @@ class LevelProof:
         )
         by_turns(ways, budget, first, between)
 
-    def levels(self) -> list[Level]:
-        """Return what is proven of each level; what is open is told by the lower bounds of its boxes."""
+    def levels(self, proven_alone: bool = False) -> list[Level]:
+        """Return what is proven of each level; what is open is told by the lower bounds of its boxes.
+
+        ``proven_alone``: only of levels that are proven.
+        """
         best = np.minimum(self.search.known.best(), self.cutoffs.to_beat)
-        told = self.search.told_apart()
+        told = self.search.told_apart() & ~(self.unproven & proven_alone)
         trees = [t.tree for t in self.trees]
         open_boxes = [(t, self.clock.open_of(t.left, t.under_way)) for t in trees]
         result = []

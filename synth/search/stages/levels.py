@@ -79,7 +79,11 @@ def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
 
 
 def fill_levels(state: FrontState) -> bool:
-    """Look for designs between those known, until there are as many as asked for; tell whether all was looked into."""
+    """Look for designs between those known, until there are as many as asked for; tell whether all was looked into.
+
+    Where few are known although they were looked for, hardly anything is feasible between them. Then boxes find what
+    there is while they prove it, and looking again would take longer than they do.
+    """
     ends_proven, tolerance = _prove_ends(state), state.rule.tolerance
     rounds = state.task.limits.by_levels.rounds + state.task.settings.points
     for _ in range(rounds if ends_proven else 0):
@@ -127,9 +131,11 @@ def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: Prun
     for some in _in_numbers(state, len(first)):
         cutoffs = Cutoffs(first=first[some], to_beat=to_beat[some], tolerance=float(state.rule.tolerance[SOUGHT]))
         levels, budget = state.levels_within(cutoffs.told_apart()), state.turn_budget()
+        search = levels.prove_soon if few_known(state) else levels.prove
         state.begin_tree(None)
         try:
-            (levels.prove_soon if few_known(state) else levels.prove)(budget, state.task.limits.by_levels.first)
+            _teach(state, levels)
+            search(budget, state.task.limits.by_levels.first)
         finally:
             state.budget.take(budget)
             state.proof.levels += levels.levels()
@@ -144,7 +150,8 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
     """Look for designs at levels.
 
     Where few boxes tell what is best, designs need not be looked for: where hardly anything is feasible, as between
-    the last few makeable designs of a front, solving combinations takes a hundred times as long as the proof.
+    the last few makeable designs of a front, solving combinations takes a hundred times as long as the proof. And where
+    few designs are known they are left to the proof in any case (:func:`fill_levels`).
     """
     limits = state.task.limits
     for some in _in_numbers(state, len(first)):
@@ -153,8 +160,7 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
         levels = state.levels_within(cutoffs.told_apart())
         state.begin_tree(None)
         try:
-            if state.learned_at_levels is None:
-                levels.learn()
+            _teach(state, levels)
             levels.prove_soon(
                 TurnBudget(limits.by_levels.before_looking, replace(limits.further, seconds=0.0)),
                 limits.by_levels.first,
@@ -162,8 +168,14 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
             if not few_known(state):
                 levels.look()
         finally:
-            state.proof.levels += [level for level in levels.levels() if not len(level.corners)]
+            state.proof.levels += levels.levels(proven_alone=True)
             _take(state, levels)
+
+
+def _teach(state: FrontState, levels: LevelProof) -> None:
+    """Try the designs known at levels where no others have taught yet where boxes of levels are worth splitting."""
+    if state.learned_at_levels is None:
+        levels.try_known()
 
 
 def _take(state: FrontState, levels: LevelProof) -> None:
