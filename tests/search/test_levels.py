@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.search.front_state import FrontState
-from synth.search.joint.levels import Cutoffs
+from synth.search.joint.levels import Cutoffs, LevelProof
 from synth.search.proven_gap import Level, LevelBound
 from synth.search.stages import levels as stage
 from synth.search.stages.proving import proven_at_gap
@@ -163,3 +163,75 @@ def test_one_design_that_is_best_in_both_objectives_needs_no_levels(
     stage.seek_levels(state)
     assert proven_at_gap(state) == (apart == 0)
     assert bool(looked) == (apart > 0)
+
+
+def two_designs(state: FrontState) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Put two designs that do not beat each other into the archive of a state, and return their rows."""
+    state.set_pool()
+    form = state.form
+    points = form.makeable.nearest(np.tile(form.upper, (form.instance.combinations.count, 1)))
+    rows, phi = form.points.feasible_rows(points, np.arange(len(points)))
+    two = np.array([phi[0], phi[0]])
+    two[1, :2] += [1.0, -1.0]
+    form.archive.add(rows[:2], points[rows[:2]], two)
+    return rows[:2], points[rows[:2]], two
+
+
+def asked_strut() -> FrontState:
+    """Return the state of a search for struts that has not begun."""
+    return FrontState(pose(Strut(), NEEDED, catalogs={"rods": RODS}, points=4).search().state.task)
+
+
+def test_what_levels_have_taught_is_known_to_later_ones() -> None:
+    state = asked_strut()
+    _, _, phi = two_designs(state)
+    cutoffs = Cutoffs(first=phi[:, 0], to_beat=np.full(2, np.inf), tolerance=1e-3)
+    first = state.levels_within(cutoffs)
+    branching = first.search.form.bounding.branching
+    assert branching.learned == 0
+    branching.learn(np.random.default_rng(1).random((30, branching.weights.shape[1])), np.ones(30))
+    stage._take(state, first)
+    second = state.levels_within(cutoffs)
+    assert second.search.form.bounding.branching.learned == 30
+    np.testing.assert_array_equal(second.search.form.bounding.branching.weights, branching.weights)
+
+
+def test_first_levels_are_taught_by_the_designs_known_and_later_ones_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = asked_strut()
+    _, _, phi = two_designs(state)
+    monkeypatch.setattr(stage, "few_known", lambda _: True)
+    tried: list[int] = []
+    kept = LevelProof.try_known
+    monkeypatch.setattr(LevelProof, "try_known", lambda self: tried.append(len(self.cutoffs)) or kept(self))
+    for _ in range(2):
+        stage._look_at(state, phi[:, 0])
+    assert tried == [2]
+    assert state.learned_at_levels is not None
+
+
+@pytest.mark.parametrize("few", [True, False])
+def test_where_few_designs_are_known_gaps_are_proven_and_not_looked_at(
+    few: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = asked_strut()
+    two_designs(state)
+    looked: list[int] = []
+    proven: list[int] = []
+    monkeypatch.setattr(stage, "few_known", lambda _: few)
+    monkeypatch.setattr(stage, "_prove_ends", lambda _: True)
+    monkeypatch.setattr(stage, "_look_at", lambda _, first: looked.append(len(first)))
+    monkeypatch.setattr(stage, "_prove", lambda _, first, *others: not proven.append(len(first)))
+    assert stage.fill_levels(state)
+    assert looked == ([] if few else [1])
+    assert proven == [1]
+    assert proven_at_gap(state)
+
+
+def test_what_is_open_is_told_only_where_it_is_asked_for() -> None:
+    state = asked_strut()
+    _, _, phi = two_designs(state)
+    levels = state.levels_within(Cutoffs(first=phi[:, 0], to_beat=np.full(2, np.inf), tolerance=1e-3))
+    levels.prove_soon(TurnBudget(0.0, SearchEffort(seconds=0.0)), 0.0)
+    levels.unproven[:] = [False, True]
+    assert [len(level.corners) > 0 for level in levels.levels()] == [False, *(True for _ in levels.trees)]
+    assert [len(level.corners) for level in levels.levels(proven_alone=True)] == [0]
