@@ -96,7 +96,7 @@ class ServiceClient:
         return RemoteJob(self._transport, id)
 
     def jobs(self, **filters: Any) -> list[dict[str, Any]]:
-        """Return the latest jobs as the service lists them; filters are ``state``, ``kind``, ``family``, ``q``, ``limit``."""
+        """Return the latest jobs as listed; filters are ``state``, ``kind``, ``family``, ``q``, ``limit``."""
         found: list[dict[str, Any]] = self._transport.ask("GET", "/jobs", params=filters).json()["jobs"]
         return found
 
