@@ -227,7 +227,6 @@ class JobQueue(Database):
         known = self._known(new)
         if known is not None:
             return known, False
-        self._refuse_beyond(new.tenant)
         name = new_id()
         columns = {
             "id": name,
@@ -254,13 +253,14 @@ class JobQueue(Database):
         }
         try:
             with self.engine.begin() as connection:
+                self._refuse_beyond(connection, new.tenant)
                 connection.execute(sa.insert(Job).values(**columns))
                 unit = {"job": name, "task": new.task, "state": OPEN, "token": 0, "attempts": 0}
                 connection.execute(sa.insert(WorkUnit).values(**unit))
                 for record in new.kept:
                     self._keep_on(connection, name, record)
                 tell_on(connection, name, "created", new.title)
-        except IntegrityError:  # somebody has said the same at the same time
+        except (IntegrityError, QueueFullError):  # somebody may have said the same at the same time
             known = self._known(new)
             if known is None:
                 raise
@@ -293,14 +293,19 @@ class JobQueue(Database):
                 return session.scalar(sa.select(Job.id).where(*wanted))
         return None
 
-    def _refuse_beyond(self, tenant: int) -> None:
-        with self.engine.connect() as connection:
-            limits = connection.scalar(sa.select(Tenant.limits).where(Tenant.id == tenant)) or {}
-            most = limits.get(OPEN_LIMIT)
-            if most is not None:
-                asked = sa.select(sa.func.count()).select_from(Job).where(Job.tenant == tenant, Job.state.in_(LIVE))
-                if int(connection.scalar(asked) or 0) >= most:
-                    raise QueueFullError(int(most))
+    @staticmethod
+    def _refuse_beyond(connection: sa.Connection, tenant: int) -> None:
+        """Refuse one job more than a tenant may have open.
+
+        It comes first in the transaction that opens the job: an update that changes nothing holds the tenant until
+        the end of it, so that of several requests at once each counts what those before it have opened.
+        """
+        held = sa.update(Tenant).where(Tenant.id == tenant).values(created=Tenant.created).returning(Tenant.limits)
+        most = (connection.scalar(held) or {}).get(OPEN_LIMIT)
+        if most is not None:
+            asked = sa.select(sa.func.count()).select_from(Job).where(Job.tenant == tenant, Job.state.in_(LIVE))
+            if int(connection.scalar(asked) or 0) >= most:
+                raise QueueFullError(int(most))
 
     def change(self, job: str, **columns: Any) -> None:
         """Change what people may change of a job: its title, its folder, whether it is kept for good."""
@@ -336,9 +341,9 @@ class JobQueue(Database):
         QueueFullError
             The tenant has as many open jobs as it may have.
         """
-        self._refuse_beyond(tenant)
         again = {"state": OPEN, "code": code, "ended": None, "outcome": None, "error": None, "updated": moment()}
         with self.engine.begin() as connection:
+            self._refuse_beyond(connection, tenant)
             ended = (Job.id == job, Job.tenant == tenant, Job.state.in_((CANCELLED, FAILED, STOPPED)))
             if connection.execute(sa.update(Job).where(*ended).values(**again)).rowcount != 1:
                 return False

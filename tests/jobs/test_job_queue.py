@@ -152,6 +152,38 @@ def test_tenants_have_limits(store: Store) -> None:
     assert store.job(jobs[0], small) is not None
 
 
+def test_many_who_ask_at_once_have_no_more_open_jobs_than_they_may(store: Store) -> None:
+    small = tenant(store, "small", open_jobs=3)
+    ended, _ = store.submit(asked("ended", tenant=small))
+    assert store.cancel(ended)
+    begin, found = threading.Barrier(10), []
+
+    def ask(number: int) -> None:
+        begin.wait()
+        try:
+            if number % 5 == 0:
+                found.append(store.resume(ended, small, CODE))
+            else:
+                found.append(store.submit(asked(str(number), tenant=small))[1])
+        except QueueFullError:
+            found.append(False)
+
+    threads = [threading.Thread(target=ask, args=(k,)) for k in range(10)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 10
+    assert sum(found) == 3
+    assert len(store.page(small, states=(OPEN,))) == 3
+
+
+def test_the_same_said_again_is_the_same_job_where_no_other_could_be_had(store: Store) -> None:
+    small = tenant(store, "small", open_jobs=1)
+    one, _ = store.submit(asked(tenant=small, idempotency="k", body="x"))
+    assert store.submit(asked(tenant=small, idempotency="k", body="x")) == (one, False)
+
+
 def test_programs_with_other_code_take_nothing_and_adopt_what_was_left(store: Store) -> None:
     old, _ = store.submit(asked("old", code="a" * 64))
     batch, _ = store.submit(asked("batch", code="a" * 64, kind="batch"))

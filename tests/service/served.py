@@ -1,0 +1,120 @@
+"""The server as a program of its own, with what every process of it does on the network written down."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from tests.terminal.entry import COMMAND
+
+# Python runs this at the start of every process that has its folder in PYTHONPATH: workers and engines, too.
+WATCH = """
+import os, sys
+
+LOCAL = ("127.0.0.1", "localhost", "::1", "0.0.0.0", "::", None, "", b"127.0.0.1", b"localhost")
+
+def told(event, args):
+    if event in ("socket.connect", "socket.sendto"):
+        host = args[1][0] if isinstance(args[1], tuple) else None
+    elif event in ("socket.getaddrinfo", "socket.gethostbyname", "urllib.Request"):
+        host = args[0]
+    else:
+        return
+    if host not in LOCAL:
+        with open(os.environ["WATCHED"], "a") as file:
+            file.write(f"{event} {host}\\n")
+        raise OSError("this is not done here")
+
+sys.addaudithook(told)
+with open(os.environ["WATCHED"] + ".processes", "a") as file:
+    file.write(f"{os.getpid()}\\n")
+"""
+
+
+@dataclass(frozen=True)
+class Served:
+    """A server that runs, and where it writes what."""
+
+    address: str
+    pid: int
+    folder: Path
+
+    def ask(self, method: str, path: str, **asked: Any) -> httpx.Response:
+        """Ask something of the interface, or of what stands beside it."""
+        where = path if path.startswith("/") else f"/api/v1/{path}"
+        return httpx.request(method, f"{self.address}{where}", timeout=60.0, **asked)
+
+    def ended(self, job: str, within: float = 90.0, **asked: Any) -> dict[str, Any]:
+        """Wait until a job has ended."""
+        end = time.monotonic() + within
+        while (told := self.ask("GET", f"jobs/{job}", **asked).json())["state"] in ("open", "running"):
+            assert time.monotonic() < end, told
+            time.sleep(0.1)
+        return dict(told)
+
+    def network(self) -> str:
+        """Return what was asked of the network beyond this machine: all of it was refused."""
+        file = self.folder / "watched"
+        return file.read_text() if file.exists() else ""
+
+    def processes(self) -> int:
+        """Return how many processes were watched."""
+        return len(set((self.folder / "watched.processes").read_text().split()))
+
+    def said(self) -> str:
+        """Return all that it has said."""
+        return "".join((self.folder / name).read_text() for name in ("out.txt", "err.txt"))
+
+
+@contextmanager
+def served(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> Iterator[Served]:
+    """Run the server with a worker; it ends with the block, whatever happens there."""
+    (folder / "watch").mkdir()
+    (folder / "watch" / "sitecustomize.py").write_text(WATCH)
+    own = {"PYTHONPATH": str(folder / "watch"), "WATCHED": str(folder / "watched"), **(environment or {})}
+    with (folder / "out.txt").open("w") as out, (folder / "err.txt").open("w") as err:
+        process = subprocess.Popen(
+            [*COMMAND, "serve", "--data", str(folder / "data"), "--port", "0", *words],
+            cwd=folder,
+            env={**os.environ, **own},
+            stdout=out,
+            stderr=err,
+        )
+    try:
+        line = until(lambda: (folder / "out.txt").read_text() or process.poll() is not None)
+        assert line is not True, (folder / "err.txt").read_text()
+        yield Served(str(line).split()[-1].rstrip("/"), process.pid, folder)
+        process.terminate()
+        process.wait(20.0)
+    finally:
+        process.kill()
+        process.wait()
+
+
+def until(found: Callable[[], Any], seconds: float = 30.0) -> Any:
+    """Return what is found, as soon as it is true."""
+    end = time.monotonic() + seconds
+    while not (value := found()):
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.05)
+    return value
+
+
+def most_memory(pid: int) -> int:
+    """Return the most memory that a process has used at a time, in bytes."""
+    (line,) = [line for line in Path(f"/proc/{pid}/status").read_text().splitlines() if line.startswith("VmHWM")]
+    return int(line.split()[1]) * 1024
+
+
+def lines_of(text: str) -> list[dict[str, Any]]:
+    """Return the lines of a log."""
+    return [json.loads(line) for line in text.splitlines() if line.startswith("{")]
