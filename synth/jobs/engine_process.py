@@ -185,16 +185,27 @@ class Engines:
     count : int
         Processes.
     settings : EngineSettings, optional
+    lazy : bool
+        Whether each is started when it is needed first, which then takes as long as it takes to warm up.
     """
 
-    def __init__(self, count: int, settings: EngineSettings = JOBS.engine) -> None:
+    def __init__(self, count: int, settings: EngineSettings = JOBS.engine, *, lazy: bool = False) -> None:
         self._settings = settings
         self._idle: queue.SimpleQueue[EngineProcess] = queue.SimpleQueue()
         self._all: set[EngineProcess] = set()
         self._guard = threading.Lock()
         self._closed = False
-        for _ in range(count):
+        self._later = count if lazy else 0
+        for _ in range(0 if lazy else count):
             self._add()
+
+    def _add_late(self) -> None:
+        """Start one of those that were not needed so far, where no other is free."""
+        with self._guard:
+            if not self._later or not self._idle.empty():
+                return
+            self._later -= 1
+        self._add()
 
     def _add(self) -> None:
         with self._guard:
@@ -213,6 +224,7 @@ class Engines:
             As there; a timeout, too, where no process is free in time.
         """
         end = time.monotonic() + deadline
+        self._add_late()
         try:
             engine = self._idle.get(timeout=deadline)
         except queue.Empty:

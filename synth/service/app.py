@@ -47,7 +47,9 @@ ROUTERS: tuple[APIRouter, ...] = (
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)
 
 
-def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) -> FastAPI:
+def create_app(
+    settings: ServiceSettings, store: Store, engines: EngineCalls, file_engines: EngineCalls | None = None
+) -> FastAPI:
     """Return the application.
 
     Parameters
@@ -57,12 +59,15 @@ def create_app(settings: ServiceSettings, store: Store, engines: EngineCalls) ->
         The job database; whoever has opened it closes it.
     engines : EngineCalls
         For small questions, such as :class:`synth.jobs.engine_process.Engines`.
+    file_engines : EngineCalls, optional
+        For files that are read or made; by default the same.
     """
     context = ServiceContext(
         settings=settings,
         store=store,
         accounts=Accounts(store),
-        small=SmallWork(engines, settings),
+        small=SmallWork(engines, settings.engines, settings.small_deadline),
+        files=SmallWork(file_engines or engines, settings.file_engines, settings.file_deadline),
         metrics=ServiceMetrics(settings, store),
         failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
         hub=EventHub(settings, store),

@@ -33,16 +33,19 @@ class EngineCalls(Protocol):
 
 
 class SmallWork:
-    """Small questions, answered at once by engine processes. They have threads of their own to wait in.
+    """Questions that are answered at once by engine processes. They have threads of their own to wait in.
 
     Parameters
     ----------
     engines : EngineCalls
-    settings : ServiceSettings
+    processes : int
+        That answer.
+    deadline : float
+        In s, of a question of which nothing else is said.
     """
 
-    def __init__(self, engines: EngineCalls, settings: ServiceSettings) -> None:
-        self._engines, self._settings = engines, settings
+    def __init__(self, engines: EngineCalls, processes: int, deadline: float) -> None:
+        self._engines, self._most, self._deadline = engines, (1 + WAITING) * processes, deadline
         self._threads: CapacityLimiter | None = None  # belongs to a running loop
         self._asked = 0
 
@@ -54,7 +57,7 @@ class SmallWork:
         task : str
         payload : object
         deadline : float, optional
-            In s; by default that of small questions.
+            In s.
 
         Raises
         ------
@@ -63,14 +66,13 @@ class SmallWork:
         EngineTimeoutError, EngineCrashedError
             It takes too long, too many wait for an answer, or the process has ended.
         """
-        most = (1 + WAITING) * self._settings.engines
         if self._threads is None:
-            self._threads = CapacityLimiter(most)
-        if self._asked >= most:
+            self._threads = CapacityLimiter(self._most)
+        if self._asked >= self._most:
             raise EngineTimeoutError(f"{task}: too many wait")
         self._asked += 1
         try:
-            within = self._settings.small_deadline if deadline is None else deadline
+            within = self._deadline if deadline is None else deadline
             return await run_sync(self._engines.call, task, payload, within, limiter=self._threads)
         finally:
             self._asked -= 1
@@ -85,7 +87,8 @@ class ServiceContext:
     settings : ServiceSettings
     store : Store
     accounts : Accounts
-    small : SmallWork
+    small, files : SmallWork
+        What somebody waits for who types or looks, and files that are read or made: a long report delays no check.
     metrics : ServiceMetrics
     failed_tokens : FailedTokens
     hub : EventHub
@@ -100,6 +103,7 @@ class ServiceContext:
     store: Store
     accounts: Accounts
     small: SmallWork
+    files: SmallWork
     metrics: ServiceMetrics
     failed_tokens: FailedTokens
     hub: EventHub

@@ -106,7 +106,9 @@ def serve(settings: ServiceSettings, say: Callable[[str], None]) -> None:
         listener = opened.enter_context(listening(settings.host, settings.port))
         engines = Engines(settings.engines)
         opened.callback(engines.close)
-        app = create_app(settings, store, engines)
+        file_engines = Engines(settings.file_engines, lazy=True)  # many servers make few files
+        opened.callback(file_engines.close)
+        app = create_app(settings, store, engines, file_engines)
         context: ServiceContext = app.state.context
         supervisor = Supervisor(
             worker_command(settings),

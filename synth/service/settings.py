@@ -61,6 +61,8 @@ class ServiceSettings:
         Jobs that this machine works at, by a supervisor that the server starts; 0 for none.
     engines : int
         Processes that answer small questions at once, such as checks of what is being typed.
+    file_engines : int
+        Processes that read and make files, and check tables; each is started when it is needed first.
     small_deadline : float
         That a small question may take; searches are jobs, so that more means that something is wrong.
     file_deadline : float
@@ -177,6 +179,7 @@ class ServiceSettings:
     proxies: tuple[str, ...] = ()
     workers: int = field(default_factory=cores, metadata={"least": 0, "most": 256})
     engines: int = _within(1, 1, 64)
+    file_engines: int = _within(1, 1, 64)
     small_deadline: float = _within(5.0, 0.1, 60.0)
     file_deadline: float = _within(30.0, 0.1, 600.0)
     remembered: int = _within(200, 1, 100_000)

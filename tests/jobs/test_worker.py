@@ -21,7 +21,7 @@ import yaml
 from synth.jobs.batch import batch
 from synth.jobs.database import file_url
 from synth.jobs.engine_process import EngineCrashedError, EngineProcess, Engines, EngineTimeoutError
-from synth.jobs.engine_tasks import BATCH_FILE_TASK, READ_TASK
+from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, READ_TASK
 from synth.jobs.job_queue import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
 from synth.jobs.kinds.contract import NOTHING
@@ -256,6 +256,17 @@ def test_a_warm_process_answers_and_a_late_one_is_replaced() -> None:
         assert engines.call(READ_TASK, request, 60.0)["bulk"] is False
     finally:
         engines.close()
+
+
+def test_processes_that_nobody_needs_are_not_started() -> None:
+    lazy = Engines(2, lazy=True)
+    try:
+        assert not lazy._all
+        for _ in range(2):
+            lazy.call(EXAMPLES_TASK, {}, 60.0)
+        assert len(lazy._all) == 1  # the first was free again
+    finally:
+        lazy.close()
 
 
 def test_a_process_goes_with_the_one_that_has_started_it(tmp_path: Path) -> None:

@@ -46,13 +46,20 @@ class Answering:
 class Service:
     """An application with an empty database, and whoever calls it from an address."""
 
-    def __init__(self, folder: Path, answering: EngineCalls | None = None, database: str = "", **numbers: Any) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        answering: EngineCalls | None = None,
+        database: str = "",
+        files: EngineCalls | None = None,
+        **numbers: Any,
+    ) -> None:
         self.file = folder / "jobs.sqlite"
         if not database:
             self.file.write_bytes(empty_database())
         self.store = Store(database or file_url(self.file))
         self.settings = dataclasses.replace(ServiceSettings(data=folder), **numbers)
-        self.app: FastAPI = create_app(self.settings, self.store, answering or Answering())
+        self.app: FastAPI = create_app(self.settings, self.store, answering or Answering(), files)
         self.context: ServiceContext = self.app.state.context
         self.accounts = Accounts(self.store)
         self.runner = asyncio.Runner()

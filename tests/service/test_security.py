@@ -318,6 +318,37 @@ def test_small_work_that_nobody_could_answer_in_time_is_refused(tmp_path: Path) 
     assert found.count("full") == 15
 
 
+def test_a_long_file_delays_no_check_of_what_is_typed(tmp_path: Path) -> None:
+    """As many files as may wait are read, each for long: whoever types has an answer all the same."""
+    begun = asyncio.Event()
+
+    async def both(service: Service) -> tuple[list[int], int, float]:
+        loop = asyncio.get_running_loop()
+
+        def slowly(task: str, payload: Any) -> Any:
+            loop.call_soon_threadsafe(begun.set)
+            time.sleep(1.0)
+            raise InputError("rows", None, "nothing")
+
+        slow.answer = slowly
+        files = [
+            asyncio.ensure_future(service.ask("POST", "/api/v1/batches/check", json={"rows": []})) for _ in range(6)
+        ]
+        await begun.wait()
+        asked = time.monotonic()
+        check = await service.ask("POST", "/api/v1/check", json={"family": "x"})
+        seconds = time.monotonic() - asked
+        return [answer.status_code for answer in await asyncio.gather(*files)], check.status_code, seconds
+
+    slow = Answering()
+    told = {"ready": False, "problems": [], "read": {}, "combinations": None}
+    with Service(tmp_path, Answering(lambda task, payload: told), files=slow, file_engines=1) as service:
+        codes, check, seconds = service.runner.run(both(service))
+    assert sorted(codes) == [422] * 5 + [503]
+    assert check == 200
+    assert seconds < 0.9
+
+
 # ---- JSON -----------------------------------------------------------------------------------------------------------
 
 TREES = st.recursive(

@@ -45,7 +45,7 @@ async def bring_file(
     name = plain_name(file.filename, await in_thread(kind_of, content, settings))
     payload = {"name": name, "content": content, "most": settings.upload_shown}
     try:
-        told = await context.small.ask(UPLOAD_TASK, payload, settings.file_deadline)
+        told = await context.files.ask(UPLOAD_TASK, payload)
     except InputError as fault:
         fault.path = (FIELD,)
         raise
@@ -69,7 +69,7 @@ async def check_batch(asked: BatchBody, principal: Reader, context: Context) -> 
     """Tell how a table is understood, and which of its rows cannot be asked; of a long one the first rows."""
     sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
     payload = {"request": asked, "sources": sources}
-    told = await context.small.ask(CHECK_ROWS_TASK, payload, context.settings.file_deadline)
+    told = await context.files.ask(CHECK_ROWS_TASK, payload)
     return BatchCheck.model_validate(told)
 
 

@@ -50,7 +50,7 @@ async def add_catalogue(
         raise InputError("name", asked.name, right, ("name",))
     table = asked.table or asked.name
     payload = {"name": asked.name, "table": table, "csv": asked.csv, "schema": asked.schema_}
-    told = await context.small.ask(PART_TABLE_TASK, payload)
+    told = await context.files.ask(PART_TABLE_TASK, payload)
     shelf = Shelf(context.store)
     added, is_new = await in_thread(
         shelf.add_catalogue, principal.tenant, asked.name, table, asked.csv, asked.schema_, told["rows"], asked.note

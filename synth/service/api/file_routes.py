@@ -111,7 +111,7 @@ async def _rendered(
         "sources": sources,
     }
     try:
-        found: Record | None = await context.small.ask(RENDER_TASK, payload, context.settings.file_deadline)
+        found: Record | None = await context.files.ask(RENDER_TASK, payload)
     except ExtraNeededError as missing:
         raise ServiceError(501, f"this server lacks what it needs: the extra {missing.extra}") from missing
     if found is None:

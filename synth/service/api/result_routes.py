@@ -69,7 +69,7 @@ async def _summary_of_batch(context: ServiceContext, job: Job, name: str) -> Rec
         raise not_found(NO_RESULT)
     url = context.store.engine.url.render_as_string(hide_password=False)
     payload = {"job": job.id, "kind": job.kind, "name": name, "sources": Sources(database=url)}
-    found: Record = await context.small.ask(RENDER_TASK, payload, context.settings.file_deadline)
+    found: Record = await context.files.ask(RENDER_TASK, payload)
     return found
 
 

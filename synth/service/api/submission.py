@@ -61,7 +61,8 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
         asked = {**asked, TIME_LIMIT: limit}  # of each row, and a part of what is asked
     sources = await in_thread(Shelf(store).sources, principal.tenant, asked)
     payload = {"kind": chosen.name, "request": asked, "sources": sources}
-    read = await context.small.ask(READ_TASK, payload, settings.file_deadline if sources.files else None)
+    pool = context.files if sources.files or chosen.name == BATCH else context.small
+    read = await pool.ask(READ_TASK, payload)
     refuse_large(read, settings, principal.limits.rows)
     own = 0 if read["bulk"] else 1
     new = NewJob(
