@@ -9,7 +9,7 @@ from typing import Any
 import sqlalchemy as sa
 
 from synth.jobs.job_queue import JobQueue
-from synth.jobs.models import Job, JobRecord, Layout, Result, Row, RowQuestion, Upload, moment
+from synth.jobs.models import Job, JobRecord, Layout, Result, Row, RowQuestion, Tenant, Upload, moment
 from synth.jobs.store import Answered
 
 BAD_INPUT, NOT_SOLVED = "bad_input", "not_solved"  # rows without an answer: they ask nothing, or wait
@@ -53,6 +53,54 @@ def standings(queue: JobQueue, jobs: Collection[str]) -> dict[str, Standing]:
     with queue.engine.connect() as connection:
         found = connection.execute(asked.where(Job.id.in_(list(jobs))))
         return {job: Standing(*standing) for job, *standing in found}
+
+
+@dataclass(frozen=True)
+class JobTrace:
+    """That there is a job, and whose: nothing of what it asks or has found."""
+
+    id: str
+    tenant: str
+    kind: str
+    state: str
+    rows: int
+    created: float
+    started: float | None
+    ended: float | None
+
+
+def traces(
+    queue: JobQueue,
+    *,
+    tenant: str | None = None,
+    states: Collection[str] = (),
+    before: tuple[float, str] | None = None,
+    most: int = 50,
+) -> list[JobTrace]:
+    """Return which jobs there are of all tenants, the latest first.
+
+    Parameters
+    ----------
+    queue : JobQueue
+    tenant : str, optional
+        Only those of the tenant with this name.
+    states : collection of str
+        Only those in these states.
+    before : tuple of float and str, optional
+        ``created`` and ``id`` of the last job of the page before.
+    most : int
+    """
+    asked = sa.select(Job.id, Tenant.name, Job.kind, Job.state, Job.rows, Job.created, Job.started, Job.ended)
+    asked = asked.join(Tenant, Tenant.id == Job.tenant).order_by(Job.created.desc(), Job.id.desc()).limit(most)
+    if tenant is not None:
+        asked = asked.where(Tenant.name == tenant)
+    if states:
+        asked = asked.where(Job.state.in_(states))
+    if before is not None:
+        created, name = before
+        asked = asked.where(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
+    with queue.engine.connect() as connection:
+        return [JobTrace(*row) for row in connection.execute(asked)]
 
 
 def packed_record(queue: JobQueue, job: str, name: str) -> PackedRecord | None:

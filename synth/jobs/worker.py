@@ -151,6 +151,7 @@ class Worker:
         self.stopping = threading.Event()
         self.tasks: dict[int, UnitAtWork] = {}  # by slot; a slot alone changes its own
         self.restarts: Counter[str] = Counter()
+        self.lost = 0  # units that could not be written, as others had them by then
         self.code = ""
         self._threads = [threading.Thread(target=self._slot, args=(k,), name=f"slot {k}") for k in range(slots)]
         self._waiting_since: float | None = None
@@ -273,7 +274,7 @@ class Worker:
             if message.kind == ANSWERED:
                 outcomes, errors, alone = sorted_out(message.content)
                 most = self.settings.runner.attempts
-                self._patiently(lambda: self.store.finish(job.id, claim, self.owner, outcomes, errors, most, alone))
+                self._written(job, lambda: self.store.finish(job.id, claim, self.owner, outcomes, errors, most, alone))
                 self._after_rows(job)
             else:
                 self._failed(task, str(message.content))
@@ -298,7 +299,13 @@ class Worker:
             self._quietly(lambda: self.store.count_rows(job.id, self.settings.worker.kept))
 
     def _end(self, task: UnitAtWork, ending: Ending) -> None:
-        self._patiently(lambda: self.store.complete(task.job.id, task.claim, self.owner, ending))
+        self._written(task.job, lambda: self.store.complete(task.job.id, task.claim, self.owner, ending))
+
+    def _written(self, job: Job, write: Callable[[], bool]) -> None:
+        """Write what came of a unit; count it where the lease had ended before, and others have the unit now."""
+        if self._patiently(write) is False and self._patiently(lambda: self.store.wanted([job.id])):
+            self.lost += 1
+            self.say(f"job {job.id}: a unit was lost to another worker: the database did not hear in time of this one")
 
     def _failed(self, task: UnitAtWork, error: str) -> None:
         """Note that an attempt failed; after the last one the job has, or these rows have."""
@@ -309,13 +316,13 @@ class Worker:
             if last:
                 self._end(task, Ending(state=FAILED, error={"code": "failed", "message": error}))
             else:
-                self._patiently(lambda: self.store.put_back(job.id, claim, owner, error))
+                self._written(job, lambda: self.store.put_back(job.id, claim, owner, error))
         elif is_group(claim.questions) and claim.attempts + 2 < self.settings.runner.attempts:
-            self._patiently(lambda: self.store.put_back(job.id, claim, owner, error))
+            self._written(job, lambda: self.store.put_back(job.id, claim, owner, error))
         else:
             errors = dict.fromkeys(claim.questions, error)
             most = self.settings.runner.attempts
-            self._patiently(lambda: self.store.finish(job.id, claim, owner, {}, errors, most))
+            self._written(job, lambda: self.store.finish(job.id, claim, owner, {}, errors, most))
             self._after_rows(job)
 
     def _crashed(self, task: UnitAtWork, reason: str) -> None:
@@ -414,6 +421,7 @@ class Worker:
             "busy": len(self.tasks),
             "jobs": sorted({task.job.id for task in list(self.tasks.values())}),
             "restarts": dict(self.restarts),
+            "lost": self.lost,
         }
         self.store.sign(self.owner, socket.gethostname(), self.code, slots)
 

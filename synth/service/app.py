@@ -23,6 +23,7 @@ from synth.service.api import (
     file_routes,
     job_routes,
     result_routes,
+    tenant_routes,
 )
 from synth.service.attempts import FailedTokens
 from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
@@ -42,6 +43,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     event_routes.router,
     batch_routes.router,
     catalogue_routes.router,
+    tenant_routes.router,
     token_routes.router,
 )
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)

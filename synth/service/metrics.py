@@ -104,7 +104,7 @@ class _JobFigures(Collector):
     def _of_workers(self) -> Iterator[Any]:
         """Yield what workers say of themselves: ``slots`` of their signs of life holds these counts."""
         signs = self.store.workers(self.settings.ready_worker)
-        slots, busy = (sum(int(sign.slots.get(name, 0)) for sign in signs) for name in ("slots", "busy"))
+        slots, busy, lost = (sum(int(sign.slots.get(name, 0)) for sign in signs) for name in ("slots", "busy", "lost"))
         restarts: dict[str, int] = {}
         for sign in signs:
             for reason, count in dict(sign.slots.get("restarts") or {}).items():
@@ -118,6 +118,7 @@ class _JobFigures(Collector):
             ended.add_metric([reason], count)
         yield places
         yield ended
+        yield CounterMetricFamily("clutchsynth_leases_lost", "Units that were lost to other workers", lost)
 
 
 class _EndedJobs(Collector):

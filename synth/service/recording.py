@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
 import secrets
 import time
 import traceback
@@ -17,16 +18,19 @@ from typing import Any
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from synth.errors import shortened
+from synth.jobs.accounts import BEGINNING
 from synth.service.errors import ServiceError, error_response
 from synth.service.metrics import ServiceMetrics
 
 LOG = logging.getLogger("clutchsynth.service")
+TOKENS = re.compile(rf"{BEGINNING}[\w-]{{20,}}")  # also in a path, where somebody has put one by mistake
 UNKNOWN_ROUTE = "none"  # of requests that mean nothing here
 
 
 def log(event: str, **told: Any) -> None:
     """Write a line of the log: JSON, with what has happened and when."""
-    LOG.info(json.dumps({"time": round(time.time(), 3), "event": event, **told}, default=str))
+    line = json.dumps({"time": round(time.time(), 3), "event": event, **told}, default=str)
+    LOG.info(TOKENS.sub(f"{BEGINNING}...", line))
 
 
 def where_raised(error: BaseException) -> list[str]:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import sqlalchemy as sa
 import yaml
 
 from synth.jobs.batch import batch
@@ -25,7 +26,7 @@ from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, READ_TASK
 from synth.jobs.job_queue import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
 from synth.jobs.kinds.contract import NOTHING
-from synth.jobs.models import Job
+from synth.jobs.models import Job, WorkUnit
 from synth.jobs.shelf import Shelf
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
@@ -158,6 +159,26 @@ def test_a_job_that_kills_every_process_fails_at_last(tmp_path: Path, engines: E
         found = ended(store, job)
         assert (found.state, found.error["code"]) == (FAILED, "failed")
         assert "SIGKILL" in found.error["message"]
+
+
+def test_a_unit_that_another_has_by_now_is_counted_as_lost(tmp_path: Path, engines: Engines) -> None:
+    told: list[str] = []
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store) as worker:
+        worker.say = told.append
+        kept, cancelled = (submit(store, engines, "synthesis", {**LONG, "time_limit": 2.0}) for _ in range(2))
+        until(lambda: worker.tasks.get(0), lambda task: task and task.job.id == kept)
+        with store.engine.begin() as connection:
+            connection.execute(sa.update(WorkUnit).where(WorkUnit.job == kept).values(token=WorkUnit.token + 1))
+        until(lambda: worker.lost, bool)
+        assert any(kept in sentence and "lost" in sentence for sentence in told)
+        assert store.job(kept).state == RUNNING  # whoever has it goes on
+        until(lambda: worker.tasks.get(0), lambda task: task and task.job.id == cancelled)
+        with store.engine.begin() as connection:
+            connection.execute(sa.update(WorkUnit).where(WorkUnit.job == cancelled).values(token=WorkUnit.token + 1))
+        store.cancel(cancelled)
+        until(lambda: worker.tasks, lambda tasks: not tasks)
+        assert worker.lost == 1  # nobody wanted it any more
+        until(lambda: store.workers(60.0), lambda signs: signs and signs[0].slots["lost"] == 1)
 
 
 def test_limits_of_time_and_memory_stop_a_job(tmp_path: Path, engines: Engines) -> None:

@@ -75,15 +75,21 @@ class Served:
         return "".join((self.folder / name).read_text() for name in ("out.txt", "err.txt"))
 
 
+def watched(folder: Path) -> dict[str, str]:
+    """Return the variables of a process that is watched, and begins others that are."""
+    (folder / "watch").mkdir()
+    (folder / "watch" / "sitecustomize.py").write_text(WATCH)
+    return {"PYTHONPATH": str(folder / "watch"), "WATCHED": str(folder / "watched")}
+
+
 @contextmanager
 def served(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> Iterator[Served]:
     """Run the server with a worker; it ends with the block, whatever happens there."""
-    (folder / "watch").mkdir()
-    (folder / "watch" / "sitecustomize.py").write_text(WATCH)
-    own = {"PYTHONPATH": str(folder / "watch"), "WATCHED": str(folder / "watched"), **(environment or {})}
+    own = {**watched(folder), **(environment or {})}
+    place = () if "CLUTCHSYNTH_DATABASE" in own else ("--data", str(folder / "data"))
     with (folder / "out.txt").open("w") as out, (folder / "err.txt").open("w") as err:
         process = subprocess.Popen(
-            [*COMMAND, "serve", "--data", str(folder / "data"), "--port", "0", *words],
+            [*COMMAND, "serve", "--port", "0", *place, *words],
             cwd=folder,
             env={**os.environ, **own},
             stdout=out,

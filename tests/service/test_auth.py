@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ import sqlalchemy as sa
 from fastapi import Depends
 
 from synth.jobs.accounts import Principal
+from synth.jobs.job_queue import Ending, NewJob
 from synth.jobs.models import BrowserSession, Tenant, Token, moment
 from synth.service.attempts import FailedTokens
 from synth.service.auth import needs
@@ -139,6 +141,41 @@ def test_tokens_are_for_administrators(service: Service, method: str, path: str)
     answer = service(method, path, headers=bearer(token), **({"json": {"name": "a"}} if method == "POST" else {}))
     assert (answer.status_code, code_of(answer)) == (403, "scope")
     assert len(service.accounts.tokens()) == 1
+
+
+def test_administrators_see_that_there_are_jobs_of_others_and_nothing_of_what_is_in_them(service: Service) -> None:
+    admin, both = bearer(service.token("admin")), bearer(service.token("read", "submit", tenant="acme"))
+    tenants = [service.accounts.tenant(name, {}) for name in ("acme", "other")]
+    for number in range(5):
+        usual = {"kind": "synthesis", "fingerprint": str(number), "code": "c"}
+        new = NewJob(title="secret", request={"family": "secret"}, content={"families": ["secret"]}, **usual)
+        name, _ = service.store.submit(replace(new, tenant=tenants[number % 2]))
+        if number == 4:
+            service.store.end(name, Ending(state="failed", error={"message": "secret"}))
+    place = "/api/v1/tenants/jobs"
+    seen, cursors = [], [""]
+    while cursors[-1] is not None:
+        answer = service("GET", f"{place}?limit=2&cursor={cursors[-1]}".removesuffix("&cursor="), headers=admin)
+        assert answer.status_code == 200
+        assert "secret" not in answer.text
+        seen += answer.json()["jobs"]
+        cursors.append(answer.json()["next"])
+    assert len(cursors) == 4
+    assert [(job["tenant"], job["state"]) for job in seen] == [
+        ("acme", "failed"),
+        ("other", "open"),
+        ("acme", "open"),
+        ("other", "open"),
+        ("acme", "open"),
+    ]
+    assert {*seen[0]} == {"id", "tenant", "kind", "state", "rows", "created", "started", "ended"}
+    assert (seen[0]["kind"], seen[0]["rows"]) == ("synthesis", 0)
+    assert seen[0]["ended"] >= seen[0]["created"]
+    assert len(service("GET", f"{place}?tenant=other&state=open", headers=admin).json()["jobs"]) == 2
+    assert service("GET", f"{place}?tenant=other&cursor={cursors[1]}", headers=admin).status_code == 422
+    assert service("GET", f"/api/v1/jobs/{seen[0]['id']}", headers=admin).status_code == 404
+    refused = service("GET", place, headers=both)
+    assert (refused.status_code, code_of(refused)) == (403, "scope")
 
 
 def test_a_new_tenant_gets_the_limits_of_the_settings_and_the_local_one_none(service: Service) -> None:

@@ -102,7 +102,7 @@ def test_jobs_and_workers_are_told_as_the_database_has_them(service: Service) ->
     with store.engine.begin() as connection:
         earlier = {"created": moment() - 20.0, "started": moment() - 18.0}
         connection.execute(sa.update(Job).where(Job.id == names[0]).values(**earlier))
-    store.sign("a", "host", "code", {"slots": 2, "busy": 1, "restarts": {"memory": 2}})
+    store.sign("a", "host", "code", {"slots": 2, "busy": 1, "restarts": {"memory": 2}, "lost": 2})
     store.sign("b", "host", "code", {"slots": 1, "busy": 1, "restarts": {"memory": 1, "crash": 1}})
     ended = next(c for c in service.context.metrics.registry._collector_to_names if hasattr(c, "late"))
     ended.late = -1.0
@@ -113,6 +113,7 @@ def test_jobs_and_workers_are_told_as_the_database_has_them(service: Service) ->
     assert found["clutchsynth_slots", (("state", "busy"),)] == 2
     assert found["clutchsynth_slots", (("state", "idle"),)] == 1
     assert found["clutchsynth_engine_restarts_total", (("reason", "memory"),)] == 3
+    assert found["clutchsynth_leases_lost_total", ()] == 2
     assert found["clutchsynth_queue_oldest_seconds", ()] >= 0
     assert found["clutchsynth_job_ends_total", (("kind", "synthesis"), ("outcome", "optimal"))] == 1
     assert found["clutchsynth_job_ends_total", (("kind", "synthesis"), ("outcome", "failed"))] == 1

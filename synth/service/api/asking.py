@@ -7,7 +7,7 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import Depends, Path, Query, Request, Response
 
@@ -31,6 +31,8 @@ Limit = Annotated[int | None, Query(ge=1, description="Entries at most.")]
 Cursor = Annotated[
     str | None, Query(max_length=2 * LONGEST, pattern=WORD, description="Of the page before: what it calls `next`.")
 ]
+State = Literal["open", "running", "done", "cancelled", "failed", "stopped"]
+Word = Annotated[str | None, Query(max_length=LONGEST, pattern=WORD)]
 JobId = Annotated[str, Path(description="Id of a job.", examples=["0j3k5m7n9pqrstvwxyz0123456"])]
 
 

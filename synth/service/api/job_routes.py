@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
@@ -19,6 +19,8 @@ from synth.service.api.asking import (
     Cursor,
     Limit,
     OwnJob,
+    State,
+    Word,
     cursor_of,
     entries,
     place_of,
@@ -35,7 +37,6 @@ from synth.service.security import header
 
 router = APIRouter(prefix=API, tags=["jobs"])
 YAML = "application/yaml"
-State = Literal["open", "running", "done", "cancelled", "failed", "stopped"]
 RESUMABLE = "cancelled, failed or stopped"
 PLACE = {"Location": {"description": "Where the job is.", "schema": {"type": "string"}}}
 SUBMITTED: dict[int | str, dict[str, Any]] = {
@@ -56,7 +57,6 @@ IdempotencyKey = Annotated[
         description="Chosen by the client: said again with the same body it makes no second job.",
     ),
 ]
-Word = Annotated[str | None, Query(max_length=LONGEST, pattern=WORD)]
 
 
 async def submitted(

@@ -177,6 +177,26 @@ class JobList(BaseModel):
     next: str | None = Field(description="The cursor of the next page, where there is one.")
 
 
+class TraceAnswer(BaseModel):
+    """That there is a job, and whose. Times are seconds since 1970."""
+
+    id: str
+    tenant: str
+    kind: str
+    state: str
+    rows: int = Field(description="Of a batch; 0 of all else.")
+    created: float
+    started: float | None
+    ended: float | None
+
+
+class TraceList(BaseModel):
+    """A page of the jobs of all tenants, the latest first."""
+
+    jobs: list[TraceAnswer]
+    next: str | None = Field(description="The cursor of the next page, where there is one.")
+
+
 class ColumnAnswer(BaseModel):
     """A column of designs."""
 
