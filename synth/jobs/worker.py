@@ -303,7 +303,10 @@ class Worker:
 
     def _written(self, job: Job, write: Callable[[], bool]) -> None:
         """Write what came of a unit; count it where the lease had ended before, and others have the unit now."""
-        if self._patiently(write) is False and self._patiently(lambda: self.store.wanted([job.id])):
+        if self._patiently(write) is not False:
+            return
+        wanted = self._patiently(lambda: self.store.wanted([job.id]))
+        if wanted:
             self.lost += 1
             self.say(f"job {job.id}: a unit was lost to another worker: the database did not hear in time of this one")
 

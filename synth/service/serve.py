@@ -8,14 +8,18 @@ import signal
 import socket
 import sys
 import threading
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from types import FrameType
 
+import sqlalchemy as sa
 import uvicorn
 from fastapi import FastAPI
+from sqlalchemy.exc import ArgumentError
 
 from synth.errors import InputError
+from synth.file_locks import is_taken, locked, unlock
 from synth.jobs.accounts import Accounts
 from synth.jobs.engine_process import Engines
 from synth.jobs.job_settings import StoreSettings
@@ -92,13 +96,14 @@ def serve(settings: ServiceSettings, say: Callable[[str], None]) -> None:
     Raises
     ------
     InputError
-        The address cannot be listened to, the database cannot be opened, or others can reach the service and there is
-        no token that would let them in.
+        The address cannot be listened to, the database cannot be opened or has a server already, or others can reach
+        the service and there is no token that would let them in.
     """
     _prepare_log(settings.log)
     with ExitStack() as opened:
         if not settings.database:
             settings.data.mkdir(parents=True, exist_ok=True)
+        opened.enter_context(only_server(settings.database_url))
         store = opened.enter_context(
             Store(settings.database_url, settings=StoreSettings(patience=settings.database_patience))
         )
@@ -145,6 +150,43 @@ def server_config(app: FastAPI, settings: ServiceSettings) -> uvicorn.Config:
         timeout_keep_alive=settings.idle_timeout,
         timeout_graceful_shutdown=settings.shutdown_timeout,
     )
+
+
+@contextmanager
+def only_server(url: str) -> Iterator[None]:
+    """Keep other servers from a SQLite file for the block; workers and commands may use it all the same.
+
+    Raises
+    ------
+    InputError
+        Another server serves it.
+    """
+    file = file_of(url)
+    handle = None
+    if file is not None:
+        lock = file.with_name(f"{file.name}.server")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle = locked(lock)
+        if handle is None and is_taken(lock):  # else nothing can be written there, which whoever opens it tells
+            right = "a file that no other server serves: on SQLite there is one, PostgreSQL has room for several"
+            raise InputError("--database", str(file), right)
+    try:
+        yield
+    finally:
+        if file is not None and handle is not None:
+            unlock(lock, handle)
+
+
+def file_of(url: str) -> Path | None:
+    """Return the file of a database, whichever way leads to it; None where it is on a server, or no address at all."""
+    try:
+        address = sa.make_url(url)
+    except ArgumentError:
+        return None
+    named = address.database
+    if address.get_backend_name() != "sqlite" or named in (None, "", ":memory:"):
+        return None
+    return Path(str(named)).resolve()
 
 
 def refuse_open_door(settings: ServiceSettings, accounts: Accounts) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -18,9 +19,10 @@ import httpx
 import pytest
 
 from synth.errors import InputError
+from synth.file_locks import is_taken
 from synth.jobs.accounts import Accounts
 from synth.jobs.store import Store
-from synth.service.serve import address_of, listening, serve
+from synth.service.serve import address_of, file_of, listening, only_server, serve
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor
 from tests.terminal.entry import COMMAND, ROOT, at_once
@@ -239,6 +241,35 @@ def test_a_port_that_is_taken_is_told(tmp_path: Path) -> None:
         done = at_once("serve", "--data", tmp_path, "--port", port, "--no-workers", folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith(f"clutchsynth: --host: got '127.0.0.1, port {port}'")
+
+
+def test_a_file_has_one_server_and_others_may_use_it(tmp_path: Path) -> None:
+    words = ["serve", "--data", str(tmp_path / "data"), "--port", "0", "--no-workers"]
+    (tmp_path / "other").symlink_to(tmp_path / "data")
+    with started(*COMMAND, *words, cwd=tmp_path, **SILENT) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[-1]
+        for place in ("data", "other"):
+            second = at_once("serve", "--data", tmp_path / place, "--port", "0", "--no-workers", folder=tmp_path)
+            assert second.returncode == 2
+            assert second.stderr.count("\n") == 1
+            assert re.fullmatch(r"clutchsynth: --database: got '.*'; expected a file that no other .*\n", second.stderr)
+        assert at_once("token", "create", "a", "--data", tmp_path / "data").returncode == 0
+        assert at_once("database", "check", "--data", tmp_path / "data").returncode == 0
+        assert httpx.get(f"{address}api/v1/session").status_code == 401
+        process.kill()
+        process.wait()
+    with only_server(ServiceSettings(data=tmp_path / "data").database_url):  # a lock goes with its process
+        assert is_taken(tmp_path / "data" / "jobs.sqlite.server")
+    assert not (tmp_path / "data" / "jobs.sqlite.server").exists()
+
+
+def test_databases_on_a_server_have_room_for_several(tmp_path: Path) -> None:
+    url = "postgresql://nobody@127.0.0.1:1/none"
+    assert file_of(url) is None
+    with only_server(url), only_server(url):
+        pass
+    assert file_of("nothing") is None
 
 
 def test_addresses_are_those_that_browsers_take() -> None:
