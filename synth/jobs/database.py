@@ -10,6 +10,7 @@ import hashlib
 import json
 import sqlite3
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -137,6 +138,8 @@ def _write_ahead(cursor: Any, patience: float) -> None:
     deadline, pause = time.monotonic() + patience, 0.005
     while True:
         try:
+            if cursor.execute("PRAGMA page_count").fetchone()[0] == 0:  # a file that is new can give back what it frees
+                cursor.execute("PRAGMA auto_vacuum=INCREMENTAL")
             cursor.execute("PRAGMA journal_mode=WAL")
         except sqlite3.OperationalError as error:
             if error.sqlite_errorcode & 0xFF not in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
@@ -271,6 +274,22 @@ class Database:
     def version(self) -> str | None:
         """Return of which version the tables are, as the database says now; None where there are none."""
         return version_of(self.engine)
+
+    def shrink(self, most: int) -> None:
+        """Give pages of a SQLite file that hold nothing any more back to the disk; older files keep theirs.
+
+        Parameters
+        ----------
+        most : int
+            Pages.
+        """
+        if self.engine.dialect.name != "sqlite":
+            return
+        with self.engine.connect() as connection:
+            if connection.exec_driver_sql("PRAGMA freelist_count").scalar():
+                driver: Any = connection.connection.driver_connection
+                with suppress(sqlite3.OperationalError):  # others write for long: the next round does it
+                    driver.executescript(f"PRAGMA incremental_vacuum({most})")  # a mere execute gives back one page
 
     def close(self) -> None:
         """Let go of the connections."""

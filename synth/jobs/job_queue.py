@@ -729,6 +729,7 @@ class JobQueue(Database):
             connection.execute(sa.delete(Job).where(Job.id.in_(gone)))
             connection.execute(sa.delete(Upload).where(Upload.expires < moment()))
             connection.execute(sa.delete(WorkerSign).where(WorkerSign.seen < moment() - self.settings.forgotten))
+        self.shrink(self.settings.given_back)
         return len(gone)
 
     def census(self) -> dict[str, Any]:

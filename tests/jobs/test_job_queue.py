@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import secrets
 import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 import sqlalchemy as sa
 
+from synth.jobs.database import file_url
 from synth.jobs.job_queue import (
     CANCELLED,
     DONE,
@@ -254,6 +257,31 @@ def test_what_is_over_goes_and_what_is_pinned_stays(store: Store) -> None:
     assert {event.job for event in store.happenings(0)} == {kept, live}
     store.delete(live)
     assert [job.id for job in store.jobs()] == [kept]
+
+
+def test_a_file_gets_smaller_when_jobs_go(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    with Store(file_url(file), settings=StoreSettings(given_back=300)) as store:
+
+        def pages() -> int:
+            with store.engine.connect() as connection:
+                return int(connection.exec_driver_sql("PRAGMA page_count").scalar_one())
+
+        least = pages()
+        for k in range(20):
+            job, _ = store.submit(asked(str(k), keep=0.0, kept=[Record.of("table.csv", secrets.token_hex(100_000))]))
+            store.cancel(job)
+        most = pages()
+        assert most > least + 400
+        assert store.prune() == 20
+        assert pages() == most - 300  # so many at a time
+        for _ in range(5):
+            store.prune()
+        assert pages() <= least + 20
+        with store.engine.connect() as connection:
+            connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
+        assert file.stat().st_size <= 4096 * (least + 20)
+        assert store.submit(asked("more"))[1]
 
 
 def test_numbers_of_units_and_events_are_not_given_twice(store: Store) -> None:
