@@ -345,7 +345,7 @@ def state_of(design: Design, front: ParetoFront | None) -> State:
     """Return what must be known of a design first."""
     details: list[str] = []
     if design.robust:
-        details.append(_over_range_in_words(design))
+        details.append(over_range_in_words(design))
     if design.violated:
         count = len(design.violated)
         head = f"NOT FEASIBLE: {count} limit{'s' if count > 1 else ''} violated"
@@ -386,7 +386,7 @@ def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 
-def _over_range_in_words(design: Design) -> str:
+def over_range_in_words(design: Design) -> str:
     rating = design.robust
     holds = "holds" if rating.holds else "DOES NOT HOLD"
     told = f"Over the range that scatters it {holds} ({rating.proof or 'not proven'})"

@@ -1,0 +1,302 @@
+// The explorer: one state, draw() for what changes, mark() for what is pointed at; mark() never makes or removes a node.
+
+import { certificateBanner, nothingCard } from "./certificate.js";
+import { MOST_PINS, compareView } from "./compare.js";
+import { h } from "./dom.js";
+import { saveTable } from "./files.js";
+import { legendView } from "./legend.js";
+import { grouping, modelOf } from "./model.js";
+import { amount } from "./numbers.js";
+import { panelView } from "./panel.js";
+import { parallelView } from "./parallel.js";
+import { scatterView } from "./scatter.js";
+import { readState, stateText } from "./state.js";
+import { tableView } from "./table.js";
+import { tipView } from "./tip.js";
+
+const FIRST_CHIPS = 8;
+let mounted = 0;
+
+/**
+ * What whoever mounts the explorer may say; all of it may be left out.
+ * @typedef {object} Options
+ * @property {(design: object) => {label: string, href?: string, download?: string, run?: (design: object) => void}[]} [downloads]
+ *   what the panel offers beside DESIGN.yaml: addresses of the same host, or functions
+ * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter
+ * @property {(slot: HTMLElement, handle: Handle) => void} [ways] fills the place for ways out where nothing is feasible
+ * @property {(slot: HTMLElement, handle: Handle) => void} [actions] fills the corner beside the title
+ * @property {string} [state] text of an earlier state, as `onState` told it
+ * @property {(text: string) => void} [onState] is told the state after every change, for an address
+ * @property {(design: object | null) => void} [onSelect] is told which design is shown
+ * @property {boolean} [heading] false where the page has a title of its own
+ */
+
+/**
+ * What a page holds in its hands.
+ * @typedef {object} Handle
+ * @property {(record: object) => void} update shows another record; axes, colours and the chosen parts stay
+ * @property {(record: object | null) => void} compareWith draws the designs of another record as outlines
+ * @property {(rank: number) => void} select
+ * @property {() => object | null} selected the design that is shown
+ * @property {() => string} state
+ * @property {() => void} destroy
+ */
+
+/**
+ * Show a front.
+ * @param {HTMLElement} element
+ * @param {object} record as reports/explorer/record.py makes it
+ * @param {Options} [options]
+ * @returns {Handle}
+ */
+export function mount(element, record, options = {}) {
+  const explorer = new Explorer(element, options);
+  explorer.show(record, options.state ?? "");
+  return explorer.handle;
+}
+
+export class Explorer {
+  /**
+   * @param {HTMLElement} element
+   * @param {Options} options
+   */
+  constructor(element, options) {
+    mounted += 1;
+    this.id = `explorer-${mounted}`;
+    this.options = options;
+    this.ghosts = [];
+    this.root = h("div", { class: "explorer" });
+    this.views = [];
+    element.replaceChildren(this.root);
+    this.handle = {
+      update: (record) => this.show(record, stateText(this)),
+      compareWith: (record) => this.compareWith(record),
+      select: (rank) => this.select(this.model.record.designs.findIndex((d) => d.rank === rank)),
+      selected: () => this.model.record.designs[this.state.selected] ?? null,
+      state: () => stateText(this),
+      destroy: () => { this.watch?.disconnect(); this.root.remove(); },
+    };
+  }
+
+  /** Show a record, with what can be kept of a state. */
+  show(record, text) {
+    this.watch?.disconnect();
+    const before = this.model && this.model.record.designs[this.state.selected];
+    this.model = modelOf(record);
+    this.state = readState(this.model, text);
+    if (before) {
+      const parts = JSON.stringify([before.parts, before.choices]);
+      const same = record.designs.findIndex((d) => JSON.stringify([d.parts, d.choices]) === parts);
+      if (same >= 0) this.state.selected = same;
+    }
+    this.cache = null;
+    this.build();
+    this.draw();
+    if (!this.views.length) return;
+    let wide = this.root.clientWidth;
+    this.watch = new ResizeObserver(() => {
+      if (Math.abs(this.root.clientWidth - wide) < 2) return;
+      wide = this.root.clientWidth;
+      this.scatter?.draw();
+      this.parallel?.draw();
+    });
+    this.watch.observe(this.root);
+  }
+
+  /** Build what stays while one record is shown. */
+  build() {
+    const { model, options } = this;
+    this.views = [];
+    this.scatter = this.parallel = this.table = this.tip = this.legend = null;
+    const parts = [options.heading === false ? null : this.heading(), this.chips(), certificateBanner(model.record)];
+    if (!model.count) {
+      this.root.replaceChildren(...parts.filter(Boolean), nothingCard(this));
+      return;
+    }
+    this.panel = panelView(this);
+    this.compare = compareView(this);
+    const several = model.count > 1;
+    const left = [];
+    if (several) {
+      this.tip = tipView(this);
+      this.scatter = scatterView(this);
+      this.parallel = parallelView(this);
+      this.legend = legendView(this);
+      left.push(this.frontCard(), this.parallelCard());
+    }
+    this.table = tableView(this);
+    left.push(this.tableCard());
+    this.views = [this.scatter, this.parallel, this.table].filter(Boolean);
+    this.root.replaceChildren(...parts.filter(Boolean), h("div", { class: several ? "columns" : "columns single" }, h("div", { class: "left" }, left), this.panel.node), this.compare.node, ...(this.tip ? [this.tip.node] : []));
+  }
+
+  heading() {
+    const { record } = this.model;
+    const actions = h("div", { class: "actions" });
+    this.options.actions?.(actions, this.handle);
+    const facts = record.facts.length > 0 && h("p", { class: "facts" }, record.facts.map(([label, text]) => h("span", null, `${label} `, h("b", null, text))));
+    const kind = record.title === record.family ? record.program : `${record.family}, ${record.program}`;
+    return h("header", { class: "head" }, h("div", null, h("p", { class: "kind" }, kind), h("h1", null, record.title), facts), actions);
+  }
+
+  /** Return what was asked, and on request what was assumed. */
+  chips() {
+    const { asked, assumed } = this.model.record;
+    const chip = (entry) => h("li", { class: "chip", title: entry.text || null }, `${entry.label} `, h("b", null, entry.words ?? amount(entry.value, entry.unit)));
+    const row = (entry) => h("tr", { title: entry.text || null }, h("th", { scope: "row" }, entry.label), h("td", null, entry.words ?? amount(entry.value, entry.unit)));
+    const rest = [...asked.slice(FIRST_CHIPS), ...assumed];
+    const more = rest.length > 0 && h("details", { class: "assumed" }, h("summary", null, asked.length > FIRST_CHIPS ? `${rest.length} more, stated or assumed` : `${rest.length} values assumed`), h("table", { class: "values" }, h("tbody", null, rest.map(row))));
+    return h("div", { class: "asked" }, h("ul", { class: "chips", "aria-label": "What was asked" }, asked.slice(0, FIRST_CHIPS).map(chip)), more);
+  }
+
+  frontCard() {
+    const { model, state } = this;
+    const choose = (name, label, columns, none) => h("label", null, label, h("select", {
+      "data-field": name,
+      onchange: (event) => { state[name] = event.target.value; this.cache = null; this.draw(); },
+    }, none ? h("option", { value: "" }, none) : null, columns.map((c) => h("option", { value: c.key, selected: c.key === state[name] }, c.label))));
+    this.count = h("p", { class: "count", role: "status" });
+    this.filters = h("div", { class: "filters" });
+    const slot = h("div", { class: "what-if", hidden: !this.options.whatIf });
+    this.options.whatIf?.(slot, this.handle);
+    return h("section", { class: "card front", "aria-labelledby": `${this.id}-front` },
+      h("header", null, h("h2", { id: `${this.id}-front` }, "Front"), h("div", { class: "row controls" }, choose("x", "across", model.axes), choose("y", "up", model.axes), model.groupable.length ? choose("by", "colour", model.groupable, "none") : null), h("span", { class: "grow" }), this.count),
+      this.scatter.node, this.legend.node, this.filters, slot);
+  }
+
+  parallelCard() {
+    const same = this.parallel.same();
+    this.fields = h("details", { class: "ranges" }, h("summary", null, "Ranges by number"));
+    return h("section", { class: "card parallels", "aria-labelledby": `${this.id}-all` },
+      h("header", null, h("h2", { id: `${this.id}-all` }, "All attributes"), h("p", { class: "note pointer" }, "drag along an axis to keep a range, press it to drop the range")),
+      this.parallel.node, same.length ? h("p", { class: "note same" }, `The same in all: ${same.join("; ")}.`) : null, this.fields);
+  }
+
+  tableCard() {
+    return h("section", { class: "card table", "aria-labelledby": `${this.id}-table` },
+      h("header", null, h("h2", { id: `${this.id}-table` }, "Designs"), h("p", { class: "note pointer" }, this.model.count > 1 ? "arrow keys move, space compares" : ""), h("span", { class: "grow" }),
+        h("button", { type: "button", class: "small", onclick: () => saveTable(this) }, "CSV"),
+        h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), this.table.chooser)),
+      this.table.node);
+  }
+
+  /** Return the groups that are shown by colour and shape. */
+  group() {
+    this.cache ??= grouping(this.model.column(this.state.by), this.model.count);
+    return this.cache;
+  }
+
+  /** Tell whether a design passes what is filtered. */
+  shown(i) {
+    if (this.state.off.has(this.group().of[i])) return false;
+    for (const [key, [low, high]] of this.state.ranges) {
+      const value = this.model.column(key).values[i];
+      if (value === null || value < low || value > high) return false;
+    }
+    return true;
+  }
+
+  /** Draw all anew: another record, axis or colour. */
+  draw() {
+    if (!this.model.count) return this.tell();
+    this.tip?.draw();
+    this.legend?.draw();
+    for (const view of this.views) view.draw();
+    this.refilter();
+    this.panel.draw();
+    this.compare.draw();
+    return this.tell();
+  }
+
+  /** Show what the filters leave. */
+  refilter() {
+    if (!this.scatter) return;
+    const { model, state } = this;
+    const kept = model.record.designs.filter((_, i) => this.shown(i)).length;
+    this.count.textContent = kept === model.count ? `${model.count} designs` : `${kept} of ${model.count} designs`;
+    const drop = (words, run) => h("button", { type: "button", class: "filter", onclick: () => { run(); this.root.querySelector(".scatter").focus(); } }, words, h("span", { "aria-hidden": "true" }, " ×"), h("span", { class: "unseen" }, " drop this filter"));
+    const chips = [...state.ranges].map(([key, [low, high]]) => {
+      const c = model.column(key);
+      const words = low === -Infinity ? `${c.label} ≤ ${amount(high, c.unit, 3)}` : high === Infinity ? `${c.label} ≥ ${amount(low, c.unit, 3)}` : `${c.label} ${amount(low, "", 3)} to ${amount(high, c.unit, 3)}`;
+      return drop(words, () => this.keep([[key, null]]));
+    });
+    if (state.off.size) chips.push(drop(`${[...state.off].map((k) => this.group().names[k]).join(", ")} hidden`, () => { state.off.clear(); this.filtered(); }));
+    if (chips.length > 1) chips.push(drop("all filters", () => { state.off.clear(); state.ranges.clear(); this.filtered(); }));
+    this.filters.replaceChildren(...chips);
+    const typing = this.fields.contains(document.activeElement) && this.fields.open;
+    if (!typing) this.fields.replaceChildren(this.fields.firstChild, this.parallel.fields());
+  }
+
+  filtered() {
+    for (const view of this.views) view.filter();
+    this.legend?.mark();
+    this.refilter();
+    this.tell();
+  }
+
+  /** Keep ranges of attributes; null drops one. */
+  keep(ranges) {
+    for (const [key, range] of ranges) {
+      if (range) this.state.ranges.set(key, range);
+      else this.state.ranges.delete(key);
+    }
+    this.filtered();
+  }
+
+  /** Show or hide a group. */
+  toggle(group) {
+    if (!this.state.off.delete(group)) this.state.off.add(group);
+    this.filtered();
+  }
+
+  /** Point at a design; -1 for none. */
+  hover(i, left, top) {
+    this.tip?.show(i, left, top);
+    if (this.state.hovered === i) return;
+    this.state.hovered = i;
+    for (const view of this.views) view.mark();
+  }
+
+  /** Show a design in the panel. */
+  select(i) {
+    if (i < 0 || i === this.state.selected) return;
+    this.state.selected = i;
+    for (const view of this.views) view.mark();
+    this.panel.draw();
+    this.tell();
+  }
+
+  /** Take a design for comparison, or no longer. */
+  pin(i) {
+    const { pins } = this.state;
+    const place = pins.indexOf(i);
+    if (place >= 0) pins.splice(place, 1);
+    else if (pins.length < MOST_PINS && i >= 0 && this.model.count > 1) pins.push(i);
+    this.pinned();
+  }
+
+  unpin() {
+    this.state.pins.length = 0;
+    this.pinned();
+    this.table.node.focus();
+  }
+
+  pinned() {
+    for (const view of this.views) view.mark();
+    this.compare.draw();
+    this.panel.draw();
+    this.tell();
+  }
+
+  compareWith(record) {
+    const other = record && modelOf(record);
+    this.ghosts = other ? record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]]))) : [];
+    this.scatter?.draw();
+    this.legend?.draw();
+  }
+
+  tell() {
+    this.options.onState?.(stateText(this));
+    this.options.onSelect?.(this.handle.selected());
+  }
+}

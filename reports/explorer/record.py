@@ -1,0 +1,308 @@
+"""What the explorer shows of a front, as one record: numbers in the unit in which they are read, words ready to print."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from reports.about import About
+from reports.front_report import NOT_COVERED
+from reports.numbers import unit_text
+from reports.reasons import BINDING, SIGN_OF, why
+from reports.sheet.design_sheet import front_details, front_state, over_range_in_words, program_name
+from synth.results import Design, ParetoFront
+from synth.results.calculation import Calculation, NamedQuantity
+from synth.results.plain import finite
+from synth.units import finite_from_si
+
+EXPLORER_FORMAT = 1
+DIGITS = 7  # significant, of numbers in the record; five are shown
+SLOPES = 8  # requirements and limits of a design that tell what 1 % more changes, the largest first
+LEAST_SLOPE = 1e-3
+HOW_RATED = ("mode", "samples", "seed", "confidence")  # in what is asked of robust designs: not what scatters
+WORDS = {"global": "Proven", "exhaustive": "Every combination solved", "heuristic": "Not proven"}
+
+
+def explorer_record(
+    front: ParetoFront,
+    calculation: Calculation,
+    *,
+    about: About | None = None,
+    prices: Sequence[Mapping[str, Any]] = (),
+    files: Mapping[int, Mapping[str, str]] | None = None,
+    drawings: Mapping[int, str] | None = None,
+) -> dict[str, Any]:
+    """Return what the explorer shows of a front, as JSON knows it.
+
+    Parameters
+    ----------
+    front : ParetoFront
+    calculation : Calculation
+        Tells the meaning, symbol and source of quantities and limits.
+    about : About, optional
+        A title, and the facts of its head.
+    prices : list of mapping
+        Rows of prices.json, if it is there.
+    files : mapping
+        Rank -> label -> file beside the page.
+    drawings : mapping
+        Rank -> SVG of ours; it is shown as a picture, in which nothing runs.
+    """
+    told = _Told(front, calculation, about or About())
+    return {
+        "format": EXPLORER_FORMAT,
+        "program": program_name(front),
+        "title": told.about.title or front.frame.title,
+        "family": front.frame.title,
+        "facts": [list(fact) for fact in told.about.facts()],
+        "objectives": dict(front.frame.objectives),
+        "asked": told.asked(stated=True) + told.restrictions(),
+        "assumed": told.asked(stated=False),
+        "certificate": told.certificate(),
+        "nothing": told.nothing(),
+        "quantities": [told.quantity(name) for name in told.names],
+        "limits": [told.limit(name) for name in front.frame.limit_units],
+        "parts": told.parts(),
+        "spec": told.spec(),
+        "designs": [told.design(d, prices, (files or {}).get(d.rank or 0, {}), drawings or {}) for d in front.designs],
+    }
+
+
+class _Told:
+    def __init__(self, front: ParetoFront, calculation: Calculation, about: About) -> None:
+        self.front, self.calculation, self.about = front, calculation, about
+        self.frame = front.frame
+        kinds = self.frame.kinds
+        order = {"variable": 0, "count": 1, "derived": 2}
+        others = [n for n, kind in kinds.items() if kind in order and n not in self.frame.objectives]
+        self.names = [*self.frame.objectives, *sorted(others, key=lambda n: order[kinds[n]])]
+        self.rules = {x.name: x for x in calculation.limits}
+
+    def quantity(self, name: str) -> dict[str, Any]:
+        q = self.calculation.quantities.get(name)
+        unit = self.frame.units[name]
+        told = {"name": name, "label": _label(name), "unit": unit_text(unit), "kind": self.frame.kinds.get(name, "")}
+        return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
+
+    def limit(self, name: str) -> dict[str, Any]:
+        rule = self.rules.get(name)
+        return {
+            "name": name,
+            "label": _label(name),
+            "unit": unit_text(self.frame.limit_units[name]),
+            "sign": SIGN_OF[self.frame.limit_senses[name]],
+            "text": rule.text if rule is not None else "",
+            "source": rule.source if rule is not None else "",
+        }
+
+    # -- what was asked ------------------------------------------------------------------------
+
+    def asked(self, stated: bool) -> list[dict[str, Any]]:
+        """Return the requirements that were stated, or those that stand at their defaults."""
+        quantities = [q for q in self.calculation.quantities.values() if q.kind == "requirement"]
+        rows = [
+            {
+                "label": _label(q.name),
+                "text": q.text,
+                "value": _number(self.frame.requirement_values[q.name], q.unit),
+                "unit": unit_text(q.unit),
+            }
+            for q in quantities
+            if q.name in self.frame.requirement_values and (q.name in self.frame.requirements) == stated
+        ]
+        options = [
+            {"label": _label(name), "text": "", "words": word}
+            for name, word in self.calculation.options.items()
+            if (name in self.frame.options) == stated
+        ]
+        return rows + options
+
+    def restrictions(self) -> list[dict[str, Any]]:
+        """Return what was asked beside requirements: own limits, fixed sizes, parts held to, what scatters."""
+        rows = []
+        for key, words in (("limits", ""), ("fix", "is "), ("parts", "only "), ("robust", "scatters ")):
+            told = self.front.settings.get(key)
+            for name, value in (told.items() if isinstance(told, Mapping) else ()):
+                if key != "robust" or name not in HOW_RATED:
+                    rows.append({"label": _label(str(name)), "text": "", "words": words + _in_words(value)})
+        return rows
+
+    def spec(self) -> dict[str, Any]:
+        """Return what all DESIGN.yaml of the front have in common."""
+        if not self.front.designs:
+            return {}
+        told = self.front.designs[0].to_spec()
+        return {key: value for key, value in told.items() if key not in ("values", "parts")}
+
+    # -- how far it is proven ------------------------------------------------------------------
+
+    def certificate(self) -> dict[str, Any]:
+        c, front = self.front.certificate, self.front
+        level, head = front_state(front)
+        word = WORDS.get(c.kind, "Not proven")
+        if not front.designs:
+            word = "Not feasible, proven" if c.kind == "global" else "No design found, not proven"
+        elif front.interrupted:
+            word = "Stopped"
+        details = front_details(front)
+        sentence = details[0].partition(": ")[2] or details[0]
+        return {
+            "level": level,
+            "word": word,
+            "sentence": sentence[:1].upper() + sentence[1:],
+            "head": head,
+            "gap": c.gap,
+            "details": details[1:],
+            "combinations": c.combinations,
+            "excluded": c.excluded_by_bound,
+            "solved": c.solved,
+            "unresolved": c.unresolved,
+            "offered": self._offered(),
+            "not_part": self._not_part(),
+        }
+
+    def _offered(self) -> list[str]:
+        """Return how many rows each slot was offered, and how many of them may be used here."""
+        statistics = self.front.statistics
+        offered, used = statistics.get("rows_offered") or {}, statistics.get("rows_used") or {}
+        return [
+            f"{_label(slot)}: {count} rows of tables offered, {used.get(slot, count)} of them fit the task"
+            for slot, count in offered.items()
+        ]
+
+    def _not_part(self) -> list[str]:
+        """Return what the certificate does not speak of."""
+        told = [NOT_COVERED]
+        marked = sorted({f"{row} ({row['table']})" for row in self._rows() if row.get("confidence") != "verified"})
+        if marked:
+            told.append("Rows of tables used here that are not marked verified: " + ", ".join(marked) + ".")
+        unchecked = sorted({text for d in self.front.designs for text in d.not_checked})
+        told += [f"Not checked: {text}" for text in unchecked[:6]]
+        if self.frame.not_asked:
+            told.append("Not asked: " + ", ".join(map(_label, self.frame.not_asked)) + ".")
+        return told
+
+    def nothing(self) -> dict[str, Any] | None:
+        """Return why there is no design; None where there is one."""
+        told = self.front.explanation
+        if self.front.designs or not told:
+            return None
+        conflicts = []
+        for miss in told.conflicts or ():
+            unit = str(miss.unit or "-")
+            sides = [_number(x, unit) if isinstance(x, float) else None for x in (miss.value, miss.limit_value)]
+            name = str(miss.limit)
+            share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
+            sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
+            conflicts.append({"label": _label(name), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share})
+        nearest = {**(told.nearest or {}), **(told.parts or {})}
+        return {
+            "message": str(told.message or ""),
+            "conflicts": conflicts,
+            "nearest": [[_label(name), str(value)] for name, value in nearest.items()],
+        }
+
+    # -- designs -------------------------------------------------------------------------------
+
+    def _rows(self) -> Iterable[Any]:
+        return (row for design in self.front.designs for row in design.parts.values())
+
+    def parts(self) -> dict[str, dict[str, str]]:
+        """Return the rows of tables that fill slots, by table and designation."""
+        return {
+            f"{row['table']}/{row}": {
+                "name": str(row),
+                "table": str(row["table"]),
+                "source": str(row.get("source") or ""),
+                "confidence": str(row.get("confidence") or ""),
+                "note": str(row.get("note") or ""),
+            }
+            for row in self._rows()
+        }
+
+    def design(
+        self, d: Design, prices: Sequence[Mapping[str, Any]], files: Mapping[str, str], drawings: Mapping[int, str]
+    ) -> dict[str, Any]:
+        """Return one design."""
+        limits = list(self.frame.limit_units)
+        reason = why(self.front, d)
+        told: dict[str, Any] = {
+            "rank": d.rank,
+            "score": _rounded(d.score),
+            "status": d.status.value,
+            "gap": d.gap,
+            "note": d.note,
+            "why": reason[:1].upper() + reason[1:] + ".",
+            "v": [_number(d.values.get(name, math.nan), self.frame.units[name]) for name in self.names],
+            "choices": dict(d.choices),
+            "parts": {slot: f"{row['table']}/{row}" for slot, row in d.parts.items()},
+            "used": [_rounded(d.utilisation.get(name)) for name in limits],
+            "sides": [[_number(x, self.frame.limit_units[name]) for x in d.limits[name]] for name in limits],
+            "spec": d.to_spec()["values"],
+            "at_limit": [n for n in limits if self._binds(d, n)],
+        }
+        more: dict[str, Any] = {
+            "slopes": self._slopes(d),
+            "prices": [str(p["sentence"]) for p in prices if p.get("design") == d.rank and _matters(p)],
+            "remarks": [*d.advice, *d.not_checked],
+            "alternatives": list(d.alternatives),
+            "violated": list(d.violated),
+            "off_grid": dict(d.off_grid),
+            "next": [[_label(name), str(row)] for name, row in d.next_rows.items()],
+            "robust": self._robust(d),
+            "files": [list(pair) for pair in files.items()],
+            "drawing": drawings.get(d.rank or 0, ""),
+        }
+        return told | {key: value for key, value in more.items() if value}
+
+    def _binds(self, d: Design, name: str) -> bool:
+        used = d.utilisation.get(name)
+        return used is not None and used >= BINDING and self.frame.limit_senses[name] != "equal"
+
+    def _slopes(self, d: Design) -> list[list[Any]]:
+        """Return requirements and limits with what 1 % more of them changes in each objective, in per cent."""
+        names = {name for slopes in d.elasticity.values() for name in slopes}
+        rows = [(n, [_rounded(d.elasticity.get(o, {}).get(n)) for o in self.frame.objectives]) for n in names]
+        sized = [(max((abs(x) for x in row if x is not None), default=0.0), name, row) for name, row in rows]
+        sized = sorted((x for x in sized if x[0] > LEAST_SLOPE), key=lambda x: (-x[0], x[1]))
+        return [[_label(name), row] for _, name, row in sized[:SLOPES]]
+
+    def _robust(self, d: Design) -> dict[str, Any]:
+        rating = d.robust
+        if not rating:
+            return {}
+        share = rating.share_good
+        return {
+            "holds": bool(rating.holds),
+            "yield": _rounded(100 * share) if isinstance(share, float) else None,
+            "words": over_range_in_words(d),
+        }
+
+
+def _matters(price: Mapping[str, Any]) -> bool:
+    return price.get("status") != "no influence"
+
+
+def _label(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _of(q: NamedQuantity | None, field: str) -> str:
+    return "" if q is None else str(getattr(q, field) or "")
+
+
+def _number(si: float, unit: str) -> float | None:
+    return _rounded(finite_from_si(si, unit, None))
+
+
+def _rounded(x: float | None) -> float | None:
+    return None if x is None or not math.isfinite(x) else float(f"{x:.{DIGITS}g}")
+
+
+def _in_words(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {_in_words(inner)}" for key, inner in value.items())
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_in_words, value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,151 @@
+// The table of designs: what the charts show, for eyes, keyboard and screen reader; sorted by any column.
+
+import { h, hidden } from "./dom.js";
+import { colourClass, glyph } from "./marks.js";
+import { number } from "./numbers.js";
+
+const MOST_SIZES = 6; // columns of sizes that are shown unless others are chosen
+
+/**
+ * Make the table.
+ * @param {import("./explorer.js").Explorer} x
+ */
+export function tableView(x) {
+  const head = h("thead");
+  const body = h("tbody");
+  const table = h("table", { class: "designs" }, h("caption", { class: "unseen" }, "Designs of the front"), head, body);
+  const node = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of designs" }, table);
+  const chooser = h("div", { class: "chooser" });
+  let rows = [];
+  let marked = { hovered: -1, selected: -1, pins: [] };
+
+  /** Return the columns that are shown unless others are chosen. */
+  function usual() {
+    const { model } = x;
+    const sizes = model.sizes.slice(0, MOST_SIZES);
+    return new Set([...model.objectives, ...sizes, ...model.words].map((c) => c.key).concat("at_limit"));
+  }
+
+  function shownColumns() {
+    x.state.columns ??= usual();
+    return x.model.columns.filter((c) => x.state.columns.has(c.key));
+  }
+
+  function draw() {
+    const { model, state } = x;
+    const columns = shownColumns();
+    const limits = state.columns.has("at_limit");
+    const group = x.group();
+    head.replaceChildren(h("tr", null, header("rank", "#", ""), columns.map((c) => header(c.key, c.label, c.unit, c.text, c.kind === "word")),
+      limits ? h("th", { scope: "col", class: "words" }, "at the limit") : null));
+    const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
+    rows = model.record.designs.map((d, i) => {
+      const first = h("th", { scope: "row" }, h("button", { type: "button", tabindex: -1, "aria-label": `Design ${d.rank}` }, String(d.rank)));
+      const cells = columns.map((c) => (c.kind === "word"
+        ? h("td", { class: "words" }, c.key === state.by ? glyph(group.of[i], group.rest) : null, c.values[i])
+        : h("td", null, number(c.values[i], 4))));
+      const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
+      if (names) first.append(names);
+      const bound = limits ? h("td", { class: "words soft" }, d.at_limit.map((n) => labels.get(n) ?? n).join(", ")) : null;
+      const row = h("tr", null, first, cells, bound);
+      row.dataset.i = String(i);
+      return row;
+    });
+    order();
+    filter();
+    marked = { hovered: -1, selected: -1, pins: [] };
+    mark();
+    choose();
+  }
+
+  function header(key, label, unit, text = "", words = false) {
+    const [by, way] = x.state.sort;
+    const sorted = by === key ? (way > 0 ? "ascending" : "descending") : null;
+    const arrow = h("span", { class: "way", "aria-hidden": "true" }, sorted ? (way > 0 ? "↑" : "↓") : "");
+    const press = () => {
+      x.state.sort = [key, by === key && x.state.sort[1] > 0 ? -1 : 1];
+      draw();
+      head.querySelector("th[aria-sort] button")?.focus();
+    };
+    const name = key === "rank" ? hidden("rank") : null;
+    return h("th", { scope: "col", "aria-sort": sorted, class: words ? "words" : null, title: text || null },
+      h("button", { type: "button", onclick: press }, name, name ? h("span", { "aria-hidden": "true" }, "#") : label, arrow), unit ? h("small", null, unit) : null);
+  }
+
+  function order() {
+    const [key, way] = x.state.sort;
+    const values = key === "rank" ? x.model.record.designs.map((d) => d.rank) : x.model.column(key)?.values ?? [];
+    const compare = (a, b) => {
+      if (values[a] === null || values[b] === null) return (values[a] === null) - (values[b] === null);
+      return way * (typeof values[a] === "number" ? values[a] - values[b] : String(values[a]).localeCompare(String(values[b])));
+    };
+    body.replaceChildren(...rows.map((_, i) => i).sort((a, b) => compare(a, b) || a - b).map((i) => rows[i]));
+  }
+
+  function filter() {
+    rows.forEach((row, i) => { row.hidden = !x.shown(i); });
+  }
+
+  function mark() {
+    const { hovered, selected, pins } = x.state;
+    if (marked.hovered !== hovered) {
+      rows[marked.hovered]?.classList.remove("hovered");
+      rows[hovered]?.classList.add("hovered");
+    }
+    if (marked.selected !== selected) {
+      for (const [i, on] of [[marked.selected, false], [selected, true]]) {
+        if (!rows[i]) continue;
+        rows[i].classList.toggle("selected", on);
+        const button = rows[i].querySelector("button");
+        button.tabIndex = on ? 0 : -1;
+        if (on) button.setAttribute("aria-current", "true");
+        else button.removeAttribute("aria-current");
+      }
+    }
+    for (const i of marked.pins) rows[i]?.classList.remove("pinned");
+    for (const i of pins) rows[i]?.classList.add("pinned");
+    marked = { hovered, selected, pins: [...pins] };
+  }
+
+  const rowOf = (event) => event.target.closest?.("tbody tr");
+  body.addEventListener("click", (event) => {
+    const row = rowOf(event);
+    if (row) x.select(Number(row.dataset.i));
+  });
+  body.addEventListener("pointerover", (event) => {
+    const row = rowOf(event);
+    x.hover(row ? Number(row.dataset.i) : -1);
+  });
+  body.addEventListener("pointerleave", () => x.hover(-1));
+  body.addEventListener("keydown", (event) => {
+    const row = rowOf(event);
+    if (!row) return;
+    if (event.key === " ") x.pin(Number(row.dataset.i));
+    else if (event.key === "ArrowDown" || event.key === "ArrowUp") {
+      const step = event.key === "ArrowDown" ? "nextElementSibling" : "previousElementSibling";
+      let next = row[step];
+      while (next?.hidden) next = next[step];
+      if (!next) return;
+      x.select(Number(next.dataset.i));
+      next.querySelector("button").focus();
+    } else return;
+    event.preventDefault();
+  });
+
+  /** Fill the list of columns to choose from. */
+  function choose() {
+    const all = [...x.model.columns.filter((c) => c.varies || c.kind === "objective").map((c) => [c.key, c.label]), ["at_limit", "at the limit"]];
+    chooser.replaceChildren(...all.map(([key, label]) => h("label", null, h("input", {
+      type: "checkbox", checked: x.state.columns.has(key),
+      onchange: (event) => {
+        if (event.target.checked) x.state.columns.add(key);
+        else x.state.columns.delete(key);
+        const place = all.findIndex(([each]) => each === key);
+        draw();
+        chooser.querySelectorAll("input")[place]?.focus();
+      },
+    }), label)));
+  }
+
+  return { node, chooser, draw, filter, mark, colourClass };
+}
