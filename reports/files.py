@@ -10,6 +10,8 @@ from typing import Any
 
 from reports.about import About
 from reports.comparison_report import comparison_report
+from reports.explorer.page import explorer_page
+from reports.explorer.record import explorer_record
 from reports.front_report import FrontReportRequest, front_report
 from reports.sheet.blocks import Document
 from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
@@ -22,7 +24,7 @@ from synth.errors import InputError
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 
-FORMATS = ("html", "pdf", "xlsx", "json")
+FORMATS = ("html", "explorer", "pdf", "xlsx", "json")
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class ReportRequest:
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``pdf``, ``xlsx``, ``json``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``.
     length : {"summary", "normal", "full"}
         Of the sheets.
     about : About
@@ -134,6 +136,10 @@ class _Files:
         request = self.request
         if request.front is None:
             assert request.design is not None
+            if "explorer" in request.formats:
+                raise InputError(
+                    "formats", "explorer", "the folder of a front with it: this is one design", ("formats",)
+                )
             self._sheet(request.design, request.name)
             return self.files, self.notes
         front = request.front
@@ -155,11 +161,20 @@ class _Files:
             )
         )
         self._document(document, "report")
+        if "explorer" in request.formats:
+            self.files["explorer.html"] = self._explorer(front, sheets)
         if "xlsx" in request.formats:
             self.files["designs.xlsx"] = front_workbook(front, request.calculation)
         for design in chosen:
             self._sheet(design, names[design.rank or 0])
         return self.files, self.notes
+
+    def _explorer(self, front: ParetoFront, sheets: Mapping[int, str]) -> str:
+        """Return the page of the explorer; it leads to the files that are written beside it."""
+        request = self.request
+        beside = {rank: {"Calculation sheet": file} for rank, file in sheets.items()}
+        record = explorer_record(front, request.calculation, about=request.about, prices=request.prices, files=beside)
+        return explorer_page(record)
 
     def _document(self, document: Document, name: str) -> None:
         files, notes = documents({name: document}, self.request.formats, self.request.fonts)

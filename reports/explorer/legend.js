@@ -1,8 +1,7 @@
 // The legend: which colour and shape is what; press an entry to hide it.
 
-import { h } from "./dom.js";
+import { h, s } from "./dom.js";
 import { glyph, shape } from "./marks.js";
-import { s } from "./dom.js";
 
 /**
  * Make the legend.

@@ -45,15 +45,45 @@ function columnsOf(record) {
   return made;
 }
 
+/** Return the place of every value in their order. */
+function ranksOf(values) {
+  const ranks = [];
+  values.map((v, i) => [v ?? 0, i]).sort((a, b) => a[0] - b[0]).forEach(([, i], rank) => { ranks[i] = rank; });
+  return ranks;
+}
+
+/** Return whether two columns put designs into the same order, or the reverse. */
+function alike(a, b) {
+  const [p, q] = [ranksOf(a.values), ranksOf(b.values)];
+  const middle = (p.length - 1) / 2;
+  let both = 0;
+  let own = 0;
+  p.forEach((rank, i) => { both += (rank - middle) * (q[i] - middle); own += (rank - middle) ** 2; });
+  return own > 0 && Math.abs(both / own) > 0.96;
+}
+
+/**
+ * Return columns that are worth an axis each: those that must be there, then such that tell something else.
+ * @param {Column[]} first
+ * @param {Column[]} rest
+ * @param {number} room
+ */
+export function tellingColumns(first, rest, room) {
+  const found = first.slice(0, room);
+  for (const column of rest) {
+    if (found.length >= room) break;
+    if (!found.some((other) => alike(column, other))) found.push(column);
+  }
+  return found;
+}
+
 /** Return how much better objectives are told apart by a column's words than by chance. */
 function telling(column, objectives) {
   const groups = new Map();
   column.values.forEach((word, i) => groups.set(word, [...(groups.get(word) ?? []), i]));
   const n = column.values.length;
   const shares = objectives.map(({ values }) => {
-    const order = values.map((v, i) => [v ?? 0, i]).sort((a, b) => a[0] - b[0]);
-    const ranks = [];
-    order.forEach(([, i], rank) => { ranks[i] = rank; });
+    const ranks = ranksOf(values);
     const all = mean(ranks);
     const total = ranks.reduce((sum, r) => sum + (r - all) ** 2, 0) || 1;
     let between = 0;

@@ -1,10 +1,9 @@
 // The panel of a design: what it is, what it is made of, how near its limits are, what a change costs, what to take along.
 
-import { h, localAddress } from "./dom.js";
+import { h, localAddress, s } from "./dom.js";
 import { saveDesign } from "./files.js";
 import { colourClass, shape } from "./marks.js";
 import { amount, number, percent, signed } from "./numbers.js";
-import { s } from "./dom.js";
 
 const FIRST_LIMITS = 7;
 const BINDING = 0.999; // as in reports/reasons.py
@@ -72,7 +71,7 @@ export function panelView(x) {
       items.push(h("li", null, h("div", { class: "row" }, h("span", { class: "soft slot" }, name.replaceAll("_", " ")), h("b", null, word))));
     }
     for (const [name, row] of d.next ?? []) {
-      items.push(h("li", null, h("div", { class: "row" }, h("span", { class: "soft slot" }, `${name}, next in the tables`), h("b", null, row))));
+      items.push(h("li", { class: "next" }, h("span", { class: "soft" }, `${name}, next in the tables: `), row));
     }
     return items.length ? block("Parts to buy or make", h("ul", { class: "parts" }, items)) : null;
   }
@@ -127,7 +126,13 @@ export function panelView(x) {
   function remarks(d) {
     const told = [...(d.robust ? [d.robust.words] : []), ...(d.remarks ?? []), ...Object.entries(d.off_grid ?? {}).map(([n, t]) => `${n.replaceAll("_", " ")}: ${t}`)];
     if (d.alternatives) told.push(`The same objectives with ${d.alternatives.join("; ")}`);
-    return told.length ? block("Remarks", h("ul", { class: "remarks" }, told.map((text) => h("li", null, text)))) : null;
+    return told.length ? block("Remarks", h("ul", { class: "remarks" }, told.map((text) => h("li", null, named(text))))) : null;
+  }
+
+  /** Return a remark with its code as a word before it. */
+  function named(text) {
+    const found = /^([a-z][a-z0-9_]*): (.*)$/s.exec(text);
+    return found ? [h("b", null, `${found[1].replaceAll("_", " ")}: `), found[2]] : [text];
   }
 
   function values(d, i) {

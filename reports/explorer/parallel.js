@@ -2,6 +2,7 @@
 
 import { h, s } from "./dom.js";
 import { colourClass } from "./marks.js";
+import { tellingColumns } from "./model.js";
 import { amount, number } from "./numbers.js";
 import { axisOf } from "./scales.js";
 
@@ -43,7 +44,7 @@ export function parallelView(x) {
     const first = chosen.filter((c) => c.values.some((v) => v !== null));
     const room = most - (word && word.kind === "word" ? 1 : 0);
     const rest = model.derived.filter((c) => !first.includes(c) && c.values.every((v) => v !== null));
-    return [...first, ...rest].slice(0, room).concat(word && word.kind === "word" ? [word] : []);
+    return tellingColumns(first, rest, room).concat(word && word.kind === "word" ? [word] : []);
   }
 
   function draw() {
@@ -51,7 +52,7 @@ export function parallelView(x) {
     const wide = Math.max(280, Math.round(box.clientWidth || 800));
     flat = wide < 560;
     const shown = columns(wide);
-    const gap = flat ? 58 : (wide - 130) / Math.max(1, shown.length - 1);
+    const gap = flat ? 62 : (wide - 130) / Math.max(1, shown.length - 1);
     const high = flat ? 20 + gap * shown.length : 292;
     ends = flat ? [18, wide - 18] : [high - 24, 74];
     const group = x.group();
@@ -84,6 +85,7 @@ export function parallelView(x) {
     over.dragged.classList.remove("on");
     const behind = s("g", null, order.map(([, i]) => made[i]));
     svg.replaceChildren(behind, ...nodes.filter((n) => n.localName === "line"), ...over.brushes, over.dragged, over.chosen, over.hover, ...nodes.filter((n) => n.localName !== "line"));
+    svg.classList.toggle("flat", flat);
     svg.setAttribute("viewBox", `0 0 ${wide} ${high}`);
     svg.setAttribute("height", String(high));
     filter();

@@ -1,4 +1,4 @@
-"""What the explorer shows of a front, as one record: numbers in the unit in which they are read, words ready to print."""
+"""What the explorer shows of a front, as one record: numbers in the unit in which they are read, words as printed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def explorer_record(
     front: ParetoFront,
     calculation: Calculation,
     *,
-    about: About | None = None,
+    about: Any = None,
     prices: Sequence[Mapping[str, Any]] = (),
     files: Mapping[int, Mapping[str, str]] | None = None,
     drawings: Mapping[int, str] | None = None,
@@ -40,7 +40,7 @@ def explorer_record(
     front : ParetoFront
     calculation : Calculation
         Tells the meaning, symbol and source of quantities and limits.
-    about : About, optional
+    about : About or mapping, optional
         A title, and the facts of its head.
     prices : list of mapping
         Rows of prices.json, if it is there.
@@ -49,7 +49,7 @@ def explorer_record(
     drawings : mapping
         Rank -> SVG of ours; it is shown as a picture, in which nothing runs.
     """
-    told = _Told(front, calculation, about or About())
+    told = _Told(front, calculation, About.of(about))
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
@@ -123,7 +123,7 @@ class _Told:
         rows = []
         for key, words in (("limits", ""), ("fix", "is "), ("parts", "only "), ("robust", "scatters ")):
             told = self.front.settings.get(key)
-            for name, value in (told.items() if isinstance(told, Mapping) else ()):
+            for name, value in told.items() if isinstance(told, Mapping) else ():
                 if key != "robust" or name not in HOW_RATED:
                     rows.append({"label": _label(str(name)), "text": "", "words": words + _in_words(value)})
         return rows
@@ -146,7 +146,10 @@ class _Told:
         elif front.interrupted:
             word = "Stopped"
         details = front_details(front)
-        sentence = details[0].partition(": ")[2] or details[0]
+        amounts = c.amounts()
+        sentence = (details[0].partition(": ")[2] or details[0]).replace(amounts, "")
+        if amounts:
+            details.append(f"Smaller differences than these do not count: {_label(amounts.strip(' ()'))}.")
         return {
             "level": level,
             "word": word,
@@ -195,7 +198,9 @@ class _Told:
             name = str(miss.limit)
             share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
-            conflicts.append({"label": _label(name), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share})
+            conflicts.append(
+                {"label": _label(name), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share}
+            )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {
             "message": str(told.message or ""),
@@ -233,7 +238,7 @@ class _Told:
             "status": d.status.value,
             "gap": d.gap,
             "note": d.note,
-            "why": reason[:1].upper() + reason[1:] + ".",
+            "why": _label(reason[:1].upper() + reason[1:] + "."),
             "v": [_number(d.values.get(name, math.nan), self.frame.units[name]) for name in self.names],
             "choices": dict(d.choices),
             "parts": {slot: f"{row['table']}/{row}" for slot, row in d.parts.items()},

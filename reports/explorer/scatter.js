@@ -18,6 +18,7 @@ export function scatterView(x) {
   let place = [];
   let points = [];
   let frame = null;
+  let corners = []; // along the staircase, which names keep clear of
   let rings = {};
 
   function draw() {
@@ -28,7 +29,7 @@ export function scatterView(x) {
     const small = wide < 520;
     const ticksY = Math.max(4, Math.round(high / 64));
     const some = (column) => [...column.values, ...x.ghosts.map((d) => d[column.key])].filter((v) => v !== null && v !== undefined);
-    const axes = [axisOf(some(across), small ? 4 : Math.round(wide / 110)), axisOf(some(up), ticksY)];
+    const axes = [axisOf(some(across), small ? 5 : Math.round(wide / 110)), axisOf(some(up), ticksY)];
     const labels = axes[1].ticks.map((t) => number(t, 3));
     const left = 16 + 7 * Math.max(2, ...labels.map((t) => t.length));
     frame = { left, top: 34, right: wide - 16, bottom: high - 46, axes };
@@ -54,6 +55,7 @@ export function scatterView(x) {
     const below = s("text", { class: "title end", x: frame.right, y: high - 8 }, title(across, axes[0]), better(across, "←", "→"), " →");
     nodes.push(s("path", { class: "axis", d: `M${frame.left} ${frame.top}V${frame.bottom}H${frame.right}` }), below);
     if (across.kind === "objective" && up.kind === "objective") {
+      corners = [];
       nodes.push(s("path", { class: "stairs", d: stairs(across, up) }));
     }
     for (const ghost of x.ghosts) {
@@ -107,10 +109,14 @@ export function scatterView(x) {
     let path = "";
     let least = Infinity;
     let level = 0;
+    let before = null;
     for (const i of order) {
       if (sy * up.values[i] >= least) continue;
       least = sy * up.values[i];
       const [px, py] = place[i].map((v) => v.toFixed(1));
+      const [bx, by] = before ?? place[i];
+      for (let u = 0; u < 1; u += 0.125) corners.push([bx + (place[i][0] - bx) * u, by], [place[i][0], by + (place[i][1] - by) * u]);
+      before = place[i];
       path += path ? `H${px}V${py}` : `M${px} ${sy > 0 ? frame.top : frame.bottom}V${py}`;
       level = py;
     }
@@ -126,13 +132,15 @@ export function scatterView(x) {
       const [px, py] = place[i];
       const width = 6.9 * text.length;
       const away = size + 8;
-      const tries = [[away, -away], [away, away + 8], [-away - width, -away], [-away - width, away + 8], [-width / 2, -away - 8], [-width / 2, away + 16]];
+      const tries = [[away, -away], [away, away + 8], [-away - width, -away], [-away - width, away + 8], [-width / 2, -away - 8], [-width / 2, away + 16],
+        [away, -2.4 * away], [-away - width, -2.4 * away], [-width, -3.6 * away], [0, -3.6 * away]];
       const cost = ([dx, dy]) => {
         const area = [px + dx, py + dy - 11, px + dx + width, py + dy + 3];
         const out = Math.max(0, left + 4 - area[0]) + Math.max(0, area[2] - right) + Math.max(0, top - area[1]) + Math.max(0, area[3] - bottom);
         const points = place.filter((p) => p && p[0] > area[0] - 6 && p[0] < area[2] + 6 && p[1] > area[1] - 6 && p[1] < area[3] + 6).length;
+        const steps = corners.filter((p) => p[0] > area[0] - 4 && p[0] < area[2] + 4 && p[1] > area[1] - 4 && p[1] < area[3] + 4).length;
         const others = taken.filter((t) => t[0] < area[2] && t[2] > area[0] && t[1] < area[3] && t[3] > area[1]).length;
-        return 3 * out + 20 * points + 300 * others;
+        return 8 * out + 20 * points + 300 * others + 6 * steps + Math.hypot(dx + width / 2, dy) / 20;
       };
       const [dx, dy] = tries.reduce((a, b) => (cost(b) < cost(a) ? b : a));
       taken.push([px + dx, py + dy - 11, px + dx + width, py + dy + 3]);

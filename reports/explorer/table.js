@@ -1,7 +1,7 @@
 // The table of designs: what the charts show, for eyes, keyboard and screen reader; sorted by any column.
 
 import { h, hidden } from "./dom.js";
-import { colourClass, glyph } from "./marks.js";
+import { glyph } from "./marks.js";
 import { number } from "./numbers.js";
 
 const MOST_SIZES = 6; // columns of sizes that are shown unless others are chosen
@@ -38,6 +38,7 @@ export function tableView(x) {
     const group = x.group();
     head.replaceChildren(h("tr", null, header("rank", "#", ""), columns.map((c) => header(c.key, c.label, c.unit, c.text, c.kind === "word")),
       limits ? h("th", { scope: "col", class: "words" }, "at the limit") : null));
+    const bounds = (d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
     const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
     rows = model.record.designs.map((d, i) => {
       const first = h("th", { scope: "row" }, h("button", { type: "button", tabindex: -1, "aria-label": `Design ${d.rank}` }, String(d.rank)));
@@ -46,7 +47,7 @@ export function tableView(x) {
         : h("td", null, number(c.values[i], 4))));
       const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
       if (names) first.append(names);
-      const bound = limits ? h("td", { class: "words soft" }, d.at_limit.map((n) => labels.get(n) ?? n).join(", ")) : null;
+      const bound = limits ? h("td", { class: "words last soft", title: bounds(d) }, bounds(d)) : null;
       const row = h("tr", null, first, cells, bound);
       row.dataset.i = String(i);
       return row;
@@ -147,5 +148,5 @@ export function tableView(x) {
     }), label)));
   }
 
-  return { node, chooser, draw, filter, mark, colourClass };
+  return { node, chooser, draw, filter, mark };
 }

@@ -1,7 +1,6 @@
 // The words beside the pointer: made once for a front, afterwards only their letters change.
 
-import { h } from "./dom.js";
-import { plain } from "./dom.js";
+import { h, plain } from "./dom.js";
 import { amount } from "./numbers.js";
 
 const MOST_ROWS = 9;

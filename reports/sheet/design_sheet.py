@@ -387,6 +387,7 @@ def _sentence(text: str) -> str:
 
 
 def over_range_in_words(design: Design) -> str:
+    """Return how a design stands what scatters."""
     rating = design.robust
     holds = "holds" if rating.holds else "DOES NOT HOLD"
     told = f"Over the range that scatters it {holds} ({rating.proof or 'not proven'})"

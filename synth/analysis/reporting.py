@@ -20,6 +20,7 @@ from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON, load_front
+from synth.results.notebook import NotebookFrame
 
 CURVES = ("*.svg",)
 
@@ -49,7 +50,7 @@ def report(
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``pdf``, ``xlsx``, ``json``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``.
     about : mapping, optional
         Project, customer, number, author, date, ...
     length : {"summary", "normal", "full"}
@@ -78,6 +79,24 @@ def report(
     files, notes = _of_front(front, chosen, full, how, problem, catalogs)
     save_files(place, files)
     return place, list(files), notes
+
+
+def explore(
+    front: ParetoFront, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None
+) -> NotebookFrame:
+    """Return the explorer of a front as a frame for a notebook; arguments as for :func:`report`.
+
+    Raises
+    ------
+    InputError
+        The formulas of a loaded front cannot be read, or reports are not installed.
+    """
+    record, frame = report_named("explorer_record"), report_named("explorer_frame")
+    if record is None or frame is None:
+        raise InputError("explore", None, "the package reports, which clutchsynth is installed with")
+    read = calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front)
+    beside = _beside(Path(front.folder), front) if front.folder is not None else {}
+    return NotebookFrame(frame(record(front, read, about=about, prices=beside.get("prices", ())), height))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from synth.results.design import Design, Frame, design_columns, design_row
 from synth.results.drawings import report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text
 from synth.results.least_infeasible import LeastInfeasible
-from synth.results.notebook import notebook_html
+from synth.results.notebook import NotebookFrame, notebook_html
 from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -180,7 +180,7 @@ class ParetoFront:
         full : int
             Designs that the report tells in full.
         formats : list of str
-            Some of ``html``, ``pdf``, ``xlsx``, ``json``.
+            Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``.
         about : mapping, optional
             ``company``, ``project``, ``customer``, ``number``, ``title``, ``author``, ``checked_by``, ``revision``,
             ``date``, ``note``, ``logo`` (a file).
@@ -217,6 +217,34 @@ class ParetoFront:
             catalogs=catalogs,
         )[0]
         return place
+
+    def explore(
+        self, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None
+    ) -> NotebookFrame:
+        """Show the front in a notebook, to be explored: charts, table and single designs linked.
+
+        The frame holds all it shows and works without a network, also in a notebook that was exported.
+
+        Parameters
+        ----------
+        height : int
+            Of the frame, in pixels.
+        about : mapping, optional
+            ``title``, ``project`` and the like, as for :meth:`report`.
+        problem, catalogs : optional
+            For a loaded front of a problem of one's own, and own tables that were in memory.
+
+        Raises
+        ------
+        InputError
+            The formulas of a loaded front cannot be read, or reports are not installed.
+        """
+        from importlib import import_module  # results do not know who reports them
+
+        frame: NotebookFrame = import_module("synth.analysis.reporting").explore(
+            self, height, about=about, problem=problem, catalogs=catalogs
+        )
+        return frame
 
     def table(self) -> tuple[list[str], list[list[Any]]]:
         """Return headers with units, and one row per design; None where there is no value."""

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Any
 
 MOST_ROWS = 30
 LEVELS = {"good": "#14663b", "open": "#7a4d00", "bad": "#9b1c1c", "": "inherit"}
+
+
+@dataclass(frozen=True)
+class NotebookFrame:
+    """HTML that a notebook shows as it is, and that can be kept: a frame that is closed off from the notebook."""
+
+    html: str
+
+    def _repr_html_(self) -> str:
+        return self.html
+
+    def __repr__(self) -> str:
+        return f"NotebookFrame({len(self.html)} letters of HTML)"
 
 
 def notebook_html(

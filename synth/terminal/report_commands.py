@@ -32,6 +32,7 @@ def report(
     full: Annotated[
         int | None, typer.Option(help="Designs that report.html tells in full, 5 by default.", min=0)
     ] = None,
+    explorer: Annotated[bool, typer.Option("--explorer", help="The front to explore, as explorer.html.")] = False,
     as_pdf: Annotated[bool, typer.Option("--pdf", help="PDF as well (extra pdf).")] = False,
     as_xlsx: Annotated[bool, typer.Option("--xlsx", help="Live workbooks and designs.xlsx (extra excel).")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Sheets for programs as well.")] = False,
@@ -46,8 +47,9 @@ def report(
     quiet: Quiet = False,
 ) -> None:
     """Write what can be handed on: the report of a front, calculation sheets, PDF, live workbooks."""
+    wanted = (("explorer", explorer), ("pdf", as_pdf), ("xlsx", as_xlsx), ("json", as_json))
     asked: dict[str, Any] = {
-        "formats": ["html", *(word for word, on in (("pdf", as_pdf), ("xlsx", as_xlsx), ("json", as_json)) if on)],
+        "formats": ["html", *(word for word, on in wanted if on)],
         "length": length,
         "fonts": fonts or [],
         **_about(about),
@@ -57,7 +59,7 @@ def report(
     if folder is not None:
         check_output(folder)
     if source.suffix in FILES and source.is_file() and source.name != "front.json":
-        for flag, value in (("--design", design), ("--full", full)):
+        for flag, value in (("--design", design), ("--full", full), ("--explorer", explorer or None)):
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent
