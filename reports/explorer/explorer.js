@@ -85,9 +85,10 @@ export class Explorer {
     this.model = modelOf(record);
     this.state = readState(this.model, text);
     if (before) {
-      const parts = JSON.stringify([before.parts, before.choices]);
-      const same = record.designs.findIndex((d) => JSON.stringify([d.parts, d.choices]) === parts);
-      if (same >= 0) this.state.selected = same;
+      const made = (d) => JSON.stringify([d.parts, d.choices]);
+      const alike = record.designs.filter((d) => made(d) === made(before));
+      const same = alike.find((d) => d.rank === before.rank) ?? alike[0];
+      if (same) this.state.selected = record.designs.indexOf(same);
     }
     this.cache = null;
     this.build();

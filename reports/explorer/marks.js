@@ -26,5 +26,5 @@ export const glyph = (group, rest) =>
   s("svg", { class: "glyph", width: 14, height: 14, viewBox: "-7 -7 14 14", "aria-hidden": "true" },
     s("path", { d: shape(group, 5), class: colourClass(group, rest) }));
 
-/** Return the class that gives a group its colour; what is told as others is grey. */
-export const colourClass = (group, rest) => (group === rest ? "g g-rest" : `g g${group}`);
+/** Return the class that gives a group its colour: others are grey, where there are no groups all is of one colour. */
+export const colourClass = (group, rest) => (group === rest ? "g g-rest" : rest === -2 ? "g g1" : `g g${group}`);

@@ -99,7 +99,7 @@ function telling(column, objectives) {
  * @param {number} count of designs
  */
 export function grouping(column, count) {
-  if (!column) return { names: [], of: new Array(count).fill(0) };
+  if (!column) return { names: [], of: new Array(count).fill(0), rest: -2 };
   const counts = new Map();
   for (const word of column.values) counts.set(word, (counts.get(word) ?? 0) + 1);
   const ranked = [...counts.keys()].sort((a, b) => counts.get(b) - counts.get(a) || String(a).localeCompare(String(b)));

@@ -110,7 +110,8 @@ export function parallelView(x) {
       }
       return made;
     }
-    const rows = wrapped(column.label, Math.max(7, Math.floor(gap / 7.1)));
+    const room = Math.min(gap, 2 * (at - 4), 2 * (wide - at - 4));
+    const rows = wrapped(column.label, Math.max(7, Math.floor(room / 7.4)));
     const made = [s("line", { class: "axis", x1: at, x2: at, y1: ends[1] - 4, y2: ends[0] + 4 })];
     rows.forEach((row, k) => made.push(s("text", { x: at, y: 14 + 14 * (k + 2 - rows.length), class: "title mid" }, row)));
     if (column.unit) made.push(s("text", { x: at, y: 43, class: "mid soft" }, column.unit));

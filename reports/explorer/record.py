@@ -89,7 +89,7 @@ class _Told:
         rule = self.rules.get(name)
         return {
             "name": name,
-            "label": _label(name),
+            "label": _compared(_label(name)),
             "unit": unit_text(self.frame.limit_units[name]),
             "sign": SIGN_OF[self.frame.limit_senses[name]],
             "text": rule.text if rule is not None else "",
@@ -199,7 +199,8 @@ class _Told:
             share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _label(name), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share}
+                {"label": _compared(_label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign}
+                | {"by": share}
             )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {
@@ -310,4 +311,8 @@ def _in_words(value: Any) -> str:
         return ", ".join(f"{key} {_in_words(inner)}" for key, inner in value.items())
     if isinstance(value, (list, tuple)):
         return ", ".join(map(_in_words, value))
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value:.6g}" if isinstance(value, float) else _compared(str(value))
+
+
+def _compared(text: str) -> str:
+    return text.replace("<=", "≤").replace(">=", "≥")
