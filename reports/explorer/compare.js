@@ -12,6 +12,7 @@ export const MOST_PINS = 4;
 export function compareView(x) {
   const node = h("section", { class: "tray", "aria-label": "Comparison", hidden: true });
   let every = false;
+  let folded = false;
 
   function draw() {
     const { pins } = x.state;
@@ -21,14 +22,16 @@ export function compareView(x) {
       h("h2", null, pins.length > 1 ? `Compare ${pins.length} designs` : "Compare"),
       h("span", { class: "note" }, pins.length < MOST_PINS ? "Space, or Compare in the panel, adds one; four at most." : ""),
       h("span", { class: "grow" }),
-      pins.length > 1 ? h("label", { class: "check" }, h("input", { type: "checkbox", checked: every, onchange: (e) => { every = e.target.checked; draw(); node.querySelector("input").focus(); } }), "same rows too") : null,
+      pins.length > 1 ? h("button", { type: "button", class: "small fold", "aria-expanded": String(!folded), onclick: () => { folded = !folded; draw(); node.querySelector(".fold").focus(); } }, folded ? "Unfold" : "Fold") : null,
+      pins.length > 1 && !folded ? h("label", { class: "check" }, h("input", { type: "checkbox", checked: every, onchange: (e) => { every = e.target.checked; draw(); node.querySelector("input").focus(); } }), "all rows") : null,
       h("button", { type: "button", class: "small", onclick: () => x.unpin() }, "Close"));
     if (pins.length < 2) {
       const d = x.model.record.designs[pins[0]];
       node.replaceChildren(head, h("p", { class: "note" }, `Design ${d.rank} is kept. Choose another one to see both side by side.`));
       return;
     }
-    node.replaceChildren(head, h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of compared designs" }, table(pins)));
+    if (folded) node.replaceChildren(head);
+    else node.replaceChildren(head, h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of compared designs" }, table(pins)));
   }
 
   function table(pins) {

@@ -68,13 +68,19 @@ export class Explorer {
     this.root = h("div", { class: "explorer" });
     this.views = [];
     element.replaceChildren(this.root);
+    this.onPrint = () => this.openForPrint();
+    window.addEventListener("beforeprint", this.onPrint);
     this.handle = {
       update: (record) => this.show(record, stateText(this)),
       compareWith: (record) => this.compareWith(record),
       select: (rank) => this.select(this.model.record.designs.findIndex((d) => d.rank === rank)),
       selected: () => this.model.record.designs[this.state.selected] ?? null,
       state: () => stateText(this),
-      destroy: () => { this.watch?.disconnect(); this.root.remove(); },
+      destroy: () => {
+        this.watch?.disconnect();
+        window.removeEventListener("beforeprint", this.onPrint);
+        this.root.remove();
+      },
     };
   }
 
@@ -102,6 +108,12 @@ export class Explorer {
       this.parallel?.draw();
     });
     this.watch.observe(this.root);
+  }
+
+  /** Print what must not be missed on paper: what the certificate does not speak of, and all designs. */
+  openForPrint() {
+    this.table?.all();
+    for (const each of this.root.querySelectorAll("details.certificate")) each.open = true;
   }
 
   /** Build what stays while one record is shown. */

@@ -25,4 +25,5 @@ mount(document.getElementById("explorer"), record, {
     } catch { /* a frame without an address of its own */ }
   },
 });
+document.body.getBoundingClientRect(); // laid out as well
 document.documentElement.dataset.drawn = String(Math.round(performance.now() - started));

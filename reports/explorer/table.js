@@ -4,6 +4,7 @@ import { h, hidden } from "./dom.js";
 import { glyph } from "./marks.js";
 import { number } from "./numbers.js";
 
+const FIRST_ROWS = 200; // that are laid out before more are asked for
 const MOST_SIZES = 6; // columns of sizes that are shown unless others are chosen
 
 /**
@@ -14,9 +15,12 @@ export function tableView(x) {
   const head = h("thead");
   const body = h("tbody");
   const table = h("table", { class: "designs" }, h("caption", { class: "unseen" }, "Designs of the front"), head, body);
-  const node = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of designs" }, table);
+  const more = h("button", { type: "button", class: "small more", onclick: () => { all(); node.focus(); } });
+  const node = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of designs" }, table, more);
+  let most = FIRST_ROWS;
   const chooser = h("div", { class: "chooser" });
   let rows = [];
+  let sorted = [];
   let marked = { hovered: -1, selected: -1, pins: [] };
 
   /** Return the columns that are shown unless others are chosen. */
@@ -80,11 +84,25 @@ export function tableView(x) {
       if (values[a] === null || values[b] === null) return (values[a] === null) - (values[b] === null);
       return way * (typeof values[a] === "number" ? values[a] - values[b] : String(values[a]).localeCompare(String(values[b])));
     };
-    body.replaceChildren(...rows.map((_, i) => i).sort((a, b) => compare(a, b) || a - b).map((i) => rows[i]));
+    sorted = rows.map((_, i) => i).sort((a, b) => compare(a, b) || a - b);
+    body.replaceChildren(...sorted.map((i) => rows[i]));
   }
 
   function filter() {
-    rows.forEach((row, i) => { row.hidden = !x.shown(i); });
+    let count = 0;
+    for (const i of sorted) {
+      const kept = x.shown(i);
+      count += Number(kept);
+      rows[i].hidden = !kept || count > most;
+    }
+    more.hidden = count <= most;
+    more.textContent = `Show all ${number(count)} designs`;
+  }
+
+  /** Show the rows that were left for later. */
+  function all() {
+    most = Infinity;
+    filter();
   }
 
   function mark() {
@@ -148,5 +166,5 @@ export function tableView(x) {
     }), label)));
   }
 
-  return { node, chooser, draw, filter, mark };
+  return { node, chooser, draw, filter, mark, all };
 }

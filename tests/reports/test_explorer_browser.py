@@ -305,6 +305,14 @@ def test_a_phone_has_targets_for_fingers(shown: Shown):
         assert small == []
 
 
+def test_a_long_table_shows_the_rest_when_asked(shown: Shown):
+    with shown(grown(230)) as found:
+        assert visible_rows(found.page) == 200
+        found.page.locator("button", has_text="Show all 230 designs").click()
+        assert visible_rows(found.page) == 230
+        assert found.page.locator("button.more").is_hidden()
+
+
 def test_print_has_all_designs_and_no_controls(shown: Shown):
     with shown(grown(60)) as found:
         found.page.emulate_media(media="print")
