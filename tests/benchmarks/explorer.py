@@ -1,6 +1,6 @@
 """How long the explorer takes to draw, and to follow the pointer.
 
-``python -m tests.benchmarks.explorer [COUNT ...]`` draws made fronts of so many designs (20, 200 and 1000 unless told) in
+``python -m tests.benchmarks.explorer [COUNT ...]`` draws made fronts of so many designs (20, 200, 1000 unless told) in
 Chromium: from the record to the laid out page, a mark at a move of the pointer, and a filter; the median of five each.
 """
 
