@@ -18,7 +18,7 @@ from sqlalchemy.exc import IntegrityError
 
 from synth.errors import InputError
 from synth.jobs.database import Database
-from synth.jobs.job_queue import LOCAL
+from synth.jobs.job_table import LOCAL
 from synth.jobs.models import BrowserSession, Tenant, Token, moment
 
 READ, SUBMIT, ADMIN = "read", "submit", "admin"

@@ -18,8 +18,9 @@ from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
-from synth.jobs.job_queue import BATCH, Claim
+from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, JobSettings
+from synth.jobs.job_table import BATCH
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_groups import RowGroups
 from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping

@@ -7,7 +7,7 @@ from typing import Any
 
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.engine_work import program_fingerprint
-from synth.jobs.job_queue import BATCH
+from synth.jobs.job_table import BATCH
 from synth.jobs.kinds import batch, small
 from synth.jobs.kinds.asked import catalogs_of
 from synth.jobs.kinds.contract import Record

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from synth.files import csv_writer, read_json
-from synth.jobs.job_queue import DONE
+from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
 from synth.results.provenance import installed_versions

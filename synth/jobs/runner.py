@@ -16,8 +16,9 @@ from sqlalchemy.exc import OperationalError
 from synth.deadline import until
 from synth.errors import InputError
 from synth.jobs.executors import Cluster, Inline, Processes, is_lost
-from synth.jobs.job_queue import CANCELLED, Claim
+from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, RunnerSettings
+from synth.jobs.job_table import CANCELLED
 from synth.jobs.owners import new_owner
 from synth.jobs.signs import show
 from synth.jobs.solve import OtherCodeError, is_group, solve_unit

@@ -12,7 +12,8 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from synth.errors import InputError
-from synth.jobs.job_queue import JobQueue, new_id
+from synth.jobs.job_queue import JobQueue
+from synth.jobs.job_table import new_id
 from synth.jobs.kinds.contract import Record, Sources, mentioned
 from synth.jobs.models import Catalogue, Job, Upload, moment
 from synth.tables.table_text import TableText

@@ -17,7 +17,8 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
 from synth.jobs.database import digest
-from synth.jobs.job_queue import BATCH, BODY, DONE, LOCAL, OPEN, ROWS, Claim, Ending, JobQueue, held_by, tell_on
+from synth.jobs.job_queue import Claim, JobQueue, held_by
+from synth.jobs.job_table import BATCH, BODY, DONE, LOCAL, OPEN, ROWS, Ending, tell_on
 from synth.jobs.models import Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 from synth.jobs.solve import GROUP
 

@@ -29,8 +29,9 @@ from synth.jobs.engine_process import (
     resident,
 )
 from synth.jobs.engine_tasks import PLAN_TASK, ROWS_TASK, WORK_TASK
-from synth.jobs.job_queue import FAILED, PLAN, ROWS, STOPPED, Claim, Ending
+from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, JobSettings
+from synth.jobs.job_table import FAILED, PLAN, ROWS, STOPPED, Ending
 from synth.jobs.kinds.contract import TABLE, Record
 from synth.jobs.models import Job
 from synth.jobs.owners import new_owner

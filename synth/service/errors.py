@@ -26,7 +26,7 @@ from starlette.responses import Response
 
 from synth.errors import InputError, shortened
 from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
-from synth.jobs.job_queue import KeyTakenError, QueueFullError
+from synth.jobs.job_table import KeyTakenError, QueueFullError
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database

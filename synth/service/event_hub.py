@@ -13,7 +13,7 @@ from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from synth.jobs.job_queue import LIVE, Happening
+from synth.jobs.job_table import LIVE, Happening
 from synth.jobs.store import Store
 from synth.jobs.views import Standing, standings
 from synth.service.settings import ServiceSettings

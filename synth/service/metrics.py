@@ -17,7 +17,7 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.registry import Collector
 
-from synth.jobs.job_queue import LIVE
+from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job, moment
 from synth.jobs.store import Store
 from synth.plugins import installed

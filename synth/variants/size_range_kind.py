@@ -8,7 +8,7 @@ from typing import Any
 
 from synth.errors import InputError
 from synth.jobs.batch import BatchResult
-from synth.jobs.job_queue import BATCH, LIVE
+from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.asked import OF, WHERE, catalogs_of, checked_keys, of_files, read_json, seconds
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.models import Job

@@ -14,7 +14,8 @@ import pytest
 import sqlalchemy as sa
 
 from synth.jobs.database import file_url
-from synth.jobs.job_queue import (
+from synth.jobs.job_settings import StoreSettings
+from synth.jobs.job_table import (
     CANCELLED,
     DONE,
     FAILED,
@@ -28,7 +29,6 @@ from synth.jobs.job_queue import (
     QueueFullError,
     new_id,
 )
-from synth.jobs.job_settings import StoreSettings
 from synth.jobs.kinds.contract import Record
 from synth.jobs.models import Job, Tenant, WorkUnit, moment
 from synth.jobs.owners import new_owner

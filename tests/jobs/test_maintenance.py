@@ -12,7 +12,7 @@ import sqlalchemy as sa
 
 from synth.errors import InputError
 from synth.jobs.database import HEAD, engine_for, file_url
-from synth.jobs.job_queue import NewJob
+from synth.jobs.job_table import NewJob
 from synth.jobs.maintenance import back_up, bring_up, examine
 from synth.jobs.store import Store
 

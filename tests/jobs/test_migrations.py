@@ -16,7 +16,7 @@ from alembic.config import Config
 
 from synth.jobs.batch import BatchJob, batch, resume
 from synth.jobs.database import HEAD, engine_for, file_url
-from synth.jobs.job_queue import CANCELLED, DONE, OPEN
+from synth.jobs.job_table import CANCELLED, DONE, OPEN
 from synth.jobs.outputs import write_outputs
 from synth.jobs.store import Store
 from synth.question.settings import SearchSettings

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.job_queue import (
+from synth.jobs.job_table import (
     CANCELLED,
     DONE,
     FAILED,

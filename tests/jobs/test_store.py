@@ -20,7 +20,7 @@ from alembic.migration import MigrationContext
 from synth.errors import InputError
 from synth.jobs import database as module
 from synth.jobs.database import digest, file_url
-from synth.jobs.job_queue import CANCELLED, OPEN, RUNNING
+from synth.jobs.job_table import CANCELLED, OPEN, RUNNING
 from synth.jobs.models import VERSION_TABLE, Base, WorkUnit
 from synth.jobs.owners import has_died, new_owner
 from synth.jobs.store import Outcome, Store

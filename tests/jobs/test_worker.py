@@ -23,8 +23,8 @@ from synth.jobs.batch import batch
 from synth.jobs.database import file_url
 from synth.jobs.engine_process import EngineCrashedError, EngineProcess, Engines, EngineTimeoutError
 from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, READ_TASK
-from synth.jobs.job_queue import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
+from synth.jobs.job_table import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.kinds.contract import NOTHING
 from synth.jobs.models import Job, WorkUnit
 from synth.jobs.shelf import Shelf

@@ -12,7 +12,7 @@ import sqlalchemy as sa
 from fastapi import Depends
 
 from synth.jobs.accounts import Principal
-from synth.jobs.job_queue import Ending, NewJob
+from synth.jobs.job_table import Ending, NewJob
 from synth.jobs.models import BrowserSession, Tenant, Token, moment
 from synth.service.attempts import FailedTokens
 from synth.service.auth import needs

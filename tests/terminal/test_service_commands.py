@@ -12,7 +12,7 @@ import sqlalchemy as sa
 
 from synth.jobs.accounts import Accounts
 from synth.jobs.database import file_url
-from synth.jobs.job_queue import DONE, Ending, NewJob
+from synth.jobs.job_table import DONE, Ending, NewJob
 from synth.jobs.models import Job, moment
 from synth.jobs.store import Store
 from synth.terminal import service_commands

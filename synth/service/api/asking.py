@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from fastapi import Depends, Path, Query, Request, Response
 
 from synth.errors import InputError
-from synth.jobs.job_queue import LIVE
+from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.service.auth import Anybody
 from synth.service.context import Context

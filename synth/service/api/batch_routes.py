@@ -8,7 +8,7 @@ from fastapi import APIRouter, Body, File, Request, Response, UploadFile
 
 from synth.errors import InputError
 from synth.jobs.engine_tasks import CHECK_ROWS_TASK, UPLOAD_TASK
-from synth.jobs.job_queue import BATCH
+from synth.jobs.job_table import BATCH
 from synth.jobs.shelf import Shelf
 from synth.jobs.views import uploads_kept
 from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted

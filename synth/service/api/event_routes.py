@@ -16,7 +16,7 @@ from starlette.types import Receive, Scope, Send
 
 from synth.errors import InputError
 from synth.jobs.accounts import Principal
-from synth.jobs.job_queue import LIVE
+from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.jobs.views import Standing
 from synth.service.api.asking import LARGEST, LONGEST, WORD, OwnJob, own_job

@@ -14,7 +14,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.errors import ExtraNeededError
 from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
-from synth.jobs.job_queue import BATCH, LIVE
+from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.contract import MEDIA, Record
 from synth.jobs.models import Job
 from synth.jobs.shelf import Shelf

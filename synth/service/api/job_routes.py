@@ -9,7 +9,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 
 from synth.files import yaml_text
 from synth.jobs.engine_tasks import CHANGED_TASK
-from synth.jobs.job_queue import LIVE
+from synth.jobs.job_table import LIVE
 from synth.jobs.shelf import Shelf
 from synth.service.api.asking import (
     ENDED,

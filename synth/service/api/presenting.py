@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import Request
 
-from synth.jobs.job_queue import BATCH
+from synth.jobs.job_table import BATCH
 from synth.jobs.models import Job
 from synth.service.api.schemas import JobAnswer, JobFault, JobLinks
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.jobs.engine_tasks import DESIGNS_TASK, RENDER_TASK
-from synth.jobs.job_queue import BATCH
+from synth.jobs.job_table import BATCH
 from synth.jobs.kinds import kind
 from synth.jobs.kinds.contract import Record, Sources
 from synth.jobs.models import Job

@@ -9,7 +9,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.jobs.accounts import Principal
 from synth.jobs.engine_tasks import READ_TASK
-from synth.jobs.job_queue import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
+from synth.jobs.job_table import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
 from synth.jobs.kinds import Kind, kind
 from synth.jobs.shelf import Shelf
 from synth.service.api.presenting import FAMILIES

@@ -15,7 +15,7 @@ import httpx
 import pytest
 
 from synth.jobs.engine_process import Engines
-from synth.jobs.job_queue import Happening
+from synth.jobs.job_table import Happening
 from synth.jobs.store import Store
 from synth.jobs.views import Standing
 from synth.service.event_hub import EventHub
