@@ -15,32 +15,104 @@ const ICONS = {
  */
 export function certificateBanner(record) {
   const c = record.certificate;
-  const icon = s("svg", { class: "seal", width: 20, height: 20, viewBox: "0 0 18 18", "aria-hidden": "true" },
-    s("circle", { cx: 9, cy: 9, r: 8.5 }), s("path", { d: ICONS[c.level] ?? ICONS.open }));
-  return h("details", { class: `certificate ${c.level}` },
-    h("summary", null, icon, h("span", null, h("strong", null, `${c.word}. `), c.sentence), h("span", { class: "more" }, "What this means")),
-    h("div", { class: "body" },
-      h("div", null, h("h3", null, "What was searched"), flow(c), h("ul", null, c.offered.map((text) => h("li", null, text)), c.details.map((text) => h("li", null, text)),
-        h("li", null, "It can be checked again by other code: ", h("code", null, "clutchsynth verify DIR"), "."))),
-      h("div", null, h("h3", null, "Not part of it"), h("ul", null, c.not_part.map((text) => h("li", null, text))))));
+  const icon = s(
+    "svg",
+    { class: "seal", width: 20, height: 20, viewBox: "0 0 18 18", "aria-hidden": "true" },
+    s("circle", { cx: 9, cy: 9, r: 8.5 }),
+    s("path", { d: ICONS[c.level] ?? ICONS.open }),
+  );
+  return h(
+    "details",
+    { class: `certificate ${c.level}` },
+    h(
+      "summary",
+      null,
+      icon,
+      h("span", null, h("strong", null, `${c.word}. `), c.sentence),
+      h("span", { class: "more" }, "What this means"),
+    ),
+    h(
+      "div",
+      { class: "body" },
+      h(
+        "div",
+        null,
+        h("h3", null, "What was searched"),
+        flow(c),
+        h(
+          "ul",
+          null,
+          c.offered.map((text) => h("li", null, text)),
+          c.details.map((text) => h("li", null, text)),
+          h("li", null, "It can be checked again by other code: ", h("code", null, "clutchsynth verify DIR"), "."),
+        ),
+      ),
+      h(
+        "div",
+        null,
+        h("h3", null, "Not part of it"),
+        h(
+          "ul",
+          null,
+          c.not_part.map((text) => h("li", null, text)),
+        ),
+      ),
+    ),
+  );
 }
 
 /** Return how the combinations were dealt with, as a bar and in figures. */
 function flow(c) {
-  const shares = [["excluded", c.excluded, "excluded by a bound that holds for all their sizes"], ["solved", c.solved, "solved in full"], ["left", c.unresolved, "left open"]];
+  const shares = [
+    ["excluded", c.excluded, "excluded by a bound that holds for all their sizes"],
+    ["solved", c.solved, "solved in full"],
+    ["left", c.unresolved, "left open"],
+  ];
   const total = shares.reduce((sum, [, n]) => sum + n, 0) || 1;
   let at = 0;
-  const bars = shares.filter(([, n]) => n > 0).map(([name, n]) => {
-    const width = Math.max(4, (400 * n) / total);
-    const bar = s("rect", { class: name, x: at.toFixed(1), y: 0, width: Math.max(2, width - 2).toFixed(1), height: 8 });
-    at += width;
-    return bar;
-  });
+  const bars = shares
+    .filter(([, n]) => n > 0)
+    .map(([name, n]) => {
+      const width = Math.max(4, (400 * n) / total);
+      const bar = s("rect", {
+        class: name,
+        x: at.toFixed(1),
+        y: 0,
+        width: Math.max(2, width - 2).toFixed(1),
+        height: 8,
+      });
+      at += width;
+      return bar;
+    });
   const words = shares.filter(([name, n]) => n > 0 || name === "left");
-  return h("div", { class: "flow" },
+  return h(
+    "div",
+    { class: "flow" },
     h("p", null, h("b", null, number(c.combinations)), " combinations of parts and counts"),
-    s("svg", { viewBox: `0 0 ${Math.max(400, at).toFixed(1)} 8`, height: 8, preserveAspectRatio: "none", "aria-hidden": "true" }, bars),
-    h("ul", { class: "key" }, words.map(([name, n, text]) => h("li", null, s("svg", { width: 9, height: 9, "aria-hidden": "true" }, s("rect", { class: name, width: 9, height: 9 })), h("b", null, number(n)), ` ${text}`))));
+    s(
+      "svg",
+      {
+        viewBox: `0 0 ${Math.max(400, at).toFixed(1)} 8`,
+        height: 8,
+        preserveAspectRatio: "none",
+        "aria-hidden": "true",
+      },
+      bars,
+    ),
+    h(
+      "ul",
+      { class: "key" },
+      words.map(([name, n, text]) =>
+        h(
+          "li",
+          null,
+          s("svg", { width: 9, height: 9, "aria-hidden": "true" }, s("rect", { class: name, width: 9, height: 9 })),
+          h("b", null, number(n)),
+          ` ${text}`,
+        ),
+      ),
+    ),
+  );
 }
 
 /**
@@ -49,17 +121,76 @@ function flow(c) {
  */
 export function nothingCard(x) {
   const told = x.model.record.nothing ?? { message: "", conflicts: [], nearest: [] };
-  const rows = told.conflicts.map((miss) => h("tr", null,
-    h("th", { scope: "row" }, miss.label),
-    h("td", null, amount(miss.sides[0], miss.unit, 4)), h("td", null, `${miss.sign} ${amount(miss.sides[1], miss.unit, 4)}`),
-    h("td", { class: "missed" }, miss.by === null ? "" : percent(miss.by))));
-  const table = rows.length > 0 && h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Limits that are missed" }, h("table", { class: "designs missing" },
-    h("caption", { class: "unseen" }, "Limits that the nearest design misses"),
-    h("thead", null, h("tr", null, ["limit", "nearest design", "allowed", "missed by"].map((word) => h("th", { scope: "col" }, word)))), h("tbody", null, rows)));
-  const message = rows.length ? String(told.message).split(":")[0].split(" misses ")[0] + ` misses ${rows.length === 1 ? "one limit" : `${rows.length} limits`}.` : told.message;
-  const nearest = told.nearest.length > 0 && h("details", null, h("summary", null, "The nearest design"), h("table", { class: "values" }, h("tbody", null, told.nearest.map(([name, value]) => h("tr", null, h("th", { scope: "row" }, name), h("td", null, value))))));
+  const rows = told.conflicts.map((miss) =>
+    h(
+      "tr",
+      null,
+      h("th", { scope: "row" }, miss.label),
+      h("td", null, amount(miss.sides[0], miss.unit, 4)),
+      h("td", null, `${miss.sign} ${amount(miss.sides[1], miss.unit, 4)}`),
+      h("td", { class: "missed" }, miss.by === null ? "" : percent(miss.by)),
+    ),
+  );
+  const table =
+    rows.length > 0 &&
+    h(
+      "div",
+      { class: "scroll", tabindex: 0, role: "region", "aria-label": "Limits that are missed" },
+      h(
+        "table",
+        { class: "designs missing" },
+        h("caption", { class: "unseen" }, "Limits that the nearest design misses"),
+        h(
+          "thead",
+          null,
+          h(
+            "tr",
+            null,
+            ["limit", "nearest design", "allowed", "missed by"].map((word) => h("th", { scope: "col" }, word)),
+          ),
+        ),
+        h("tbody", null, rows),
+      ),
+    );
+  const message = rows.length
+    ? String(told.message).split(":")[0].split(" misses ")[0] +
+      ` misses ${rows.length === 1 ? "one limit" : `${rows.length} limits`}.`
+    : told.message;
+  const nearest =
+    told.nearest.length > 0 &&
+    h(
+      "details",
+      null,
+      h("summary", null, "The nearest design"),
+      h(
+        "table",
+        { class: "values" },
+        h(
+          "tbody",
+          null,
+          told.nearest.map(([name, value]) => h("tr", null, h("th", { scope: "row" }, name), h("td", null, value))),
+        ),
+      ),
+    );
   const slot = h("div", { class: "ways" });
   if (x.options.ways) x.options.ways(slot, x.handle);
-  else slot.append(h("p", null, "What would help, by how much, and which limits exclude each other, tells ", h("code", null, "clutchsynth explain SPEC.yaml"), "."));
-  return h("section", { class: "card nothing", "aria-labelledby": `${x.id}-nothing` }, h("h2", { id: `${x.id}-nothing` }, "Nothing meets all limits"), h("p", null, message), table, nearest, slot);
+  else
+    slot.append(
+      h(
+        "p",
+        null,
+        "What would help, by how much, and which limits exclude each other, tells ",
+        h("code", null, "clutchsynth explain SPEC.yaml"),
+        ".",
+      ),
+    );
+  return h(
+    "section",
+    { class: "card nothing", "aria-labelledby": `${x.id}-nothing` },
+    h("h2", { id: `${x.id}-nothing` }, "Nothing meets all limits"),
+    h("p", null, message),
+    table,
+    nearest,
+    slot,
+  );
 }

@@ -1,4 +1,4 @@
-// Nodes: text goes in as text only, whatever stands in it, and no style attribute is written (a strict policy refuses it).
+// Nodes: text goes in as text only, and no style attribute is written, which a strict policy refuses.
 
 const SVG = "http://www.w3.org/2000/svg";
 // Control characters and what turns the direction of writing: shown by their numbers, as in the PDF of reports.

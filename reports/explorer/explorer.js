@@ -1,9 +1,9 @@
-// The explorer: one state, draw() for what changes, mark() for what is pointed at; mark() never makes or removes a node.
+// The explorer: one state, draw() for what changes, mark() for what is pointed at, which never makes or removes a node.
 
+import { chips, frontCard, heading, parallelCard, tableCard } from "./cards.js";
 import { certificateBanner, nothingCard } from "./certificate.js";
 import { MOST_PINS, compareView } from "./compare.js";
 import { h } from "./dom.js";
-import { saveTable } from "./files.js";
 import { legendView } from "./legend.js";
 import { grouping, modelOf } from "./model.js";
 import { amount } from "./numbers.js";
@@ -14,14 +14,20 @@ import { readState, stateText } from "./state.js";
 import { tableView } from "./table.js";
 import { tipView } from "./tip.js";
 
-const FIRST_CHIPS = 8;
 let mounted = 0;
+
+/**
+ * @typedef {object} Download
+ * @property {string} label
+ * @property {string} [href] of the same host
+ * @property {string} [download] name of the file
+ * @property {(design: object) => void} [run] in place of an address
+ */
 
 /**
  * What whoever mounts the explorer may say; all of it may be left out.
  * @typedef {object} Options
- * @property {(design: object) => {label: string, href?: string, download?: string, run?: (design: object) => void}[]} [downloads]
- *   what the panel offers beside DESIGN.yaml: addresses of the same host, or functions
+ * @property {(design: object) => Download[]} [downloads] what the panel offers beside DESIGN.yaml
  * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter
  * @property {(slot: HTMLElement, handle: Handle) => void} [ways] fills the place for ways out where nothing is feasible
  * @property {(slot: HTMLElement, handle: Handle) => void} [actions] fills the corner beside the title
@@ -121,7 +127,7 @@ export class Explorer {
     const { model, options } = this;
     this.views = [];
     this.scatter = this.parallel = this.table = this.tip = this.legend = null;
-    const parts = [options.heading === false ? null : this.heading(), this.chips(), certificateBanner(model.record)];
+    const parts = [options.heading === false ? null : heading(this), chips(this), certificateBanner(model.record)];
     if (!model.count) {
       this.root.replaceChildren(...parts.filter(Boolean), nothingCard(this));
       return;
@@ -135,62 +141,17 @@ export class Explorer {
       this.scatter = scatterView(this);
       this.parallel = parallelView(this);
       this.legend = legendView(this);
-      left.push(this.frontCard(), this.parallelCard());
+      left.push(frontCard(this), parallelCard(this));
     }
     this.table = tableView(this);
-    left.push(this.tableCard());
+    left.push(tableCard(this));
     this.views = [this.scatter, this.parallel, this.table].filter(Boolean);
-    this.root.replaceChildren(...parts.filter(Boolean), h("div", { class: several ? "columns" : "columns single" }, h("div", { class: "left" }, left), this.panel.node), this.compare.node, ...(this.tip ? [this.tip.node] : []));
-  }
-
-  heading() {
-    const { record } = this.model;
-    const actions = h("div", { class: "actions" });
-    this.options.actions?.(actions, this.handle);
-    const facts = record.facts.length > 0 && h("p", { class: "facts" }, record.facts.map(([label, text]) => h("span", null, `${label} `, h("b", null, text))));
-    const kind = record.title === record.family ? record.program : `${record.family}, ${record.program}`;
-    return h("header", { class: "head" }, h("div", null, h("p", { class: "kind" }, kind), h("h1", null, record.title), facts), actions);
-  }
-
-  /** Return what was asked, and on request what was assumed. */
-  chips() {
-    const { asked, assumed } = this.model.record;
-    const chip = (entry) => h("li", { class: "chip", title: entry.text || null }, `${entry.label} `, h("b", null, entry.words ?? amount(entry.value, entry.unit)));
-    const row = (entry) => h("tr", { title: entry.text || null }, h("th", { scope: "row" }, entry.label), h("td", null, entry.words ?? amount(entry.value, entry.unit)));
-    const rest = [...asked.slice(FIRST_CHIPS), ...assumed];
-    const more = rest.length > 0 && h("details", { class: "assumed" }, h("summary", null, asked.length > FIRST_CHIPS ? `${rest.length} more, stated or assumed` : `${rest.length} values assumed`), h("table", { class: "values" }, h("tbody", null, rest.map(row))));
-    return h("div", { class: "asked" }, h("ul", { class: "chips", "aria-label": "What was asked" }, asked.slice(0, FIRST_CHIPS).map(chip)), more);
-  }
-
-  frontCard() {
-    const { model, state } = this;
-    const choose = (name, label, columns, none) => h("label", null, label, h("select", {
-      "data-field": name,
-      onchange: (event) => { state[name] = event.target.value; this.cache = null; this.draw(); },
-    }, none ? h("option", { value: "" }, none) : null, columns.map((c) => h("option", { value: c.key, selected: c.key === state[name] }, c.label))));
-    this.count = h("p", { class: "count", role: "status" });
-    this.filters = h("div", { class: "filters" });
-    const slot = h("div", { class: "what-if", hidden: !this.options.whatIf });
-    this.options.whatIf?.(slot, this.handle);
-    return h("section", { class: "card front", "aria-labelledby": `${this.id}-front` },
-      h("header", null, h("h2", { id: `${this.id}-front` }, "Front"), h("div", { class: "row controls" }, choose("x", "across", model.axes), choose("y", "up", model.axes), model.groupable.length ? choose("by", "colour", model.groupable, "none") : null), h("span", { class: "grow" }), this.count),
-      this.scatter.node, this.legend.node, this.filters, slot);
-  }
-
-  parallelCard() {
-    const same = this.parallel.same();
-    this.fields = h("details", { class: "ranges" }, h("summary", null, "Ranges by number"));
-    return h("section", { class: "card parallels", "aria-labelledby": `${this.id}-all` },
-      h("header", null, h("h2", { id: `${this.id}-all` }, "All attributes"), h("p", { class: "note pointer" }, "drag along an axis to keep a range, press it to drop the range")),
-      this.parallel.node, same.length ? h("p", { class: "note same" }, `The same in all: ${same.join("; ")}.`) : null, this.fields);
-  }
-
-  tableCard() {
-    return h("section", { class: "card table", "aria-labelledby": `${this.id}-table` },
-      h("header", null, h("h2", { id: `${this.id}-table` }, "Designs"), h("p", { class: "note pointer" }, this.model.count > 1 ? "arrow keys move, space compares" : ""), h("span", { class: "grow" }),
-        h("button", { type: "button", class: "small", onclick: () => saveTable(this) }, "CSV"),
-        h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), this.table.chooser)),
-      this.table.node);
+    this.root.replaceChildren(
+      ...parts.filter(Boolean),
+      h("div", { class: several ? "columns" : "columns single" }, h("div", { class: "left" }, left), this.panel.node),
+      this.compare.node,
+      ...(this.tip ? [this.tip.node] : []),
+    );
   }
 
   /** Return the groups that are shown by colour and shape. */
@@ -227,14 +188,46 @@ export class Explorer {
     const { model, state } = this;
     const kept = model.record.designs.filter((_, i) => this.shown(i)).length;
     this.count.textContent = kept === model.count ? `${model.count} designs` : `${kept} of ${model.count} designs`;
-    const drop = (words, run) => h("button", { type: "button", class: "filter", onclick: () => { run(); this.root.querySelector(".scatter").focus(); } }, words, h("span", { "aria-hidden": "true" }, " ×"), h("span", { class: "unseen" }, " drop this filter"));
+    const drop = (words, run) =>
+      h(
+        "button",
+        {
+          type: "button",
+          class: "filter",
+          onclick: () => {
+            run();
+            this.root.querySelector(".scatter").focus();
+          },
+        },
+        words,
+        h("span", { "aria-hidden": "true" }, " ×"),
+        h("span", { class: "unseen" }, " drop this filter"),
+      );
     const chips = [...state.ranges].map(([key, [low, high]]) => {
       const c = model.column(key);
-      const words = low === -Infinity ? `${c.label} ≤ ${amount(high, c.unit, 3)}` : high === Infinity ? `${c.label} ≥ ${amount(low, c.unit, 3)}` : `${c.label} ${amount(low, "", 3)} to ${amount(high, c.unit, 3)}`;
+      const words =
+        low === -Infinity
+          ? `${c.label} ≤ ${amount(high, c.unit, 3)}`
+          : high === Infinity
+            ? `${c.label} ≥ ${amount(low, c.unit, 3)}`
+            : `${c.label} ${amount(low, "", 3)} to ${amount(high, c.unit, 3)}`;
       return drop(words, () => this.keep([[key, null]]));
     });
-    if (state.off.size) chips.push(drop(`${[...state.off].map((k) => this.group().names[k]).join(", ")} hidden`, () => { state.off.clear(); this.filtered(); }));
-    if (chips.length > 1) chips.push(drop("all filters", () => { state.off.clear(); state.ranges.clear(); this.filtered(); }));
+    if (state.off.size)
+      chips.push(
+        drop(`${[...state.off].map((k) => this.group().names[k]).join(", ")} hidden`, () => {
+          state.off.clear();
+          this.filtered();
+        }),
+      );
+    if (chips.length > 1)
+      chips.push(
+        drop("all filters", () => {
+          state.off.clear();
+          state.ranges.clear();
+          this.filtered();
+        }),
+      );
     this.filters.replaceChildren(...chips);
     const typing = this.fields.contains(document.activeElement) && this.fields.open;
     if (!typing) this.fields.replaceChildren(this.fields.firstChild, this.parallel.fields());
@@ -303,7 +296,9 @@ export class Explorer {
 
   compareWith(record) {
     const other = record && modelOf(record);
-    this.ghosts = other ? record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]]))) : [];
+    this.ghosts = other
+      ? record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]])))
+      : [];
     this.scatter?.draw();
     this.legend?.draw();
   }

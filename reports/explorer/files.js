@@ -10,7 +10,9 @@ function value(told, indent) {
   if (told === null || typeof told !== "object") return ` ${JSON.stringify(told)}\n`;
   const entries = Object.entries(told);
   if (Array.isArray(told) || !entries.length) return ` ${JSON.stringify(told)}\n`;
-  return `\n${entries.map(([key, inner]) => `${indent}${/^[A-Za-z_]\w*$/.test(key) ? key : JSON.stringify(key)}:${value(inner, `${indent}  `)}`).join("")}`;
+  const name = (key) => (/^[A-Za-z_]\w*$/.test(key) ? key : JSON.stringify(key));
+  const lines = entries.map(([key, inner]) => `${indent}${name(key)}:${value(inner, `${indent}  `)}`);
+  return `\n${lines.join("")}`;
 }
 
 /**
@@ -46,7 +48,11 @@ export function tableText(x) {
 
 /** Hand over the design that is chosen. */
 export const saveDesign = (x, i) =>
-  save(`design_${String(x.model.record.designs[i].rank).padStart(2, "0")}.yaml`, designText(x.model.record, i), "text/yaml");
+  save(
+    `design_${String(x.model.record.designs[i].rank).padStart(2, "0")}.yaml`,
+    designText(x.model.record, i),
+    "text/yaml",
+  );
 
 /** Hand over the table. */
 export const saveTable = (x) => save("designs.csv", `\ufeff${tableText(x)}`, "text/csv");

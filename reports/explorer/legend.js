@@ -14,9 +14,22 @@ export function legendView(x) {
   function draw() {
     const group = x.group();
     const column = x.model.column(x.state.by);
-    buttons = group.names.map((name, k) => h("button", { type: "button", "aria-pressed": "true", onclick: () => x.toggle(k) }, glyph(k, group.rest), name));
+    buttons = group.names.map((name, k) =>
+      h("button", { type: "button", "aria-pressed": "true", onclick: () => x.toggle(k) }, glyph(k, group.rest), name),
+    );
     const title = column && h("span", { class: "soft" }, column.label);
-    const ghost = x.ghosts.length > 0 && h("span", { class: "soft" }, s("svg", { class: "glyph", width: 14, height: 14, viewBox: "-7 -7 14 14", "aria-hidden": "true" }, s("path", { class: "ghost", d: shape(0, 5) })), "the front as asked");
+    const ghost =
+      x.ghosts.length > 0 &&
+      h(
+        "span",
+        { class: "soft" },
+        s(
+          "svg",
+          { class: "glyph", width: 14, height: 14, viewBox: "-7 -7 14 14", "aria-hidden": "true" },
+          s("path", { class: "ghost", d: shape(0, 5) }),
+        ),
+        "the front as asked",
+      );
     node.replaceChildren(...[title, ...buttons, ghost].filter(Boolean));
     node.hidden = !buttons.length && !ghost;
     mark();

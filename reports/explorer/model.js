@@ -31,10 +31,22 @@ function columnsOf(record) {
   });
   if (designs.some((d) => d.robust && d.robust.yield !== null)) {
     const values = designs.map((d) => d.robust?.yield ?? null);
-    made.push({ key: "robust:yield", label: "yield", unit: "%", text: "Share of samples that keep all limits", kind: "robust", values });
+    made.push({
+      key: "robust:yield",
+      label: "yield",
+      unit: "%",
+      text: "Share of samples that keep all limits",
+      kind: "robust",
+      values,
+    });
   }
   const words = (group, name, value) => ({
-    key: `${group}:${name}`, label: name.replaceAll("_", " "), unit: "", text: "", kind: "word", values: designs.map(value),
+    key: `${group}:${name}`,
+    label: name.replaceAll("_", " "),
+    unit: "",
+    text: "",
+    kind: "word",
+    values: designs.map(value),
   });
   const first = designs[0] ?? { choices: {}, parts: {} };
   for (const slot of Object.keys(first.parts)) {
@@ -48,7 +60,12 @@ function columnsOf(record) {
 /** Return the place of every value in their order. */
 function ranksOf(values) {
   const ranks = [];
-  values.map((v, i) => [v ?? 0, i]).sort((a, b) => a[0] - b[0]).forEach(([, i], rank) => { ranks[i] = rank; });
+  values
+    .map((v, i) => [v ?? 0, i])
+    .sort((a, b) => a[0] - b[0])
+    .forEach(([, i], rank) => {
+      ranks[i] = rank;
+    });
   return ranks;
 }
 
@@ -58,7 +75,10 @@ function alike(a, b) {
   const middle = (p.length - 1) / 2;
   let both = 0;
   let own = 0;
-  p.forEach((rank, i) => { both += (rank - middle) * (q[i] - middle); own += (rank - middle) ** 2; });
+  p.forEach((rank, i) => {
+    both += (rank - middle) * (q[i] - middle);
+    own += (rank - middle) ** 2;
+  });
   return own > 0 && Math.abs(both / own) > 0.96;
 }
 
@@ -103,8 +123,9 @@ export function grouping(column, count) {
   const counts = new Map();
   for (const word of column.values) counts.set(word, (counts.get(word) ?? 0) + 1);
   const ranked = [...counts.keys()].sort((a, b) => counts.get(b) - counts.get(a) || String(a).localeCompare(String(b)));
-  const named = ranked.slice(0, ranked.length > MOST_GROUPS ? MOST_GROUPS - 1 : MOST_GROUPS).sort((a, b) =>
-    typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
+  const named = ranked
+    .slice(0, ranked.length > MOST_GROUPS ? MOST_GROUPS - 1 : MOST_GROUPS)
+    .sort((a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b))));
   const rest = ranked.length > named.length;
   const names = named.map((word) => (typeof word === "number" ? number(word) : String(word)));
   if (rest) names.push("others");

@@ -7,10 +7,17 @@ const record = JSON.parse(document.getElementById("record").textContent);
 
 function themeSwitch(slot) {
   const root = document.documentElement;
-  const dark = () => (root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches);
+  const dark = () =>
+    root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
   const button = h("button", { type: "button", class: "small" });
-  const name = () => { button.textContent = dark() ? "Light" : "Dark"; button.setAttribute("aria-label", dark() ? "Light colours" : "Dark colours"); };
-  button.addEventListener("click", () => { root.dataset.theme = dark() ? "light" : "dark"; name(); });
+  const name = () => {
+    button.textContent = dark() ? "Light" : "Dark";
+    button.setAttribute("aria-label", dark() ? "Light colours" : "Dark colours");
+  };
+  button.addEventListener("click", () => {
+    root.dataset.theme = dark() ? "light" : "dark";
+    name();
+  });
   name();
   slot.append(h("button", { type: "button", class: "small", onclick: () => window.print() }, "Print"), button);
 }
@@ -21,8 +28,11 @@ mount(document.getElementById("explorer"), record, {
   state: location.hash.slice(1),
   onState: (text) => {
     try {
-      if (location.protocol !== "about:") history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
-    } catch { /* a frame without an address of its own */ }
+      if (location.protocol !== "about:")
+        history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
+    } catch {
+      /* a frame without an address of its own */
+    }
   },
 });
 document.body.getBoundingClientRect(); // laid out as well

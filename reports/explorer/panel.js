@@ -1,4 +1,4 @@
-// The panel of a design: what it is, what it is made of, how near its limits are, what a change costs, what to take along.
+// The panel of a design: what it is and is made of, how near its limits are, what a change costs, what to take along.
 
 import { h, localAddress, s } from "./dom.js";
 import { saveDesign } from "./files.js";
@@ -20,7 +20,9 @@ export function panelView(x) {
     const i = x.state.selected;
     const d = x.model.record.designs[i];
     if (!d) {
-      node.replaceChildren(h("div", { class: "block" }, h("h2", null, "No design"), h("p", { class: "soft" }, "There is none to show.")));
+      node.replaceChildren(
+        h("div", { class: "block" }, h("h2", null, "No design"), h("p", { class: "soft" }, "There is none to show.")),
+      );
       return;
     }
     const open = new Map([...node.querySelectorAll("details")].map((each) => [each.dataset.name, each.open]));
@@ -29,26 +31,71 @@ export function panelView(x) {
     for (const each of node.querySelectorAll("details")) each.open = open.get(each.dataset.name) ?? each.open;
   }
 
-  const block = (title, ...children) => h("section", { class: "block" }, title ? h("h3", null, title) : null, ...children);
+  const block = (title, ...children) =>
+    h("section", { class: "block" }, title ? h("h3", null, title) : null, ...children);
 
   function head(d, i) {
     const pinned = x.state.pins.includes(i);
     const badges = x.model.names[i].map((name) => h("span", { class: "badge accent" }, name));
     if (d.violated) badges.push(h("span", { class: "badge bad" }, "limits violated"));
-    else if (d.status === "optimal" && d.gap !== null) badges.push(h("span", { class: "badge good" }, `proven to ${percent(d.gap)}`));
+    else if (d.status === "optimal" && d.gap !== null)
+      badges.push(h("span", { class: "badge good" }, `proven to ${percent(d.gap)}`));
     else badges.push(h("span", { class: "badge open" }, d.status.replaceAll("_", " ")));
-    if (d.robust) badges.push(h("span", { class: `badge ${d.robust.holds ? "good" : "bad"}` }, d.robust.holds ? "stands what scatters" : "does not stand what scatters"));
-    const pin = x.model.count > 1 && h("button", { type: "button", class: "small", "aria-pressed": String(pinned), onclick: () => { x.pin(i); node.querySelector("button")?.focus(); } },
-      pinned ? "Compared ✓" : "Compare");
+    if (d.robust)
+      badges.push(
+        h(
+          "span",
+          { class: `badge ${d.robust.holds ? "good" : "bad"}` },
+          d.robust.holds ? "stands what scatters" : "does not stand what scatters",
+        ),
+      );
+    const pin =
+      x.model.count > 1 &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-pressed": String(pinned),
+          onclick: () => {
+            x.pin(i);
+            node.querySelector("button")?.focus();
+          },
+        },
+        pinned ? "Compared ✓" : "Compare",
+      );
     const group = x.group();
-    const mark = x.state.by && x.model.count > 1 ? s("svg", { class: "glyph", width: 16, height: 16, viewBox: "-8 -8 16 16", "aria-hidden": "true" },
-      s("path", { d: shape(group.of[i], 6), class: colourClass(group.of[i], group.rest) })) : null;
-    const big = x.model.objectives.map((c) => h("div", null, h("dt", null, c.label), h("dd", null, h("b", null, number(c.values[i], 4)), c.unit ? h("small", null, `\u202f${c.unit}`) : null)));
-    return h("div", { class: "block" },
-      h("div", { class: "row top" }, mark, h("h2", { class: "large", tabindex: -1 }, `Design ${d.rank}`), h("span", { class: "grow" }), pin),
+    const mark =
+      x.state.by && x.model.count > 1
+        ? s(
+            "svg",
+            { class: "glyph", width: 16, height: 16, viewBox: "-8 -8 16 16", "aria-hidden": "true" },
+            s("path", { d: shape(group.of[i], 6), class: colourClass(group.of[i], group.rest) }),
+          )
+        : null;
+    const big = x.model.objectives.map((c) =>
+      h(
+        "div",
+        null,
+        h("dt", null, c.label),
+        h("dd", null, h("b", null, number(c.values[i], 4)), c.unit ? h("small", null, `\u202f${c.unit}`) : null),
+      ),
+    );
+    return h(
+      "div",
+      { class: "block" },
+      h(
+        "div",
+        { class: "row top" },
+        mark,
+        h("h2", { class: "large", tabindex: -1 }, `Design ${d.rank}`),
+        h("span", { class: "grow" }),
+        pin,
+      ),
       h("div", { class: "row badges" }, badges),
       h("dl", { class: "big" }, big),
-      h("p", { class: "why" }, d.why));
+      h("p", { class: "why" }, d.why),
+    );
   }
 
   function drawing(d) {
@@ -62,13 +109,32 @@ export function panelView(x) {
     const items = Object.entries(d.parts).map(([slot, key]) => {
       const part = record.parts[key] ?? { name: key, table: "", source: "", confidence: "", note: "" };
       const tone = part.confidence === "verified" ? "good" : "open";
-      return h("li", null,
-        h("div", { class: "row" }, h("span", { class: "soft slot" }, slot.replaceAll("_", " ")), h("b", null, part.name), part.confidence ? h("span", { class: `badge ${tone}` }, part.confidence) : null),
-        h("details", { class: "source", "data-name": `part ${slot}` }, h("summary", null, `table ${part.table}${part.source ? `: ${part.source}` : ""}`),
-          part.note ? h("p", null, part.note) : null));
+      return h(
+        "li",
+        null,
+        h(
+          "div",
+          { class: "row" },
+          h("span", { class: "soft slot" }, slot.replaceAll("_", " ")),
+          h("b", null, part.name),
+          part.confidence ? h("span", { class: `badge ${tone}` }, part.confidence) : null,
+        ),
+        h(
+          "details",
+          { class: "source", "data-name": `part ${slot}` },
+          h("summary", null, `table ${part.table}${part.source ? `: ${part.source}` : ""}`),
+          part.note ? h("p", null, part.note) : null,
+        ),
+      );
     });
     for (const [name, word] of Object.entries(d.choices)) {
-      items.push(h("li", null, h("div", { class: "row" }, h("span", { class: "soft slot" }, name.replaceAll("_", " ")), h("b", null, word))));
+      items.push(
+        h(
+          "li",
+          null,
+          h("div", { class: "row" }, h("span", { class: "soft slot" }, name.replaceAll("_", " ")), h("b", null, word)),
+        ),
+      );
     }
     for (const [name, row] of d.next ?? []) {
       items.push(h("li", { class: "next" }, h("span", { class: "soft" }, `${name}, next in the tables: `), row));
@@ -82,9 +148,34 @@ export function panelView(x) {
     if (!rows.length) return null;
     const shown = all ? rows : rows.slice(0, FIRST_LIMITS);
     const more = rows.length - FIRST_LIMITS;
-    const words = all ? "Fewer" : `${more} more, ${more > 1 ? "all " : ""}below ${Math.ceil(100 * rows[FIRST_LIMITS]?.used)}\u00a0%`;
-    const toggle = more > 0 && h("button", { type: "button", class: "small", "aria-expanded": String(all), onclick: () => { all = !all; draw(); node.querySelector(".limits + button")?.focus(); } }, words);
-    return block("How far each limit is used", h("ul", { class: "limits" }, shown.map((row) => used(d, row))), toggle);
+    const words = all
+      ? "Fewer"
+      : `${more} more, ${more > 1 ? "all " : ""}below ${Math.ceil(100 * rows[FIRST_LIMITS]?.used)}\u00a0%`;
+    const toggle =
+      more > 0 &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "small",
+          "aria-expanded": String(all),
+          onclick: () => {
+            all = !all;
+            draw();
+            node.querySelector(".limits + button")?.focus();
+          },
+        },
+        words,
+      );
+    return block(
+      "How far each limit is used",
+      h(
+        "ul",
+        { class: "limits" },
+        shown.map((row) => used(d, row)),
+      ),
+      toggle,
+    );
   }
 
   const bad = (d, row) => Number(d.violated?.includes(row.limit.name) ?? false);
@@ -92,41 +183,120 @@ export function panelView(x) {
   function used(d, row) {
     const { limit, sides } = row;
     const tone = bad(d, row) ? "bad" : row.used >= BINDING && limit.sign !== "=" ? "hot" : "";
-    const bar = s("svg", { class: `bar ${tone}`, width: 84, height: 12, viewBox: "0 0 84 12", "aria-hidden": "true" },
+    const bar = s(
+      "svg",
+      { class: `bar ${tone}`, width: 84, height: 12, viewBox: "0 0 84 12", "aria-hidden": "true" },
       s("rect", { class: "base", x: 0, y: 3, width: 80, height: 6, rx: 1 }),
-      s("rect", { class: "fill", x: 0, y: 3, width: (80 * Math.min(1.04, Math.max(0, row.used))).toFixed(1), height: 6, rx: 1 }),
-      s("path", { class: "end", d: "M80 0v12" }));
+      s("rect", {
+        class: "fill",
+        x: 0,
+        y: 3,
+        width: (80 * Math.min(1.04, Math.max(0, row.used))).toFixed(1),
+        height: 6,
+        rx: 1,
+      }),
+      s("path", { class: "end", d: "M80 0v12" }),
+    );
     const digits = near(sides) ? 5 : 3;
-    const both = sides[0] === null || sides[1] === null ? "" : `${number(sides[0], digits)} ${limit.sign} ${amount(sides[1], limit.unit, digits)}`;
-    return h("li", { class: tone || null, title: limit.text || null },
-      h("span", { class: "what" }, limit.label, tone === "bad" ? h("b", { class: "tag" }, " violated") : tone ? h("b", { class: "tag" }, " at limit") : null),
-      bar, h("span", { class: "share" }, percent(row.used)), h("span", { class: "sides" }, both));
+    const both =
+      sides[0] === null || sides[1] === null
+        ? ""
+        : `${number(sides[0], digits)} ${limit.sign} ${amount(sides[1], limit.unit, digits)}`;
+    return h(
+      "li",
+      { class: tone || null, title: limit.text || null },
+      h(
+        "span",
+        { class: "what" },
+        limit.label,
+        tone === "bad" ? h("b", { class: "tag" }, " violated") : tone ? h("b", { class: "tag" }, " at limit") : null,
+      ),
+      bar,
+      h("span", { class: "share" }, percent(row.used)),
+      h("span", { class: "sides" }, both),
+    );
   }
 
-  const near = ([value, limit]) => value !== null && limit !== null && value !== limit && number(value, 3) === number(limit, 3);
+  const near = ([value, limit]) =>
+    value !== null && limit !== null && value !== limit && number(value, 3) === number(limit, 3);
 
   function prices(d) {
-    if (d.prices) return block("What a change costs", h("ul", { class: "remarks" }, d.prices.slice(0, 12).map((text) => h("li", null, text))));
+    if (d.prices)
+      return block(
+        "What a change costs",
+        h(
+          "ul",
+          { class: "remarks" },
+          d.prices.slice(0, 12).map((text) => h("li", null, text)),
+        ),
+      );
     if (!d.slopes) return null;
     const { objectives } = x.model;
     const most = Math.max(...d.slopes.flatMap(([, row]) => row.map((v) => Math.abs(v ?? 0))));
     const cell = (v, k) => {
       if (v === null || Math.abs(v) < 1e-3) return h("td", { class: "soft" }, "–");
-      const worse = (v > 0) === (x.model.record.objectives[objectives[k].key] === "min");
+      const worse = v > 0 === (x.model.record.objectives[objectives[k].key] === "min");
       const width = Math.max(1.5, (34 * Math.abs(v)) / most);
-      return h("td", null, s("svg", { class: `slope ${worse ? "worse" : "gain"}`, width: 36, height: 8, viewBox: "0 0 36 8", "aria-hidden": "true" },
-        s("rect", { x: (35 - width).toFixed(1), y: 0, width: width.toFixed(1), height: 8, rx: 1 })), h("span", null, signed(v)));
+      return h(
+        "td",
+        null,
+        s(
+          "svg",
+          {
+            class: `slope ${worse ? "worse" : "gain"}`,
+            width: 36,
+            height: 8,
+            viewBox: "0 0 36 8",
+            "aria-hidden": "true",
+          },
+          s("rect", { x: (35 - width).toFixed(1), y: 0, width: width.toFixed(1), height: 8, rx: 1 }),
+        ),
+        h("span", null, signed(v)),
+      );
     };
-    const table = h("table", { class: "prices" },
-      h("thead", null, h("tr", null, h("td"), objectives.map((c) => h("th", { scope: "col" }, c.label)))),
-      h("tbody", null, d.slopes.map(([name, row]) => h("tr", null, h("th", { scope: "row" }, name), row.map(cell)))));
-    return block("What 1 % more changes", table, h("p", { class: "note" }, "Slopes with these parts, good for a few per cent."));
+    const table = h(
+      "table",
+      { class: "prices" },
+      h(
+        "thead",
+        null,
+        h(
+          "tr",
+          null,
+          h("td"),
+          objectives.map((c) => h("th", { scope: "col" }, c.label)),
+        ),
+      ),
+      h(
+        "tbody",
+        null,
+        d.slopes.map(([name, row]) => h("tr", null, h("th", { scope: "row" }, name), row.map(cell))),
+      ),
+    );
+    return block(
+      "What 1 % more changes",
+      table,
+      h("p", { class: "note" }, "Slopes with these parts, good for a few per cent."),
+    );
   }
 
   function remarks(d) {
-    const told = [...(d.robust ? [d.robust.words] : []), ...(d.remarks ?? []), ...Object.entries(d.off_grid ?? {}).map(([n, t]) => `${n.replaceAll("_", " ")}: ${t}`)];
+    const told = [
+      ...(d.robust ? [d.robust.words] : []),
+      ...(d.remarks ?? []),
+      ...Object.entries(d.off_grid ?? {}).map(([n, t]) => `${n.replaceAll("_", " ")}: ${t}`),
+    ];
     if (d.alternatives) told.push(`The same objectives with ${d.alternatives.join("; ")}`);
-    return told.length ? block("Remarks", h("ul", { class: "remarks" }, told.map((text) => h("li", null, named(text))))) : null;
+    return told.length
+      ? block(
+          "Remarks",
+          h(
+            "ul",
+            { class: "remarks" },
+            told.map((text) => h("li", null, named(text))),
+          ),
+        )
+      : null;
   }
 
   /** Return a remark with its code as a word before it. */
@@ -137,8 +307,27 @@ export function panelView(x) {
 
   function values(d, i) {
     const rows = x.model.columns.filter((c) => c.kind !== "word" && c.values[i] !== null);
-    return h("details", { class: "block", "data-name": "values" }, h("summary", null, h("h3", null, `All ${rows.length} sizes and results`)),
-      h("table", { class: "values" }, h("tbody", null, rows.map((c) => h("tr", { title: c.text || null }, h("th", { scope: "row" }, c.label), h("td", null, amount(c.values[i], c.unit)))))));
+    return h(
+      "details",
+      { class: "block", "data-name": "values" },
+      h("summary", null, h("h3", null, `All ${rows.length} sizes and results`)),
+      h(
+        "table",
+        { class: "values" },
+        h(
+          "tbody",
+          null,
+          rows.map((c) =>
+            h(
+              "tr",
+              { title: c.text || null },
+              h("th", { scope: "row" }, c.label),
+              h("td", null, amount(c.values[i], c.unit)),
+            ),
+          ),
+        ),
+      ),
+    );
   }
 
   function downloads(d, i) {
@@ -148,8 +337,10 @@ export function panelView(x) {
       if (address) own.push(h("a", { class: "button small", href: address }, label));
     }
     for (const entry of x.options.downloads?.(d) ?? []) {
-      if (entry.run) own.push(h("button", { type: "button", class: "small", onclick: () => entry.run(d) }, entry.label));
-      else if (localAddress(entry.href) || entry.href?.startsWith("/")) own.push(h("a", { class: "button small", href: entry.href, download: entry.download ?? null }, entry.label));
+      if (entry.run)
+        own.push(h("button", { type: "button", class: "small", onclick: () => entry.run(d) }, entry.label));
+      else if (localAddress(entry.href) || entry.href?.startsWith("/"))
+        own.push(h("a", { class: "button small", href: entry.href, download: entry.download ?? null }, entry.label));
     }
     return h("div", { class: "block row files" }, own);
   }

@@ -65,7 +65,14 @@ export function parallelView(x) {
       }
       const values = column.values.filter((v) => v !== null);
       const scale = axisOf(values, 4, 0);
-      return { column, at, words: null, share: scale.share, value: scale.at, range: [Math.min(...values), Math.max(...values)] };
+      return {
+        column,
+        at,
+        words: null,
+        share: scale.share,
+        value: scale.at,
+        range: [Math.min(...values), Math.max(...values)],
+      };
     });
     const nodes = axes.flatMap((axis) => drawn(axis, gap, high, wide, group));
     lines = x.model.record.designs.map((_, i) => path(i));
@@ -83,8 +90,20 @@ export function parallelView(x) {
       dragged: s("rect", { class: "keep on" }),
     };
     over.dragged.classList.remove("on");
-    const behind = s("g", null, order.map(([, i]) => made[i]));
-    svg.replaceChildren(behind, ...nodes.filter((n) => n.localName === "line"), ...over.brushes, over.dragged, over.chosen, over.hover, ...nodes.filter((n) => n.localName !== "line"));
+    const behind = s(
+      "g",
+      null,
+      order.map(([, i]) => made[i]),
+    );
+    svg.replaceChildren(
+      behind,
+      ...nodes.filter((n) => n.localName === "line"),
+      ...over.brushes,
+      over.dragged,
+      over.chosen,
+      over.hover,
+      ...nodes.filter((n) => n.localName !== "line"),
+    );
     svg.classList.toggle("flat", flat);
     svg.setAttribute("viewBox", `0 0 ${wide} ${high}`);
     svg.setAttribute("height", String(high));
@@ -101,19 +120,37 @@ export function parallelView(x) {
   function drawn(axis, gap, high, wide, group) {
     const { column, at } = axis;
     if (flat) {
-      const name = s("text", { x: 14, y: at - 12, class: "title" }, column.label, column.unit ? s("tspan", { class: "soft" }, `  ${column.unit}`) : null);
+      const name = s(
+        "text",
+        { x: 14, y: at - 12, class: "title" },
+        column.label,
+        column.unit ? s("tspan", { class: "soft" }, `  ${column.unit}`) : null,
+      );
       const made = [s("line", { class: "axis", x1: ends[0], x2: ends[1], y1: at, y2: at }), name];
       if (axis.words) {
-        axis.words.forEach((word) => made.push(s("text", { x: along(axis.share(word)), y: at + 16, class: "mid" }, short(word, Math.floor(wide / axis.words.length / 7)))));
+        axis.words.forEach((word) =>
+          made.push(
+            s(
+              "text",
+              { x: along(axis.share(word)), y: at + 16, class: "mid" },
+              short(word, Math.floor(wide / axis.words.length / 7)),
+            ),
+          ),
+        );
       } else {
-        made.push(s("text", { x: ends[0], y: at + 15 }, number(axis.range[0], 3)), s("text", { x: ends[1], y: at + 15, class: "end" }, number(axis.range[1], 3)));
+        made.push(
+          s("text", { x: ends[0], y: at + 15 }, number(axis.range[0], 3)),
+          s("text", { x: ends[1], y: at + 15, class: "end" }, number(axis.range[1], 3)),
+        );
       }
       return made;
     }
     const room = Math.min(gap, 2 * (at - 4), 2 * (wide - at - 4));
     const rows = wrapped(column.label, Math.max(7, Math.floor(room / 7.4)));
     const made = [s("line", { class: "axis", x1: at, x2: at, y1: ends[1] - 4, y2: ends[0] + 4 })];
-    rows.forEach((row, k) => made.push(s("text", { x: at, y: 14 + 14 * (k + 2 - rows.length), class: "title mid" }, row)));
+    rows.forEach((row, k) =>
+      made.push(s("text", { x: at, y: 14 + 14 * (k + 2 - rows.length), class: "title mid" }, row)),
+    );
     if (column.unit) made.push(s("text", { x: at, y: 43, class: "mid soft" }, column.unit));
     if (axis.words) {
       const grouped = x.state.by === column.key;
@@ -136,7 +173,10 @@ export function parallelView(x) {
     let before = null;
     for (const axis of axes) {
       const there = spot(axis, i);
-      if (there === null) { before = null; continue; }
+      if (there === null) {
+        before = null;
+        continue;
+      }
       const [px, py] = flat ? [there, axis.at] : [axis.at, there];
       if (!before) told += `M${px.toFixed(1)} ${py.toFixed(1)}`;
       else if (flat) {
@@ -156,19 +196,29 @@ export function parallelView(x) {
     axes.forEach((axis, k) => {
       const range = axis.value && x.state.ranges.get(axis.column.key);
       over.brushes[k].classList.toggle("on", Boolean(range));
-      if (range) setBox(over.brushes[k], axis, range.map((v) => along(Math.min(1.03, Math.max(-0.03, axis.share(v) || 0)))));
+      if (range)
+        setBox(
+          over.brushes[k],
+          axis,
+          range.map((v) => along(Math.min(1.03, Math.max(-0.03, axis.share(v) || 0)))),
+        );
     });
   }
 
   function setBox(node, axis, [from, to]) {
     const [low, size] = [Math.min(from, to), Math.abs(to - from)];
-    const told = flat ? { x: low, width: size, y: axis.at - 9, height: 18 } : { x: axis.at - 9, width: 18, y: low, height: size };
+    const told = flat
+      ? { x: low, width: size, y: axis.at - 9, height: 18 }
+      : { x: axis.at - 9, width: 18, y: low, height: size };
     for (const [name, value] of Object.entries(told)) node.setAttribute(name, value.toFixed(1));
   }
 
   function mark() {
     const group = x.group();
-    for (const [name, i] of [["chosen", x.state.selected], ["hover", x.state.hovered]]) {
+    for (const [name, i] of [
+      ["chosen", x.state.selected],
+      ["hover", x.state.hovered],
+    ]) {
       over[name].setAttribute("d", lines[i] ?? "");
       over[name].setAttribute("class", `line over ${name} ${i >= 0 ? colourClass(group.of[i], group.rest) : ""}`);
     }
@@ -236,32 +286,65 @@ export function parallelView(x) {
     }
     press = null;
   });
-  svg.addEventListener("pointercancel", () => { press = null; });
+  svg.addEventListener("pointercancel", () => {
+    press = null;
+  });
   svg.addEventListener("pointerleave", () => x.hover(-1));
 
   /** Return fields to type ranges into: the way of those who have no pointer. */
   function fields() {
     const row = (column) => {
       const now = x.state.ranges.get(column.key) ?? [null, null];
-      const field = (k, word) => h("input", {
-        type: "number", step: "any", "aria-label": `${column.label}, ${word}${column.unit ? ` in ${column.unit}` : ""}`,
-        placeholder: number(Number((k ? Math.max : Math.min)(...column.values.filter((v) => v !== null)).toPrecision(4)), 4),
-        value: now[k] === null || !Number.isFinite(now[k]) ? null : Number(now[k].toPrecision(5)),
-        onchange: (event) => {
-          const typed = event.target.value === "" ? null : Number(event.target.value);
-          const old = x.state.ranges.get(column.key) ?? [-Infinity, Infinity];
-          const next = [...old];
-          next[k] = typed === null ? (k ? Infinity : -Infinity) : typed;
-          x.keep([[column.key, next[0] === -Infinity && next[1] === Infinity ? null : next]]);
-        },
-      });
-      return h("tr", null, h("th", { scope: "row" }, column.label), h("td", null, field(0, "at least")), h("td", null, field(1, "at most")), h("td", null, column.unit));
+      const field = (k, word) =>
+        h("input", {
+          type: "number",
+          step: "any",
+          "aria-label": `${column.label}, ${word}${column.unit ? ` in ${column.unit}` : ""}`,
+          placeholder: number(
+            Number((k ? Math.max : Math.min)(...column.values.filter((v) => v !== null)).toPrecision(4)),
+            4,
+          ),
+          value: now[k] === null || !Number.isFinite(now[k]) ? null : Number(now[k].toPrecision(5)),
+          onchange: (event) => {
+            const typed = event.target.value === "" ? null : Number(event.target.value);
+            const old = x.state.ranges.get(column.key) ?? [-Infinity, Infinity];
+            const next = [...old];
+            next[k] = typed === null ? (k ? Infinity : -Infinity) : typed;
+            x.keep([[column.key, next[0] === -Infinity && next[1] === Infinity ? null : next]]);
+          },
+        });
+      return h(
+        "tr",
+        null,
+        h("th", { scope: "row" }, column.label),
+        h("td", null, field(0, "at least")),
+        h("td", null, field(1, "at most")),
+        h("td", null, column.unit),
+      );
     };
-    return h("table", { class: "fields" }, h("thead", null, h("tr", null, ["", "at least", "at most", ""].map((w) => (w ? h("th", { scope: "col" }, w) : h("td"))))),
-      h("tbody", null, axes.filter((axis) => axis.value).map((axis) => row(axis.column))));
+    return h(
+      "table",
+      { class: "fields" },
+      h(
+        "thead",
+        null,
+        h(
+          "tr",
+          null,
+          ["", "at least", "at most", ""].map((w) => (w ? h("th", { scope: "col" }, w) : h("td"))),
+        ),
+      ),
+      h(
+        "tbody",
+        null,
+        axes.filter((axis) => axis.value).map((axis) => row(axis.column)),
+      ),
+    );
   }
 
-  const same = () => x.model.same.filter((c) => c.kind !== "derived").map((c) =>
-    `${c.label} ${c.kind === "word" ? c.values[0] : amount(c.values[0], c.unit, 4)}`);
+  const same = () =>
+    x.model.same
+      .filter((c) => c.kind !== "derived")
+      .map((c) => `${c.label} ${c.kind === "word" ? c.values[0] : amount(c.values[0], c.unit, 4)}`);
   return { node: box, draw, filter, mark, fields, same };
 }

@@ -28,7 +28,8 @@ export function scatterView(x) {
     const high = Math.round(Math.min(460, Math.max(300, wide * 0.52)));
     const small = wide < 520;
     const ticksY = Math.max(4, Math.round(high / 64));
-    const some = (column) => [...column.values, ...x.ghosts.map((d) => d[column.key])].filter((v) => v !== null && v !== undefined);
+    const some = (column) =>
+      [...column.values, ...x.ghosts.map((d) => d[column.key])].filter((v) => v !== null && v !== undefined);
     const axes = [axisOf(some(across), small ? 5 : Math.round(wide / 110)), axisOf(some(up), ticksY)];
     const labels = axes[1].ticks.map((t) => number(t, 3));
     const left = 16 + 7 * Math.max(2, ...labels.map((t) => t.length));
@@ -44,7 +45,9 @@ export function scatterView(x) {
       const text = number(tick, 3);
       if (at - last < 8 + 7 * text.length || at < frame.left + 4) continue;
       last = at;
-      nodes.push(s("text", { x: Math.min(at, wide - 4 - 3.5 * text.length), y: frame.bottom + 18, class: "mid" }, text));
+      nodes.push(
+        s("text", { x: Math.min(at, wide - 4 - 3.5 * text.length), y: frame.bottom + 18, class: "mid" }, text),
+      );
     }
     axes[1].ticks.forEach((tick, k) => {
       const at = toY(tick);
@@ -52,7 +55,13 @@ export function scatterView(x) {
       nodes.push(s("text", { x: frame.left - 8, y: at + 4, class: "end" }, labels[k]));
     });
     nodes.push(s("text", { class: "title", x: 12, y: 20 }, `↑ ${title(up, axes[1])}`, better(up, "↓", "↑")));
-    const below = s("text", { class: "title end", x: frame.right, y: high - 8 }, title(across, axes[0]), better(across, "←", "→"), " →");
+    const below = s(
+      "text",
+      { class: "title end", x: frame.right, y: high - 8 },
+      title(across, axes[0]),
+      better(across, "←", "→"),
+      " →",
+    );
     nodes.push(s("path", { class: "axis", d: `M${frame.left} ${frame.top}V${frame.bottom}H${frame.right}` }), below);
     if (across.kind === "objective" && up.kind === "objective") {
       corners = [];
@@ -65,10 +74,18 @@ export function scatterView(x) {
     }
     const size = model.count > 400 ? 3.6 : model.count > 100 ? 4.4 : 5.6;
     const group = x.group();
-    points = place.map((p, i) => p && s("path", {
-      id: `${x.id}-p${i}`, role: "option", "aria-label": said(i, across, up), class: `pt ${colourClass(group.of[i], group.rest)}`,
-      d: shape(group.of[i], size), transform: `translate(${p[0].toFixed(1)} ${p[1].toFixed(1)})`,
-    }));
+    points = place.map(
+      (p, i) =>
+        p &&
+        s("path", {
+          id: `${x.id}-p${i}`,
+          role: "option",
+          "aria-label": said(i, across, up),
+          class: `pt ${colourClass(group.of[i], group.rest)}`,
+          d: shape(group.of[i], size),
+          transform: `translate(${p[0].toFixed(1)} ${p[1].toFixed(1)})`,
+        }),
+    );
     const order = points.map((p, i) => [p, model.record.designs[i].rank]).filter(([p]) => p);
     order.sort((a, b) => b[1] - a[1]); // the best ranks on top
     rings = {
@@ -77,11 +94,22 @@ export function scatterView(x) {
       hover: s("circle", { class: "ring hover", r: size + 4.5 }),
       brush: s("rect", { class: "brush" }),
     };
-    svg.replaceChildren(...nodes, rings.brush, ...order.map(([p]) => p), rings.pins, rings.chosen, rings.hover, ...names(frame, size));
+    svg.replaceChildren(
+      ...nodes,
+      rings.brush,
+      ...order.map(([p]) => p),
+      rings.pins,
+      rings.chosen,
+      rings.hover,
+      ...names(frame, size),
+    );
     svg.setAttribute("viewBox", `0 0 ${wide} ${high}`);
     svg.setAttribute("height", String(high));
-    svg.setAttribute("aria-label", `Front, ${across.label} across and ${up.label} up, ${model.count} designs. ` +
-      "Arrow keys go from design to design, space takes a design for comparison. The table below says the same.");
+    svg.setAttribute(
+      "aria-label",
+      `Front, ${across.label} across and ${up.label} up, ${model.count} designs. ` +
+        "Arrow keys go from design to design, space takes a design for comparison. The table below says the same.",
+    );
     filter();
     mark();
   }
@@ -115,7 +143,8 @@ export function scatterView(x) {
       least = sy * up.values[i];
       const [px, py] = place[i].map((v) => v.toFixed(1));
       const [bx, by] = before ?? place[i];
-      for (let u = 0; u < 1; u += 0.125) corners.push([bx + (place[i][0] - bx) * u, by], [place[i][0], by + (place[i][1] - by) * u]);
+      for (let u = 0; u < 1; u += 0.125)
+        corners.push([bx + (place[i][0] - bx) * u, by], [place[i][0], by + (place[i][1] - by) * u]);
       before = place[i];
       path += path ? `H${px}V${py}` : `M${px} ${sy > 0 ? frame.top : frame.bottom}V${py}`;
       level = py;
@@ -132,13 +161,31 @@ export function scatterView(x) {
       const [px, py] = place[i];
       const width = 6.9 * text.length;
       const away = size + 8;
-      const tries = [[away, -away], [away, away + 8], [-away - width, -away], [-away - width, away + 8], [-width / 2, -away - 8], [-width / 2, away + 16],
-        [away, -2.4 * away], [-away - width, -2.4 * away], [-width, -3.6 * away], [0, -3.6 * away]];
+      const tries = [
+        [away, -away],
+        [away, away + 8],
+        [-away - width, -away],
+        [-away - width, away + 8],
+        [-width / 2, -away - 8],
+        [-width / 2, away + 16],
+        [away, -2.4 * away],
+        [-away - width, -2.4 * away],
+        [-width, -3.6 * away],
+        [0, -3.6 * away],
+      ];
       const cost = ([dx, dy]) => {
         const area = [px + dx, py + dy - 11, px + dx + width, py + dy + 3];
-        const out = Math.max(0, left + 4 - area[0]) + Math.max(0, area[2] - right) + Math.max(0, top - area[1]) + Math.max(0, area[3] - bottom);
-        const points = place.filter((p) => p && p[0] > area[0] - 6 && p[0] < area[2] + 6 && p[1] > area[1] - 6 && p[1] < area[3] + 6).length;
-        const steps = corners.filter((p) => p[0] > area[0] - 4 && p[0] < area[2] + 4 && p[1] > area[1] - 4 && p[1] < area[3] + 4).length;
+        const out =
+          Math.max(0, left + 4 - area[0]) +
+          Math.max(0, area[2] - right) +
+          Math.max(0, top - area[1]) +
+          Math.max(0, area[3] - bottom);
+        const points = place.filter(
+          (p) => p && p[0] > area[0] - 6 && p[0] < area[2] + 6 && p[1] > area[1] - 6 && p[1] < area[3] + 6,
+        ).length;
+        const steps = corners.filter(
+          (p) => p[0] > area[0] - 4 && p[0] < area[2] + 4 && p[1] > area[1] - 4 && p[1] < area[3] + 4,
+        ).length;
         const others = taken.filter((t) => t[0] < area[2] && t[2] > area[0] && t[1] < area[3] && t[3] > area[1]).length;
         return 8 * out + 20 * points + 300 * others + 6 * steps + Math.hypot(dx + width / 2, dy) / 20;
       };
@@ -174,7 +221,13 @@ export function scatterView(x) {
     const { hovered, selected, pins } = x.state;
     ring(rings.hover, hovered);
     ring(rings.chosen, selected);
-    rings.pins.setAttribute("d", pins.filter((i) => place[i]).map((i) => `M${place[i][0] - 4} ${place[i][1] - 13}h8l-4 5z`).join(""));
+    rings.pins.setAttribute(
+      "d",
+      pins
+        .filter((i) => place[i])
+        .map((i) => `M${place[i][0] - 4} ${place[i][1] - 13}h8l-4 5z`)
+        .join(""),
+    );
     if (chosen !== selected || !points[selected]?.hasAttribute("aria-selected")) {
       points[chosen]?.removeAttribute("aria-selected");
       points[selected]?.setAttribute("aria-selected", "true");
@@ -223,24 +276,37 @@ export function scatterView(x) {
       const { left, right, top, bottom, axes } = frame;
       const across = [press.from[0], here[0]].map((v) => axes[0].at((v - left) / (right - left))).sort((a, b) => a - b);
       const up = [press.from[1], here[1]].map((v) => axes[1].at((bottom - v) / (bottom - top))).sort((a, b) => a - b);
-      x.keep([[x.state.x, across], [x.state.y, up]]);
+      x.keep([
+        [x.state.x, across],
+        [x.state.y, up],
+      ]);
     } else if (press) {
       const found = nearest(here);
       if (found >= 0) x.select(found);
     }
     press = null;
   });
-  svg.addEventListener("pointercancel", () => { press = null; });
+  svg.addEventListener("pointercancel", () => {
+    press = null;
+  });
   svg.addEventListener("pointerleave", () => x.hover(-1));
   svg.addEventListener("keydown", (event) => {
     const axis = { ArrowLeft: 0, ArrowRight: 0, ArrowUp: 1, ArrowDown: 1, Home: 0, End: 0 }[event.key];
     if (event.key === " ") x.pin(x.state.selected);
     else if (axis === undefined) return;
     else {
-      const order = place.map((p, i) => i).filter((i) => place[i] && x.shown(i)).sort((a, b) => place[a][axis] - place[b][axis]);
+      const order = place
+        .map((p, i) => i)
+        .filter((i) => place[i] && x.shown(i))
+        .sort((a, b) => place[a][axis] - place[b][axis]);
       const now = order.indexOf(x.state.selected);
       const step = event.key === "ArrowRight" || event.key === "ArrowDown" ? 1 : -1;
-      const next = event.key === "Home" ? 0 : event.key === "End" ? order.length - 1 : Math.min(order.length - 1, Math.max(0, now + step));
+      const next =
+        event.key === "Home"
+          ? 0
+          : event.key === "End"
+            ? order.length - 1
+            : Math.min(order.length - 1, Math.max(0, now + step));
       if (order.length) x.select(order[next]);
     }
     event.preventDefault();

@@ -18,8 +18,16 @@
 function firstState(model) {
   const [across, up] = [model.axes[0], model.axes[1] ?? model.axes[0]];
   return {
-    x: across?.key ?? "", y: up?.key ?? "", by: model.groupBy, selected: model.knee >= 0 ? model.knee : model.count ? 0 : -1, hovered: -1,
-    pins: [], ranges: new Map(), off: new Set(), sort: ["rank", 1], columns: null,
+    x: across?.key ?? "",
+    y: up?.key ?? "",
+    by: model.groupBy,
+    selected: model.knee >= 0 ? model.knee : model.count ? 0 : -1,
+    hovered: -1,
+    pins: [],
+    ranges: new Map(),
+    off: new Set(),
+    sort: ["rank", 1],
+    columns: null,
   };
 }
 

@@ -15,8 +15,20 @@ export function tableView(x) {
   const head = h("thead");
   const body = h("tbody");
   const table = h("table", { class: "designs" }, h("caption", { class: "unseen" }, "Designs of the front"), head, body);
-  const more = h("button", { type: "button", class: "small more", onclick: () => { all(); node.focus(); } });
-  const node = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of designs" }, table, more);
+  const more = h("button", {
+    type: "button",
+    class: "small more",
+    onclick: () => {
+      all();
+      node.focus();
+    },
+  });
+  const node = h(
+    "div",
+    { class: "scroll", tabindex: 0, role: "region", "aria-label": "Table of designs" },
+    table,
+    more,
+  );
   let most = FIRST_ROWS;
   const chooser = h("div", { class: "chooser" });
   let rows = [];
@@ -40,15 +52,28 @@ export function tableView(x) {
     const columns = shownColumns();
     const limits = state.columns.has("at_limit");
     const group = x.group();
-    head.replaceChildren(h("tr", null, header("rank", "#", ""), columns.map((c) => header(c.key, c.label, c.unit, c.text, c.kind === "word")),
-      limits ? h("th", { scope: "col", class: "words" }, "at the limit") : null));
+    head.replaceChildren(
+      h(
+        "tr",
+        null,
+        header("rank", "#", ""),
+        columns.map((c) => header(c.key, c.label, c.unit, c.text, c.kind === "word")),
+        limits ? h("th", { scope: "col", class: "words" }, "at the limit") : null,
+      ),
+    );
     const bounds = (d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
     const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
     rows = model.record.designs.map((d, i) => {
-      const first = h("th", { scope: "row" }, h("button", { type: "button", tabindex: -1, "aria-label": `Design ${d.rank}` }, String(d.rank)));
-      const cells = columns.map((c) => (c.kind === "word"
-        ? h("td", { class: "words" }, c.key === state.by ? glyph(group.of[i], group.rest) : null, c.values[i])
-        : h("td", null, number(c.values[i], 4))));
+      const first = h(
+        "th",
+        { scope: "row" },
+        h("button", { type: "button", tabindex: -1, "aria-label": `Design ${d.rank}` }, String(d.rank)),
+      );
+      const cells = columns.map((c) =>
+        c.kind === "word"
+          ? h("td", { class: "words" }, c.key === state.by ? glyph(group.of[i], group.rest) : null, c.values[i])
+          : h("td", null, number(c.values[i], 4)),
+      );
       const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
       if (names) first.append(names);
       const bound = limits ? h("td", { class: "words last soft", title: bounds(d) }, bounds(d)) : null;
@@ -73,16 +98,29 @@ export function tableView(x) {
       head.querySelector("th[aria-sort] button")?.focus();
     };
     const name = key === "rank" ? hidden("rank") : null;
-    return h("th", { scope: "col", "aria-sort": sorted, class: words ? "words" : null, title: text || null },
-      h("button", { type: "button", onclick: press }, name, name ? h("span", { "aria-hidden": "true" }, "#") : label, arrow), unit ? h("small", null, unit) : null);
+    return h(
+      "th",
+      { scope: "col", "aria-sort": sorted, class: words ? "words" : null, title: text || null },
+      h(
+        "button",
+        { type: "button", onclick: press },
+        name,
+        name ? h("span", { "aria-hidden": "true" }, "#") : label,
+        arrow,
+      ),
+      unit ? h("small", null, unit) : null,
+    );
   }
 
   function order() {
     const [key, way] = x.state.sort;
-    const values = key === "rank" ? x.model.record.designs.map((d) => d.rank) : x.model.column(key)?.values ?? [];
+    const values = key === "rank" ? x.model.record.designs.map((d) => d.rank) : (x.model.column(key)?.values ?? []);
     const compare = (a, b) => {
       if (values[a] === null || values[b] === null) return (values[a] === null) - (values[b] === null);
-      return way * (typeof values[a] === "number" ? values[a] - values[b] : String(values[a]).localeCompare(String(values[b])));
+      return (
+        way *
+        (typeof values[a] === "number" ? values[a] - values[b] : String(values[a]).localeCompare(String(values[b])))
+      );
     };
     sorted = rows.map((_, i) => i).sort((a, b) => compare(a, b) || a - b);
     body.replaceChildren(...sorted.map((i) => rows[i]));
@@ -112,7 +150,10 @@ export function tableView(x) {
       rows[hovered]?.classList.add("hovered");
     }
     if (marked.selected !== selected) {
-      for (const [i, on] of [[marked.selected, false], [selected, true]]) {
+      for (const [i, on] of [
+        [marked.selected, false],
+        [selected, true],
+      ]) {
         if (!rows[i]) continue;
         rows[i].classList.toggle("selected", on);
         const button = rows[i].querySelector("button");
@@ -153,17 +194,30 @@ export function tableView(x) {
 
   /** Fill the list of columns to choose from. */
   function choose() {
-    const all = [...x.model.columns.filter((c) => c.varies || c.kind === "objective").map((c) => [c.key, c.label]), ["at_limit", "at the limit"]];
-    chooser.replaceChildren(...all.map(([key, label]) => h("label", null, h("input", {
-      type: "checkbox", checked: x.state.columns.has(key),
-      onchange: (event) => {
-        if (event.target.checked) x.state.columns.add(key);
-        else x.state.columns.delete(key);
-        const place = all.findIndex(([each]) => each === key);
-        draw();
-        chooser.querySelectorAll("input")[place]?.focus();
-      },
-    }), label)));
+    const all = [
+      ...x.model.columns.filter((c) => c.varies || c.kind === "objective").map((c) => [c.key, c.label]),
+      ["at_limit", "at the limit"],
+    ];
+    chooser.replaceChildren(
+      ...all.map(([key, label]) =>
+        h(
+          "label",
+          null,
+          h("input", {
+            type: "checkbox",
+            checked: x.state.columns.has(key),
+            onchange: (event) => {
+              if (event.target.checked) x.state.columns.add(key);
+              else x.state.columns.delete(key);
+              const place = all.findIndex(([each]) => each === key);
+              draw();
+              chooser.querySelectorAll("input")[place]?.focus();
+            },
+          }),
+          label,
+        ),
+      ),
+    );
   }
 
   return { node, chooser, draw, filter, mark, all };

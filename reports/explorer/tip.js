@@ -16,12 +16,26 @@ export function tipView(x) {
 
   function draw() {
     const { model, state } = x;
-    const wanted = [...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...model.sizes, ...model.words])].filter(Boolean);
+    const wanted = [
+      ...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...model.sizes, ...model.words]),
+    ].filter(Boolean);
     head = document.createTextNode("");
     rows = wanted.slice(0, MOST_ROWS).map((column) => ({ column, text: document.createTextNode("") }));
     const limits = document.createTextNode("");
     rows.limits = limits;
-    node.replaceChildren(h("b", null, head), h("table", null, h("tbody", null, rows.map(({ column, text }) => h("tr", null, h("td", null, column.label), h("td", null, text))))), h("p", { class: "soft" }, limits));
+    node.replaceChildren(
+      h("b", null, head),
+      h(
+        "table",
+        null,
+        h(
+          "tbody",
+          null,
+          rows.map(({ column, text }) => h("tr", null, h("td", null, column.label), h("td", null, text))),
+        ),
+      ),
+      h("p", { class: "soft" }, limits),
+    );
   }
 
   /** Show a design beside the pointer, or nothing. */
@@ -31,9 +45,12 @@ export function tipView(x) {
     node.classList.toggle("on", on);
     if (!on) return;
     head.data = plain(`Design ${d.rank}${x.model.names[i].length ? `, ${x.model.names[i].join(", ")}` : ""}`);
-    for (const { column, text } of rows) text.data = plain(column.kind === "word" ? column.values[i] : amount(column.values[i], column.unit, 4));
+    for (const { column, text } of rows)
+      text.data = plain(column.kind === "word" ? column.values[i] : amount(column.values[i], column.unit, 4));
     const labels = x.model.record.limits.filter((l) => d.at_limit.includes(l.name)).map((l) => l.label);
-    rows.limits.data = labels.length ? plain(`at the limit: ${labels.slice(0, 4).join(", ")}${labels.length > 4 ? " …" : ""}`) : "";
+    rows.limits.data = labels.length
+      ? plain(`at the limit: ${labels.slice(0, 4).join(", ")}${labels.length > 4 ? " …" : ""}`)
+      : "";
     const area = x.root.getBoundingClientRect();
     const [wide, high] = [node.offsetWidth, node.offsetHeight];
     const view = document.documentElement.clientWidth;

@@ -1,0 +1,153 @@
+// The cards that the explorer is laid out in, and its head.
+
+import { h } from "./dom.js";
+import { saveTable } from "./files.js";
+import { amount } from "./numbers.js";
+
+const FIRST_CHIPS = 8;
+
+/** Return the title, what is said about the front, and a corner for the page. */
+export function heading(x) {
+  const { record } = x.model;
+  const actions = h("div", { class: "actions" });
+  x.options.actions?.(actions, x.handle);
+  const facts =
+    record.facts.length > 0 &&
+    h(
+      "p",
+      { class: "facts" },
+      record.facts.map(([label, text]) => h("span", null, `${label} `, h("b", null, text))),
+    );
+  const kind = record.title === record.family ? record.program : `${record.family}, ${record.program}`;
+  return h(
+    "header",
+    { class: "head" },
+    h("div", null, h("p", { class: "kind" }, kind), h("h1", null, record.title), facts),
+    actions,
+  );
+}
+
+/** Return what was asked, and on request what was assumed. */
+export function chips(x) {
+  const { asked, assumed } = x.model.record;
+  const chip = (entry) =>
+    h(
+      "li",
+      { class: "chip", title: entry.text || null },
+      `${entry.label} `,
+      h("b", null, entry.words ?? amount(entry.value, entry.unit)),
+    );
+  const row = (entry) =>
+    h(
+      "tr",
+      { title: entry.text || null },
+      h("th", { scope: "row" }, entry.label),
+      h("td", null, entry.words ?? amount(entry.value, entry.unit)),
+    );
+  const rest = [...asked.slice(FIRST_CHIPS), ...assumed];
+  const more =
+    rest.length > 0 &&
+    h(
+      "details",
+      { class: "assumed" },
+      h(
+        "summary",
+        null,
+        asked.length > FIRST_CHIPS ? `${rest.length} more, stated or assumed` : `${rest.length} values assumed`,
+      ),
+      h("table", { class: "values" }, h("tbody", null, rest.map(row))),
+    );
+  return h(
+    "div",
+    { class: "asked" },
+    h("ul", { class: "chips", "aria-label": "What was asked" }, asked.slice(0, FIRST_CHIPS).map(chip)),
+    more,
+  );
+}
+
+/** Return the card of the scatter: axes to choose, legend, filters, a strip for what-if. */
+export function frontCard(x) {
+  const { model, state } = x;
+  const choose = (name, label, columns, none) =>
+    h(
+      "label",
+      null,
+      label,
+      h(
+        "select",
+        {
+          "data-field": name,
+          onchange: (event) => {
+            state[name] = event.target.value;
+            x.cache = null;
+            x.draw();
+          },
+        },
+        none ? h("option", { value: "" }, none) : null,
+        columns.map((c) => h("option", { value: c.key, selected: c.key === state[name] }, c.label)),
+      ),
+    );
+  x.count = h("p", { class: "count", role: "status" });
+  x.filters = h("div", { class: "filters" });
+  const slot = h("div", { class: "what-if", hidden: !x.options.whatIf });
+  x.options.whatIf?.(slot, x.handle);
+  return h(
+    "section",
+    { class: "card front", "aria-labelledby": `${x.id}-front` },
+    h(
+      "header",
+      null,
+      h("h2", { id: `${x.id}-front` }, "Front"),
+      h(
+        "div",
+        { class: "row controls" },
+        choose("x", "across", model.axes),
+        choose("y", "up", model.axes),
+        model.groupable.length ? choose("by", "colour", model.groupable, "none") : null,
+      ),
+      h("span", { class: "grow" }),
+      x.count,
+    ),
+    x.scatter.node,
+    x.legend.node,
+    x.filters,
+    slot,
+  );
+}
+
+/** Return the card of all attributes. */
+export function parallelCard(x) {
+  const same = x.parallel.same();
+  x.fields = h("details", { class: "ranges" }, h("summary", null, "Ranges by number"));
+  return h(
+    "section",
+    { class: "card parallels", "aria-labelledby": `${x.id}-all` },
+    h(
+      "header",
+      null,
+      h("h2", { id: `${x.id}-all` }, "All attributes"),
+      h("p", { class: "note pointer" }, "drag along an axis to keep a range, press it to drop the range"),
+    ),
+    x.parallel.node,
+    same.length ? h("p", { class: "note same" }, `The same in all: ${same.join("; ")}.`) : null,
+    x.fields,
+  );
+}
+
+/** Return the card of the table. */
+export function tableCard(x) {
+  return h(
+    "section",
+    { class: "card table", "aria-labelledby": `${x.id}-table` },
+    h(
+      "header",
+      null,
+      h("h2", { id: `${x.id}-table` }, "Designs"),
+      h("p", { class: "note pointer" }, x.model.count > 1 ? "arrow keys move, space compares" : ""),
+      h("span", { class: "grow" }),
+      h("button", { type: "button", class: "small", onclick: () => saveTable(x) }, "CSV"),
+      h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), x.table.chooser),
+    ),
+    x.table.node,
+  );
+}
