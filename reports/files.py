@@ -158,6 +158,7 @@ class _Files:
                 prices=request.prices,
                 near_equals=request.near_equals,
                 curves=request.curves,
+                explorer="explorer.html" if "explorer" in request.formats else "",
             )
         )
         self._document(document, "report")

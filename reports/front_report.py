@@ -66,6 +66,8 @@ class FrontReportRequest:
         ``rank`` of a design, ``sentence`` and ``rows`` of what comes near it.
     curves : list of str
         Files of curves and simulations in the folder.
+    explorer : str
+        File of the explorer beside the report, if there is one.
     """
 
     front: ParetoFront
@@ -76,6 +78,7 @@ class FrontReportRequest:
     prices: Sequence[Mapping[str, Any]] = ()
     near_equals: Sequence[Mapping[str, Any]] = ()
     curves: Sequence[str] = ()
+    explorer: str = ""
 
 
 def chosen_designs(front: ParetoFront, count: int) -> list[Design]:
@@ -171,6 +174,9 @@ class _Report:
         blocks: list[Block] = [Heading("The designs", anchor="designs")]
         if svg:
             blocks.append(Figure(svg, f"The front. {front_in_words(self.front)}", _plot_caption(self.front)))
+        if self.request.explorer:
+            link = Link(self.request.explorer, self.request.explorer)
+            blocks.append(Paragraph(said("To filter, to compare and to see any design: ", link, ".")))
         for number, names in enumerate(self._column_groups()):
             columns = (Column("rank", number=True, width=4), *(self._column(name) for name in names))
             caption = "All designs of the front, the best rank first" + (" (continued)" if number else "")

@@ -135,6 +135,7 @@ def test_report_writes_the_explorer_with_links_to_the_sheets(tmp_path):
     designs = json.loads(page.scripts[0])["designs"]
     assert designs[1]["files"] == [["Calculation sheet", "design_02_sheet.html"]]
     assert (handed / "design_02_sheet.html").is_file()
+    assert '<a href="explorer.html">' in (handed / "report.html").read_text(encoding="utf-8")
     again = small_front().report(tmp_path / "again", formats=["explorer"])
     assert [path.name for path in again.iterdir()] == ["explorer.html"]
 

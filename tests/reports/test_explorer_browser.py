@@ -49,8 +49,13 @@ def one(kind: str) -> dict[str, Any]:
     return record
 
 
-@pytest.mark.parametrize("kind", ["front", "single", "empty", "many"])
-@pytest.mark.parametrize(("size", "theme"), FORMS)
+@pytest.mark.parametrize(
+    ("kind", "size", "theme"),
+    [
+        *(("front", *form) for form in FORMS),
+        *((kind, *form) for kind in ("single", "empty", "many") for form in ((DESKTOP, "light"), (PHONE, "dark"))),
+    ],
+)
 def test_each_form_is_quiet_fits_and_can_be_used_by_all(shown: Shown, kind: str, size: tuple[int, int], theme: str):
     with shown(one(kind), size, theme) as found:
         assert found.page.locator("h1").inner_text() == "Multi-plate clutch"
