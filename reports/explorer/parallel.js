@@ -145,7 +145,7 @@ export function parallelView(x) {
       }
       return made;
     }
-    const room = Math.min(gap, 2 * (at - 4), 2 * (wide - at - 4));
+    const room = Math.min(gap - 10, 2 * (at - 4), 2 * (wide - at - 4));
     const rows = wrapped(column.label, Math.max(7, Math.floor(room / 7.4)));
     const made = [s("line", { class: "axis", x1: at, x2: at, y1: ends[1] - 4, y2: ends[0] + 4 })];
     rows.forEach((row, k) =>

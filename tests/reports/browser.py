@@ -13,7 +13,7 @@ import pytest
 CHROMIUM = shutil.which("chromium")
 MISSING = "Chromium is missing, so that no page is opened: apt-get install -y chromium"
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
-DESKTOP, PHONE = (1440, 900), (390, 844)
+DESKTOP, PHONE = (1280, 900), (390, 844)
 FORMS = [(size, theme) for size in (DESKTOP, PHONE) for theme in ("light", "dark")]
 
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason=MISSING)

@@ -139,11 +139,13 @@ def test_brush_ranges_and_legend_filter_all_views(shown: Shown):
     with shown(grown(60)) as found:
         page = found.page
         count = page.locator(".count")
+        place = page.locator("svg.scatter").bounding_box()
         assert count.inner_text() == "60 designs"
         drag(page, "svg.scatter", (0.12, 0.12), (0.5, 0.85))
         rows = visible_rows(page)
         assert 0 < rows < 60
         assert count.inner_text() == f"{rows} of 60 designs"
+        assert page.locator("svg.scatter").bounding_box() == place  # nothing moves that was not moved
         assert page.locator(".pt.out").count() == page.locator(".parallel .line.out").count() == 60 - rows
         assert page.locator(".filter").count() == 3
         page.locator(".filter", has_text="all filters").click()
