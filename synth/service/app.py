@@ -30,6 +30,7 @@ from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, i
 from synth.service.errors import REFUSALS, register_errors
 from synth.service.event_hub import EventHub
 from synth.service.metrics import ServiceMetrics
+from synth.service.pages import assets, routes
 from synth.service.recording import Recorder, log
 from synth.service.security import AnswerHeaders, BodyCheck, CrossSiteCheck, HostCheck, RequestLimit
 from synth.service.settings import ServiceSettings
@@ -46,7 +47,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     tenant_routes.router,
     token_routes.router,
 )
-OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router)
+OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router, assets.router, routes.router)
 
 
 def create_app(

@@ -1,0 +1,83 @@
+// Nodes and texts. Whatever comes from people goes in as text only; no markup is made of it, and no style attribute.
+
+/**
+ * Make an element.
+ * @param {string} tag
+ * @param {Record<string, unknown>} [attributes] `onclick` and its like are listeners; true, false and null do what they say
+ * @param {...(Node | string | number | null | undefined | false | Array)} children
+ * @returns {HTMLElement}
+ */
+export function h(tag, attributes = {}, ...children) {
+  return filled(document.createElement(tag), attributes, children);
+}
+
+/** Make an element of a drawing. */
+export function s(tag, attributes = {}, ...children) {
+  return filled(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+}
+
+function filled(element, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "value") element.value = value;
+    else element.setAttribute(name, value === true ? "" : String(value));
+  }
+  for (const child of children.flat(3)) {
+    if (child !== null && child !== undefined && child !== false) element.append(child instanceof Node ? child : String(child));
+  }
+  return element;
+}
+
+const SUPERSCRIPT = { 2: "²", 3: "³" };
+const GREEK = {
+  alpha: "α", beta: "β", gamma: "γ", delta: "δ", epsilon: "ε", eta: "η", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν", xi: "ξ", pi: "π",
+  rho: "ρ", sigma: "σ", tau: "τ", phi: "φ", psi: "ψ", omega: "ω", Omega: "Ω", Delta: "Δ", Phi: "Φ",
+};
+
+/** Return a unit as people write it: `kg·m²` for `kg*m2`. */
+export function unitText(unit) {
+  return unit && unit !== "-" ? unit.replaceAll("*", "·").replace(/([A-Za-z])([23])(?!\d)/g, (_, letter, power) => letter + SUPERSCRIPT[power]) : "";
+}
+
+/** Return a number with five digits and thin spaces between thousands; a text as it is. */
+export function amount(value) {
+  if (typeof value !== "number") return value ?? "";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e7 || size < 1e-4)) return value.toExponential(3).replace(/\.?0*e\+?/, "e");
+  const [whole, part] = String(Number(value.toPrecision(size >= 1e5 ? 7 : 5))).split(".");
+  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u2009") : whole;
+  return part ? `${spaced}.${part}` : spaced;
+}
+
+/** Return a name of the interface as words. */
+export const words = (name) => String(name).replaceAll("_", " ");
+
+/** Return a symbol with its subscript; nothing where there is none. */
+export function symbol(text) {
+  if (!text) return null;
+  const [, base, below] = /^([A-Za-z]+?)_?([0-9]+|(?<=_).*)?$/.exec(text) ?? [null, text, ""];
+  return h("span", { class: "symbol" }, GREEK[base] ?? base, below ? h("sub", {}, GREEK[below] ?? below) : null);
+}
+
+/** Return a time of day or a date, as near as it matters. */
+export function when(seconds) {
+  const date = new Date(1000 * seconds), minutes = Math.round((Date.now() / 1000 - seconds) / 60);
+  const text = minutes < 1 ? "just now" : minutes < 60 ? `${minutes} min ago` : minutes < 24 * 60 ? `${Math.round(minutes / 60)} h ago`
+    : date.toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
+  return h("time", { datetime: date.toISOString(), title: date.toLocaleString("en-GB") }, text);
+}
+
+/** Return how long something takes. */
+export function duration(seconds) {
+  if (seconds < 9.95) return `${Math.max(0, seconds).toFixed(1)} s`;
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  return seconds < 5400 ? `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s` : `${(seconds / 3600).toFixed(1)} h`;
+}
+
+/** Say something to whoever listens to the page instead of looking at it. */
+export function say(text) {
+  let place = document.getElementById("said");
+  if (!place) document.body.append((place = h("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" })));
+  place.textContent = text;
+}

@@ -1,0 +1,20 @@
+// What can be taken away: files that the service makes when they are asked for.
+
+import { get } from "./api.js";
+import { h } from "./dom.js";
+
+const MEANS = {
+  "report.html": "Report", "report.pdf": "Report, PDF", "designs.csv": "Designs, CSV", "designs.xlsx": "Designs, Excel", "rows.csv": "Rows, CSV",
+  "front.svg": "Picture of the front", "bundle.zip": "Everything in one archive", "explorer.html": "Explorer, one file",
+};
+
+/** Add the files of a job below what is shown of it. */
+export async function filesCard(element, job) {
+  const { files } = await get(`/jobs/${job.id}/files`);
+  if (!files.length) return;
+  const link = (file, button) => h("a", { class: button ? "button" : "", href: file.href, download: file.name.split("/").at(-1) }, button ? MEANS[file.name] : file.name);
+  const first = Object.keys(MEANS).map((name) => files.find((file) => file.name === name)).filter(Boolean);
+  const rest = files.filter((file) => !MEANS[file.name]);
+  element.append(h("section", { class: "card" }, h("h2", {}, "Take it away"), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
+    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more files`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
+}

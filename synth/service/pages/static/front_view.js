@@ -1,0 +1,92 @@
+// A front: drawn by the explorer where the server has it, else as certificate, points and table.
+
+import { API, get } from "./api.js";
+import { amount, h, unitText, words } from "./dom.js";
+import { plotOf } from "./plot.js";
+import { count } from "./words.js";
+
+const RECORD = "explorer.json"; // what the explorer draws, as the server renders it
+const BESIDE = ["score", "status", "gap", "alternatives"];
+const MOST = 200, SHOWN = 14;
+
+/**
+ * Show a front.
+ * @param {HTMLElement} element
+ * @param {object} job
+ * @param {string} explorer address of the module that draws fronts, empty where there is none
+ */
+export async function frontView(element, job, explorer) {
+  if (explorer && (await explored(element, job, explorer))) return;
+  const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
+  const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
+  const table = tableCard(job, record, page, objectives);
+  const points = page.designs.map((design) => ({ rank: design.rank, note: design.note, values: objectives.map(({ name }) => design[name]) }));
+  element.replaceChildren(certificate(job, record),
+    ...(points.length > 1 ? [plotOf(objectives, points, { label: "The front", choose: (design) => table.choose(design.rank) })] : []), table.element);
+}
+
+async function explored(element, job, explorer) {
+  const { files } = await get(`/jobs/${job.id}/files`);
+  const found = files.find((file) => file.name === RECORD);
+  if (!found) return false;
+  const [{ mount }, record] = await Promise.all([import(explorer), fetch(found.href).then((answer) => answer.json())]);
+  document.head.append(h("link", { rel: "stylesheet", href: explorer.replace(/\.js$/, ".css") }));
+  const slot = h("div", { class: "explored" });
+  element.replaceChildren(slot);
+  mount(slot, record, {
+    heading: false,
+    state: location.hash.slice(1),
+    onState: (text) => history.replaceState(null, "", text ? `#${text}` : location.pathname),
+    downloads: (design) => files.filter((file) => file.name.startsWith(`design_${String(design.rank).padStart(2, "0")}`)).map((file) => ({ label: file.name, href: file.href, download: file.name })),
+  });
+  return true;
+}
+
+function certificate(job, record) {
+  const told = record.certificate ?? {};
+  const facts = job.summary;
+  const proven = told.kind === "global" && !record.interrupted;
+  const gap = typeof told.gap === "number" ? `, to within ${amount(100 * told.gap)} %` : "";
+  return h("section", { class: `card certificate ${proven ? "proven" : ""}` },
+    h("h2", {}, proven ? `${count(facts.designs, "design")}, proven` : `${count(facts.designs, "design")}, not proven to be the best`),
+    h("p", {}, proven ? `No combination of the parts that were searched is better in all objectives${gap}.` : "They hold all limits. Better ones may exist: the search ended before it had excluded them.",
+      told.combinations ? ` ${amount(told.combinations)} combinations: ${amount(told.excluded_by_bound ?? 0)} excluded by bounds, ${amount(told.solved ?? 0)} solved.` : ""),
+    record.interrupted ? h("p", { class: "note" }, `Interrupted: ${record.interrupted}`) : null,
+    h("p", { class: "note" }, "The proof covers the formulas, limits and catalogue rows of this study, not the world outside them."));
+}
+
+function tableCard(job, record, page, objectives) {
+  const shown = page.columns.filter(({ name }) => !BESIDE.includes(name)).slice(0, SHOWN);
+  const numeric = new Set(shown.filter(({ name }) => page.designs.some((design) => typeof design[name] === "number")).map(({ name }) => name));
+  const lines = new Map();
+  let order = { name: "rank", down: false };
+  const body = h("tbody");
+  const heads = shown.map((column) => h("th", { scope: "col", class: numeric.has(column.name) ? "right" : "" },
+    h("button", { type: "button", class: "sort", onclick: () => sort(column.name) }, words(column.name), unitText(column.unit) ? h("span", { class: "unit" }, ` ${unitText(column.unit)}`) : null)));
+
+  function sort(name) {
+    order = { name, down: order.name === name && !order.down };
+    const rest = [...page.designs].sort((a, b) => (a[name] === b[name] ? a.rank - b.rank : (a[name] ?? "") < (b[name] ?? "") ? -1 : 1));
+    if (order.down) rest.reverse();
+    body.replaceChildren(...rest.map((design) => lines.get(design.rank)));
+    shown.forEach((column, k) => heads[k].setAttribute("aria-sort", column.name === name ? (order.down ? "descending" : "ascending") : "none"));
+  }
+
+  for (const design of page.designs) {
+    const sheet = `${API}/jobs/${job.id}/files/design_${String(design.rank).padStart(2, "0")}.yaml`;
+    lines.set(design.rank, h("tr", { tabindex: "-1" }, shown.map(({ name }) => h("td", { class: [numeric.has(name) ? "right" : "", objectives.some((own) => own.name === name) ? "main" : ""].join(" ") }, amount(design[name]))),
+      h("td", {}, h("a", { href: sheet, download: true, "aria-label": `Design ${design.rank} as YAML` }, "YAML"))));
+  }
+  sort("rank");
+  if (order.down) sort("rank");
+  const hidden = page.columns.length - shown.length - BESIDE.length;
+  return {
+    element: h("section", { class: "card" }, h("h2", {}, count(page.total, "design")), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Designs" },
+      h("table", {}, h("thead", {}, h("tr", {}, heads, h("th", { scope: "col" }, "File"))), body)),
+      hidden > 0 ? h("p", { class: "note" }, `${hidden} more quantities of each design are in designs.csv and the report.`) : null),
+    choose(rank) {
+      for (const [own, line] of lines) line.classList.toggle("chosen", own === rank);
+      lines.get(rank).focus();
+    },
+  };
+}

@@ -1,0 +1,155 @@
+// A job: watched while it is worked at, and what it has found.
+
+import { ask, faultCard, get, listen, maySubmit, post, sentence } from "./api.js";
+import { batchView } from "./batch_view.js";
+import { duration, h, say, when, words } from "./dom.js";
+import { frontView } from "./front_view.js";
+import { filesCard } from "./files_card.js";
+import { nothingView } from "./nothing_view.js";
+import { watchView } from "./watch_view.js";
+import { KINDS, LIVE, badge, outcomeText } from "./words.js";
+
+const place = document.getElementById("job");
+const id = place.dataset.job;
+const RESUMABLE = ["cancelled", "failed", "stopped"];
+let job, titles = {}, content = null, stop = null;
+
+const head = h("div", { class: "job-head" });
+const below = h("div");
+const fault = h("p", { class: "fault", role: "alert" });
+
+async function begin() {
+  try {
+    job = await get(`/jobs/${id}`);
+  } catch (error) {
+    place.replaceChildren(faultCard(error, () => location.reload()));
+    return;
+  }
+  place.replaceChildren(head, fault, below);
+  place.setAttribute("aria-busy", "false");
+  get("/families").then(({ families }) => { titles = Object.fromEntries(families.map((family) => [family.name, family.title])); heading(); }, () => {});
+  show();
+}
+
+function show() {
+  heading();
+  if (LIVE.includes(job.state)) {
+    stop ??= listen([id], heard);
+    if (job.kind === "batch") content = batchView(below, job);
+    else content = watchView(below, job);
+    return;
+  }
+  stop?.();
+  stop = content = null;
+  ended();
+}
+
+async function heard(kind, told) {
+  if (kind === "snapshot") {
+    job = told;
+    heading();
+    content?.show(job);
+  } else if (kind === "progress") {
+    job = { ...job, state: told.state, progress: { ...(told.columns ? {} : kept(job.progress)), ...told } };
+    heading();
+    content?.show(job);
+  } else if (kind === "started" || kind === "end") {
+    if (told.state === "deleted") return gone();
+    const before = job.state;
+    job = await get(`/jobs/${id}`);
+    if (LIVE.includes(before) && !LIVE.includes(job.state)) {
+      say(outcomeText(job));
+      show();
+    } else heading();
+  }
+}
+
+/** The designs that were known last are shown until others are told. */
+const kept = (progress) => (progress?.columns ? { columns: progress.columns, points: progress.points } : {});
+
+const gone = () => place.replaceChildren(h("section", { class: "card" }, h("p", {}, "This job was removed."), h("p", {}, h("a", { href: "/" }, "To the studies"))));
+
+function heading() {
+  const live = LIVE.includes(job.state);
+  const family = job.families.length === 1 ? titles[job.families[0]] ?? words(job.families[0]) : `${job.families.length} families`;
+  const took = job.started && job.ended ? ` · took ${duration(job.ended - job.started)}` : "";
+  const buttons = maySubmit() ? [
+    live ? h("button", { type: "button", class: "danger", onclick: () => act("POST", "/cancel") }, "Cancel") : null,
+    RESUMABLE.includes(job.state) ? h("button", { type: "button", class: "primary", onclick: () => act("POST", "/resume") }, "Resume") : null,
+    ["synthesis", "explain"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
+    h("button", { type: "button", "aria-pressed": String(job.pinned), title: "Pinned jobs are kept for good", onclick: () => act("PATCH", "", { pinned: !job.pinned }) }, job.pinned ? "Kept for good" : "Keep for good"),
+    live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
+  ] : [];
+  head.replaceChildren(
+    h("div", { class: "heading" }, h("h1", {}, job.title), h("div", { class: "row" }, buttons)),
+    h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took),
+      job.parent ? h("a", { href: `/jobs/${job.parent}` }, "what it follows from") : null));
+  document.title = `${live ? "… " : ""}${job.title} · clutchsynth`;
+}
+
+async function act(method, path, body) {
+  fault.textContent = "";
+  try {
+    job = await ask(method, `/jobs/${id}${path}`, body);
+    if (path === "/resume") show();
+    else if (path === "/cancel" && !LIVE.includes(job.state)) show();
+    else heading();
+  } catch (error) {
+    fault.textContent = sentence(error.message);
+    job = await get(`/jobs/${id}`).catch(() => job);
+    heading();
+  }
+}
+
+function remove() {
+  const dialog = h("dialog", { class: "card stack", "aria-labelledby": "sure" },
+    h("h2", { id: "sure" }, "Delete this job?"), h("p", { class: "note" }, "Its result and its files go with it."),
+    h("p", { class: "row" }, h("button", { type: "button", class: "danger", onclick: async () => {
+      try {
+        await ask("DELETE", `/jobs/${id}`);
+        location.assign("/");
+      } catch (error) {
+        dialog.close();
+        fault.textContent = sentence(error.message);
+      }
+    } }, "Delete"), h("button", { type: "button", autofocus: true, onclick: () => dialog.close() }, "Keep it")));
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+const ENDS = {
+  cancelled: "The job was cancelled. Resume begins it again; rows of a batch that were answered stay.",
+  stopped: "The job was stopped at its limit of time or memory. What was found until then is kept.",
+  failed: "The job has failed.",
+};
+
+/** Show what a job has found, or why it has found nothing. */
+async function ended() {
+  const parts = [];
+  if (job.state !== "done") {
+    parts.push(h("section", { class: "card" }, h("h2", {}, badge(job)), h("p", {}, ENDS[job.state] ?? ""),
+      job.error ? h("p", { class: "fault" }, sentence(job.error.message)) : null,
+      (job.error?.problems ?? []).length > 1 ? h("ul", { class: "fault" }, job.error.problems.map((problem) => h("li", {}, problem.message))) : null));
+  }
+  const slot = h("div");
+  below.replaceChildren(...parts, slot);
+  try {
+    if (job.kind === "batch") batchView(slot, job);
+    else if (job.kind === "explain") await nothingView(slot, job, job);
+    else if (job.kind === "synthesis" && job.summary?.outcome === "infeasible") await nothingView(slot, job, null);
+    else if (job.kind === "synthesis" && job.summary?.designs) await frontView(slot, job, place.dataset.explorer);
+    else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
+    await filesCard(below, job);
+  } catch (error) {
+    slot.replaceChildren(faultCard(error, () => ended()));
+  }
+}
+
+function facts() {
+  const told = Object.entries(job.summary).filter(([, value]) => ["string", "number", "boolean"].includes(typeof value) && value !== "");
+  return h("section", { class: "card" }, h("h2", {}, outcomeText(job)), h("dl", { class: "facts" },
+    told.map(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, typeof value === "boolean" ? (value ? "yes" : "no") : String(value))])));
+}
+
+begin();

@@ -1,0 +1,231 @@
+// The form of a study: what a family declares, checked by the service while somebody types.
+
+import { Refusal, faultCard, get, maySubmit, post, sentence } from "./api.js";
+import { h, say, unitText, words } from "./dom.js";
+import { Field, choices, hintOf, stated, typed } from "./fields.js";
+import { sideView } from "./new_side.js";
+
+const PATIENCE = 300; // ms without a key, before the service is asked
+const place = document.getElementById("new");
+const address = new URLSearchParams(location.search);
+const SIZES = ["variable", "count"];
+
+// What is asked: the spec as stated, apart from what fields hold. `rest` has no field and is passed on.
+const study = { family: "", title: "", parent: null, options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
+let families = [], examples = [], declared = null, fields = [], told = { ready: false, problems: [], read: {}, combinations: null };
+
+const side = sideView({ start, spec: () => body(), fieldAt });
+const form = h("form", { id: "study", novalidate: true, onsubmit: (event) => { event.preventDefault(); start(); } });
+
+async function begin() {
+  try {
+    [{ families }, { examples }] = await Promise.all([get("/families"), get("/examples")]);
+    examples = examples.filter((example) => !example.design);
+    const from = address.get("from"), example = examples.find((one) => one.name === address.get("example"));
+    if (from) await fromJob(from);
+    else if (example) take(example.spec);
+    else study.family = families.some((family) => family.name === address.get("family")) ? address.get("family") : examples[0]?.family ?? families[0].name;
+    await redraw();
+  } catch (error) {
+    place.replaceChildren(faultCard(error, () => location.reload()));
+  }
+  place.setAttribute("aria-busy", "false");
+}
+
+async function fromJob(id) {
+  const [job, request] = await Promise.all([get(`/jobs/${id}`), get(`/jobs/${id}/request`)]);
+  const patch = location.hash.startsWith("#patch=") ? JSON.parse(decodeURIComponent(location.hash.slice(7))) : {};
+  for (const [section, values] of Object.entries(patch)) request[section] = { ...request[section], ...values };
+  take(request);
+  study.parent = id;
+  study.title = patch && Object.keys(patch).length ? `${job.title}, changed`.slice(0, 200) : "";
+}
+
+/** Take a spec as what is asked. */
+function take(spec) {
+  const { family, options = {}, requirements = {}, objectives = null, fix = {}, parts = {}, limits = {}, points, ...rest } = spec;
+  Object.assign(study, { family, options: { ...options }, objectives: objectives === null ? null : structuredClone(objectives), rest, points: String(points ?? 20) });
+  study.values = { requirements: { ...requirements }, fix: { ...fix }, parts: { ...parts } };
+  study.rest = Object.keys(limits).length ? { limits, ...rest } : rest;
+}
+
+async function redraw() {
+  const chosen = Object.entries(study.options).map(([name, value]) => `${name}:${value}`).join(",");
+  declared = await get(`/families/${study.family}${chosen ? `?options=${encodeURIComponent(chosen)}` : ""}`);
+  draw();
+  await check();
+}
+
+const of = (...sections) => declared.rows.filter((row) => sections.includes(row.section));
+const asked = (section) => declared.rows.filter((row) => row.section === section && row.kind === "requirement");
+
+function draw() {
+  fields = [];
+  const open = new Set([...form.querySelectorAll("details[open]")].map((one) => one.id));
+  if (!maySubmit()) form.replaceChildren(h("p", { class: "card note" }, "Your token may look at studies, not ask for any. What you write here can be copied."));
+  else form.replaceChildren();
+  const objectives = of("objective");
+  form.append(
+    familyCard(),
+    card("The duty", "needed", asked("needed").map((row) => field(row, "requirements"))),
+    folded("limits", "Limits you may set", "empty is not asked", asked("limit").map((row) => field(row, "requirements")), true),
+    objectiveCard(objectives),
+    folded("construction", "Construction", `${of("option").length} choices`, of("option").map((row) => choices(row, study.options[row.name] ?? row.default, (name) => choose(row, name)))),
+    folded("parts", "Parts", "designations with commas between them, or a condition on columns", of("part").map((row) => field({ ...row, unit: "" }, "parts"))),
+    folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix"))),
+    folded("assumptions", "Assumptions", `${asked("assumption").length} values, each with a default and its source`, asked("assumption").map((row) => field(row, "requirements")), false, true),
+    h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } })));
+  for (const id of open) form.querySelector(`#${id}`)?.setAttribute("open", "");
+  for (const one of form.querySelectorAll("details")) if (one.querySelector(".changed")) one.open = true;
+  if (!place.contains(form)) place.replaceChildren(h("div", { class: "split" }, form, side.element));
+}
+
+function card(title, hint, children) {
+  return h("section", { class: "card" }, h("h2", {}, title, h("span", { class: "note" }, hint)), children);
+}
+
+function folded(id, title, hint, children, open = false, find = false) {
+  if (!children.length) return null;
+  const search = find ? h("input", { type: "search", class: "find", placeholder: "Find: friction, oil …", "aria-label": `Find in ${title.toLowerCase()}`, oninput: (event) => {
+    const wanted = event.target.value.toLowerCase();
+    for (const one of children) one.hidden = !one.textContent.toLowerCase().includes(wanted);
+  } }) : null;
+  return h("section", { class: "card" }, h("details", { id, open }, h("summary", {}, h("h2", {}, title), h("span", { class: "note" }, hint)), search, children));
+}
+
+function familyCard() {
+  const own = examples.filter((example) => example.family === study.family);
+  return h("section", { class: "card" }, h("h2", { id: "family" }, "Family"),
+    h("div", { class: "families", role: "radiogroup", "aria-labelledby": "family" }, families.map((family) =>
+      h("label", {}, h("input", { type: "radio", name: "family", value: family.name, checked: family.name === study.family, onchange: () => turn(family.name) }), family.title))),
+    own.length ? h("p", { class: "row starts" }, h("span", { class: "note" }, "Start from"), own.map((example) =>
+      h("button", { type: "button", class: "small", title: example.description, onclick: () => { take(example.spec); redraw(); } }, words(example.name)))) : null);
+}
+
+function turn(family) {
+  take({ family });
+  study.parent = null;
+  redraw().then(() => form.querySelector(`input[value="${family}"]`)?.focus()).catch(show);
+}
+
+function choose(row, name) {
+  collect();
+  if (name === row.default) delete study.options[row.name];
+  else study.options[row.name] = name;
+  redraw().then(() => form.querySelector(`input[name="o-${row.name}"]:checked`)?.focus()).catch(show);
+}
+
+function field(row, section) {
+  const value = typed(study.values[section][row.name] ?? "", row.unit);
+  const one = new Field(row, { path: [section, row.name], hint: hintOf(row), value, changed: later });
+  fields.push(one);
+  return one.element;
+}
+
+function objectiveCard(rows) {
+  const chosen = study.objectives === null ? rows.filter((row) => row.default === "yes").map((row) => row.name)
+    : Array.isArray(study.objectives) ? study.objectives : Object.keys(study.objectives);
+  const boxes = rows.map((row) => h("label", {}, h("input", { type: "checkbox", value: row.name, checked: chosen.includes(row.name), onchange: () => { collect(); later(); } }),
+    words(row.name), h("span", { class: "note" }, [row.sense === "max" ? "large" : "", unitText(row.unit)].filter(Boolean).join(" · "))));
+  return h("section", { class: "card" }, h("h2", {}, "What to make small or large"), h("div", { class: "objectives", role: "group", "aria-label": "Objectives" }, boxes),
+    h("p", { class: "row points" }, h("label", { for: "points" }, "Designs at most"), h("input", { id: "points", inputmode: "numeric", autocomplete: "off", value: study.points, "aria-describedby": "points-fault", oninput: (event) => { study.points = event.target.value; later(); } }), h("span", { id: "objective-note", class: "note" })),
+    h("p", { class: "fault", id: "points-fault" }));
+}
+
+/** Gather what the fields hold. */
+function collect() {
+  for (const one of fields) {
+    const [section, name] = one.path;
+    if (!one.value) delete study.values[section][name];
+    else study.values[section][name] = section === "parts" ? partsOf(one.value) : stated(one.value, one.row.unit);
+  }
+  const boxes = [...form.querySelectorAll(".objectives input")];
+  const names = boxes.filter((box) => box.checked).map((box) => box.value);
+  if (study.objectives === null || Array.isArray(study.objectives)) study.objectives = names;
+  else study.objectives = Object.fromEntries(names.map((name) => [name, study.objectives[name] ?? of("objective").find((row) => row.name === name).sense]));
+}
+
+const partsOf = (text) => (/[<>=]| in /.test(text) ? text : text.split(",").map((name) => name.trim()).filter(Boolean));
+
+function spec() {
+  collect();
+  const found = { family: study.family };
+  if (Object.keys(study.options).length) found.options = study.options;
+  for (const [section, values] of Object.entries(study.values)) if (Object.keys(values).length || section === "requirements") found[section] = values;
+  found.objectives = study.objectives;
+  found.points = /^\d+$/.test(study.points.trim()) ? Number(study.points) : study.points;
+  return { ...found, ...study.rest };
+}
+
+function body() {
+  const own = { kind: "synthesis", request: spec() };
+  if (study.title.trim()) own.title = study.title.trim();
+  if (study.parent) own.parent = study.parent;
+  return own;
+}
+
+let waiting, number = 0;
+function later() {
+  clearTimeout(waiting);
+  side.code();
+  side.checking();
+  waiting = setTimeout(() => check().catch(show), PATIENCE);
+}
+
+async function check() {
+  const own = (number += 1);
+  side.code();
+  const answer = await post("/check", spec());
+  if (own === number) tell(answer);
+}
+
+function tell(answer) {
+  told = answer;
+  const left = [];
+  const at = new Map();
+  for (const problem of answer.problems) {
+    const one = fieldAt(problem.path);
+    if (one) at.set(one, problem);
+    else left.push(problem);
+  }
+  for (const one of fields) one.show(at.get(one) ?? null, one.path[0] === "requirements" ? answer.read[one.row.name] : "");
+  const points = left.find((problem) => problem.path[0] === "points");
+  document.getElementById("points-fault").textContent = points?.message ?? "";
+  document.getElementById("points").setAttribute("aria-invalid", String(Boolean(points)));
+  const objectives = Array.isArray(study.objectives) ? study.objectives.length : Object.keys(study.objectives).length;
+  document.getElementById("objective-note").textContent = ["Choose at least one.", "One optimum.", "A front of the best compromises."][objectives] ?? `A front in ${objectives} dimensions; this can take minutes.`;
+  side.show(answer, at, left, { objectives, stated: Object.keys(study.values.requirements).length, slots: of("part").map((row) => words(row.name)) });
+}
+
+function fieldAt(path) {
+  return fields.find((one) => one.path[0] === path[0] && one.path[1] === path[1]);
+}
+
+/** Show a refusal; what is wrong in the input goes to its fields. */
+function show(error) {
+  if (!(error instanceof Refusal)) throw error;
+  if (error.problems.length) tell({ ...told, ready: false, problems: error.problems });
+  else side.refused(sentence(error.message));
+}
+
+async function start() {
+  for (const one of fields) if (one.needed) one.touched = true;
+  side.busy(true);
+  try {
+    await check();
+    if (!told.ready) {
+      const first = fields.find((one) => one.input.getAttribute("aria-invalid") === "true");
+      first?.element.closest("details")?.setAttribute("open", "");
+      first?.input.focus();
+      say(`${told.problems.length} to correct`);
+      return side.busy(false);
+    }
+    const job = await post("/jobs", body(), { "Idempotency-Key": crypto.randomUUID?.() ?? String(Math.random()) });
+    location.assign(`/jobs/${job.id}`);
+  } catch (error) {
+    side.busy(false);
+    show(error);
+  }
+}
+
+begin();

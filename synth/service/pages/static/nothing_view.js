@@ -1,0 +1,72 @@
+// Nothing is feasible: what stands in the way, and what would help.
+
+import { get, listen, maySubmit, post, sentence } from "./api.js";
+import { h, unitText } from "./dom.js";
+import { LIVE, outcomeText, stageText } from "./words.js";
+
+/**
+ * Show why there is no design.
+ * @param {HTMLElement} element
+ * @param {object} job a search without a design, or an explanation
+ * @param {object | null} explaining the explanation, where it is the job itself
+ */
+export async function nothingView(element, job, explaining) {
+  const why = h("section", { class: "card stack" }), ways = h("section", { class: "card stack" });
+  element.replaceChildren(why, ways);
+  if (explaining) {
+    why.remove();
+    return tell(ways, job, await get(`/jobs/${job.id}/result`));
+  }
+  const record = await get(`/jobs/${job.id}/result`);
+  const told = record.explanation ?? {};
+  const conflicts = told.conflicts ?? [];
+  why.append(h("h2", {}, "Nothing is feasible"),
+    h("p", {}, record.certificate?.kind === "global" ? "This is proven: no combination of parts and sizes holds all limits." : "No design was found that holds all limits."),
+    conflicts.length ? h("p", {}, "The nearest that was found misses:") : h("p", {}, sentence(told.message)),
+    h("ul", { class: "misses" }, conflicts.map((conflict) => h("li", {}, withUnits(conflict.sentence)))));
+  await seek(ways, job);
+}
+
+const withUnits = (text) => text.replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`).replaceAll("_", " ");
+
+/** Find the explanation of a job, or ask for it; it is asked once. */
+async function seek(ways, job) {
+  const known = (await get(`/jobs?kind=explain&parent=${job.id}&limit=1`)).jobs[0];
+  if (known) return follow(ways, job, known);
+  const fault = h("p", { class: "fault", role: "alert" });
+  const begin = async () => {
+    try {
+      const { points, gap, objectives, weights, grid, ...request } = await get(`/jobs/${job.id}/request`);
+      const title = `Ways out: ${job.title}`.slice(0, 200);
+      follow(ways, job, await post("/jobs", { kind: "explain", request: { ...request, ...(grid === undefined ? {} : { grid }) }, title, parent: job.id }, { "Idempotency-Key": `ways-out-${job.id}` }));
+    } catch (error) {
+      fault.textContent = sentence(error.message);
+    }
+  };
+  ways.replaceChildren(h("h2", {}, "What would help?"), h("p", {}, "The smallest changes that make it feasible can be searched; that takes some seconds to minutes."),
+    maySubmit() ? h("p", {}, h("button", { type: "button", class: "primary", onclick: begin }, "Find ways out")) : null, fault);
+}
+
+function follow(ways, job, explaining) {
+  const stage = h("p", { role: "status" }, stageText(explaining.progress));
+  const show = async (found) => {
+    if (found.state === "done") tell(ways, job, await get(`/jobs/${found.id}/result`));
+    else ways.replaceChildren(h("h2", {}, "Ways out"), h("p", {}, outcomeText(found)), h("p", {}, h("a", { href: `/jobs/${found.id}` }, "Look at it")));
+  };
+  if (!LIVE.includes(explaining.state)) return show(explaining);
+  ways.replaceChildren(h("h2", {}, "Looking for ways out"), h("progress", { "aria-label": "Ways out are searched" }), stage);
+  return listen([explaining.id], async (kind, told) => {
+    if (kind === "progress") stage.textContent = stageText(told);
+    if (kind === "end") show(await get(`/jobs/${explaining.id}`));
+  });
+}
+
+function tell(ways, job, found) {
+  const proven = (way) => h("span", { class: `badge ${way.proven ? "good" : ""}` }, way.proven ? "proven" : "not proven to be the least");
+  const conflict = found.conflict.length ? h("p", {}, `Together these cannot hold: ${found.conflict.join(", ").replaceAll("_", " ")}${found.minimal ? "; each alone could" : ""}.`) : h("p", {}, sentence(found.message));
+  ways.replaceChildren(h("h2", {}, "Ways out"), conflict,
+    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, withUnits(way.sentence)), proven(way)),
+      maySubmit() && Object.keys(way.patch ?? {}).length ? h("a", { class: "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply") : null)))
+      : h("p", {}, found.feasible ? "All limits can hold together." : "No single change was found that helps."),
+    found.interrupted ? h("p", { class: "note" }, `Interrupted: ${found.interrupted}`) : h("span"));
+}

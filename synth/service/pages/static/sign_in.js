@@ -1,0 +1,23 @@
+// Where a browser shows its token once.
+
+import { ask, sentence } from "./api.js";
+
+const form = document.getElementById("sign-in"), field = document.getElementById("token"), fault = document.getElementById("fault");
+
+form.addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const token = field.value.trim();
+  fault.textContent = /^[\x21-\x7e]+$/.test(token) ? "" : "Please enter a token; it begins with cs_.";
+  if (fault.textContent) return field.focus();
+  try {
+    await ask("POST", "/session", undefined, { Authorization: `Bearer ${token}` });
+  } catch (error) {
+    if (error.status !== 409) {
+      fault.textContent = sentence(error.message);
+      field.focus();
+      return;
+    }
+  }
+  const next = new URL(new URLSearchParams(location.search).get("next") ?? "/", location.origin);
+  location.assign(next.origin === location.origin ? next.pathname + next.search : "/");
+});

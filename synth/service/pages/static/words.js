@@ -1,0 +1,66 @@
+// How jobs stand, in words.
+
+import { h, words } from "./dom.js";
+
+export const LIVE = ["open", "running"];
+export const KINDS = {
+  synthesis: "Study", compare: "Comparison", whatif: "What if", explain: "Ways out", prices: "Prices", near_equals: "Near equals", rate: "Rating",
+  verify: "Verification", report: "Report", batch: "Batch", size_range: "Size range",
+};
+const STAGES = {
+  bounds: "Bounding what is possible", coarse: "Looking for first designs", extremes: "Finding the ends of the front", front: "Filling the front",
+  report: "Working out the designs", explanation: "Looking for what stands in the way", "ways out": "Looking for ways out",
+};
+export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "report"];
+
+const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
+export { count };
+
+/** Return what a job is doing. */
+export const stageText = (progress) => (progress?.stage ? STAGES[progress.stage] ?? words(progress.stage) : "Starting");
+
+/** Return how much of a job is done, from 0 to 1; null where nobody knows. */
+export function share(job) {
+  const told = job.progress;
+  if (!told) return null;
+  if (told.rows) return told.done / told.rows;
+  return told.done > 0 && told.done <= 1 ? told.done : null;
+}
+
+/** Return how a job stands, in a few words. */
+export function outcomeText(job) {
+  const facts = job.summary ?? {};
+  if (job.state === "open") return "Waits for a worker";
+  if (job.state === "running") return job.kind === "batch" && job.progress?.rows ? `${job.progress.done} of ${count(job.progress.rows, "row")}` : stageText(job.progress);
+  if (job.state === "failed") return job.error?.message ?? "Failed";
+  if (job.kind === "batch" && facts.rows) {
+    const status = facts.status ?? {};
+    const parts = Object.entries(status).map(([name, number]) => `${number} ${ROWS[name]?.[0].toLowerCase() ?? words(name)}`);
+    return `${count(facts.rows, "row")}: ${parts.join(", ")}`;
+  }
+  if (job.state === "cancelled") return "Cancelled";
+  const found = facts.designs ? count(facts.designs, "design") : "";
+  if (job.state === "stopped") return found ? `Stopped at a limit, ${found} kept` : "Stopped at a limit of time or memory";
+  if (job.outcome === "infeasible") return job.kind === "explain" ? count(facts.ways ?? 0, "way out", "ways out") : "Nothing is feasible";
+  if (job.outcome === "not_solved") return "No answer within the time";
+  if (found) return `${found}, ${facts.certificate === "global" && !facts.interrupted ? "proven" : "not proven to be the best"}`;
+  return "Done";
+}
+
+const BADGES = {
+  open: ["Waiting", "", "○"], running: ["Running", "live", "●"], done: ["Done", "good", "✓"], failed: ["Failed", "bad", "✗"],
+  cancelled: ["Cancelled", "", "–"], stopped: ["Stopped", "warn", "■"],
+};
+
+/** Return the state of a job as a badge: a word and a mark, not a colour alone. */
+export function badge(job) {
+  const [text, kind, mark] = job.state === "done" && job.outcome === "infeasible" && job.kind !== "explain" ? ["Not feasible", "warn", "!"]
+    : BADGES[job.state] ?? [words(job.state), "", "○"];
+  return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
+}
+
+// Of rows of a batch: words, and the class of their share in the bar.
+export const ROWS = {
+  optimal: ["Optimal", "good"], feasible: ["Feasible", "fair"], infeasible: ["Not feasible", "warn"], not_solved: ["Not solved", "soft"],
+  refused: ["Refused", "warn"], bad_input: ["Faulty", "bad"], failed: ["Failed", "bad"],
+};
