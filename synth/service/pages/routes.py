@@ -7,18 +7,19 @@ from collections.abc import Callable, Coroutine
 from functools import cache
 from importlib.metadata import version
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 from urllib.parse import quote
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Path, Request, Response
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, RedirectResponse
 from fastapi.routing import APIRoute
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from synth.jobs.accounts import READ, SUBMIT, Principal
+from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
 from synth.service.api.asking import OwnJob
-from synth.service.auth import Reader
-from synth.service.errors import ServiceError, request_id_of
+from synth.service.auth import Administrator, Reader
+from synth.service.errors import ServiceError, not_found, request_id_of
 from synth.service.pages.assets import EXPLORER_MODULE, assets, static_place
 
 SIGN_IN = "/sign-in"
@@ -36,6 +37,11 @@ class Place(NamedTuple):
 PLACES = (
     Place("/", "Studies", READ),
     Place("/new", "New study", SUBMIT),
+    Place("/batches/new", "Batch", SUBMIT),
+    Place("/catalogues", "Catalogues", READ),
+    Place("/families", "Families", READ),
+    Place("/interface", "API", READ),
+    Place("/tokens", "Tokens", ADMIN),
 )
 
 
@@ -94,6 +100,8 @@ class PageRoute(APIRoute):
                 if error.status == 401:
                     return RedirectResponse(f"{SIGN_IN}?next={quote(_here(request))}", 303)
                 return _refused(request, error)
+            except RequestValidationError:
+                return _refused(request, not_found())
 
         return handle
 
@@ -123,6 +131,42 @@ async def studies(principal: Reader) -> HTMLResponse:
 async def new_study(principal: Reader) -> HTMLResponse:
     """Show the form of a study."""
     return shown("new", "New study", "/new", principal)
+
+
+@router.get("/batches/new")
+async def new_batch(principal: Reader) -> HTMLResponse:
+    """Show where a table is brought."""
+    return shown("batch", "Batch", "/batches/new", principal)
+
+
+@router.get("/catalogues")
+async def catalogues(principal: Reader) -> HTMLResponse:
+    """Show part tables of one's own."""
+    return shown("catalogues", "Catalogues", "/catalogues", principal)
+
+
+@router.get("/families")
+async def families(principal: Reader) -> HTMLResponse:
+    """Show the families."""
+    return shown("families", "Families", "/families", principal, family="")
+
+
+@router.get("/families/{name}")
+async def family(name: Annotated[str, Path(pattern=r"^[a-z0-9_]{1,100}$")], principal: Reader) -> HTMLResponse:
+    """Show what a family declares."""
+    return shown("families", "Family", "/families", principal, family=name)
+
+
+@router.get("/interface")
+async def interface(principal: Reader) -> HTMLResponse:
+    """Show the interface for programs."""
+    return shown("interface", "API", "/interface", principal)
+
+
+@router.get("/tokens")
+async def tokens(principal: Administrator) -> HTMLResponse:
+    """Show who may come in."""
+    return shown("tokens", "Tokens", "/tokens", principal)
 
 
 @router.get("/jobs/{job}")

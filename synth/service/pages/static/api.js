@@ -3,7 +3,7 @@
 import { h } from "./dom.js";
 
 export const API = "/api/v1";
-const TRIES = 4, PAUSE = 1500;
+const TRIES = 8, PAUSE = 1500; // of what only looks; ms between
 
 /** Why a request cannot be answered. */
 export class Refusal extends Error {

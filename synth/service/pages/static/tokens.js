@@ -1,0 +1,74 @@
+// Tokens: made, shown once, and revoked.
+
+import { API, ask, faultCard, get, post, sentence } from "./api.js";
+import { h, say, when } from "./dom.js";
+
+const place = document.getElementById("tokens");
+const SCOPES = [["read", "see the jobs of its tenant"], ["submit", "ask for jobs, cancel and delete them"], ["admin", "make tokens for all tenants"]];
+const listed = h("div"), made = h("div", { role: "status" });
+
+async function begin() {
+  try {
+    await list();
+    place.replaceChildren(made, listed, making());
+  } catch (error) {
+    place.replaceChildren(faultCard(error, () => location.reload()));
+  }
+  place.setAttribute("aria-busy", "false");
+}
+
+async function list() {
+  const { tokens } = await get("/tokens");
+  listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
+    h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Last used", "Valid until", ""].map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, tokens.map((token) => h("tr", {}, h("th", { scope: "row" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, token.used ? when(token.used) : "never"),
+      h("td", {}, token.expires ? new Date(1000 * token.expires).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" }) : "for ever"),
+      h("td", {}, token.revoked ? h("span", { class: "badge" }, "revoked") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
+    : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. Make one that may admin first, or you lock yourself out."));
+}
+
+async function revoke(token, button) {
+  if (button.dataset.sure !== "yes") {
+    button.dataset.sure = "yes";
+    button.textContent = "Really revoke?";
+    button.classList.add("danger");
+    return;
+  }
+  try {
+    await ask("DELETE", `/tokens/${token.id}`);
+    await list();
+    say(`${token.name} is revoked`);
+  } catch (error) {
+    made.replaceChildren(faultCard(error));
+  }
+}
+
+function making() {
+  const name = h("input", { id: "name", autocomplete: "off", spellcheck: "false", placeholder: "whom or what it is for" });
+  const tenant = h("input", { id: "tenant", autocomplete: "off", spellcheck: "false", placeholder: "your own" });
+  const days = h("input", { id: "days", inputmode: "numeric", autocomplete: "off", placeholder: "365" });
+  const boxes = SCOPES.map(([scope, text]) => h("label", {}, h("input", { type: "checkbox", value: scope, checked: scope !== "admin" }), scope, h("span", { class: "note" }, text)));
+  const fault = h("p", { class: "fault", role: "alert" });
+  const labelled = (text, field) => h("p", { class: "labelled" }, h("label", { for: field.id }, text), field);
+  return h("form", { class: "card stack", novalidate: true, onsubmit: async (event) => {
+    event.preventDefault();
+    fault.textContent = "";
+    const body = { name: name.value.trim(), scopes: boxes.map((box) => box.querySelector("input")).filter((box) => box.checked).map((box) => box.value) };
+    if (tenant.value.trim()) body.tenant = tenant.value.trim();
+    if (days.value.trim()) body.days = Number(days.value);
+    try {
+      const token = await post("/tokens", body);
+      const copy = h("button", { type: "button", class: "small", onclick: () => navigator.clipboard?.writeText(token.value).then(() => { copy.textContent = "Copied"; }) }, "Copy");
+      made.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, `Token for ${body.name}`), h("p", {}, "It is shown this once; only its hash is kept."), h("p", { class: "row" }, h("code", { class: "token" }, token.value), copy), h("p", { class: "note" }, "If it is the first one, this browser has to sign in with it now.")));
+      name.value = "";
+      made.scrollIntoView();
+      const open = await fetch(`${API}/session`);
+      if (open.ok) await list();
+      else listed.replaceChildren();
+    } catch (error) {
+      fault.textContent = sentence(error.message);
+    }
+  } }, h("h2", {}, "Make a token"), h("div", { class: "asks" }, labelled("Name", name), labelled("Tenant", tenant), labelled("Days", days)), h("div", { class: "objectives", role: "group", "aria-label": "What it may" }, boxes), fault, h("p", {}, h("button", { type: "submit", class: "primary" }, "Make it")));
+}
+
+begin();
