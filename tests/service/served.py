@@ -14,6 +14,7 @@ from typing import Any
 
 import httpx
 
+from tests.service.working import QUICK
 from tests.terminal.entry import COMMAND
 
 # Python runs this at the start of every process that has its folder in PYTHONPATH: workers and engines, too.
@@ -52,6 +53,11 @@ class Served:
         """Ask something of the interface, or of what stands beside it."""
         where = path if path.startswith("/") else f"/api/v1/{path}"
         return httpx.request(method, f"{self.address}{where}", timeout=60.0, **asked)
+
+    def warm(self) -> None:
+        """Wait until small questions and tables are answered: a process that begins may be asked too early."""
+        until(lambda: self.ask("POST", "check", json=QUICK).status_code == 200, 60.0)
+        until(lambda: self.ask("POST", "batches/check", json={"rows": []}).status_code == 422, 60.0)
 
     def ended(self, job: str, within: float = 90.0, **asked: Any) -> dict[str, Any]:
         """Wait until a job has ended."""

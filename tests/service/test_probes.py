@@ -23,7 +23,7 @@ TRIED = ("check", "synthesis", "whatif", "explain", "compare", "rate", "batch")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """Yield a server whose engine process is warm."""
     with served(tmp_path_factory.mktemp("probes"), "--workers", "1") as found:
-        assert found.ask("POST", "check", json=QUICK).json()["ready"]
+        found.warm()
         yield found
 
 

@@ -92,7 +92,7 @@ PLACE = "http://169.254.169.254/latest/meta-data"
 def test_no_process_of_the_server_reaches_beyond_this_machine(tmp_path: Path) -> None:
     """Every process writes down where it wants to go, and may not."""
     with served(tmp_path, "--workers", "1") as server:
-        assert server.ask("POST", "check", json=QUICK).json()["ready"]
+        server.warm()
         wishes: list[dict[str, Any]] = [
             {"kind": "synthesis", "request": {**QUICK, "catalogs": {"friction_materials": PLACE}}},
             {"kind": "synthesis", "request": {**QUICK, "of": PLACE}},
