@@ -23,6 +23,7 @@ from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
 
 CURVES = ("*.svg",)
+NO_REPORTS = "the package reports, which clutchsynth is installed with"
 
 
 def report(
@@ -91,12 +92,27 @@ def explore(
     InputError
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
-    record, frame = report_named("explorer_record"), report_named("explorer_frame")
-    if record is None or frame is None:
-        raise InputError("explore", None, "the package reports, which clutchsynth is installed with")
+    frame = report_named("explorer_frame")
+    if frame is None:
+        raise InputError("explore", None, NO_REPORTS)
+    return NotebookFrame(frame(explored(front, about=about, problem=problem, catalogs=catalogs), height))
+
+
+def explored(front: ParetoFront, *, about: Any = None, problem: Any = None, catalogs: Any = None) -> dict[str, Any]:
+    """Return what the explorer shows of a front, as JSON holds it; arguments as for :func:`report`.
+
+    Raises
+    ------
+    InputError
+        The formulas of a loaded front cannot be read, or reports are not installed.
+    """
+    record = report_named("explorer_record")
+    if record is None:
+        raise InputError("explore", None, NO_REPORTS)
     read = calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front)
     beside = _beside(Path(front.folder), front) if front.folder is not None else {}
-    return NotebookFrame(frame(record(front, read, about=about, prices=beside.get("prices", ())), height))
+    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()))
+    return found
 
 
 @dataclass(frozen=True)

@@ -223,7 +223,6 @@ class Engines:
         InputError, EngineTimeoutError, EngineCrashedError
             As there; a timeout, too, where no process is free in time.
         """
-        end = time.monotonic() + deadline
         self._add_late()
         try:
             engine = self._idle.get(timeout=deadline)
@@ -232,9 +231,9 @@ class Engines:
         usable = False
         try:
             # A process that is just starting is waited for longer: nothing is wrong with the question.
-            if not engine.warm(max(end - time.monotonic(), self._settings.start)):
+            if not engine.warm(self._settings.start):
                 raise EngineTimeoutError(f"{task}: the process is not ready")
-            answer = engine.call(task, payload, max(end - time.monotonic(), deadline / 2))
+            answer = engine.call(task, payload, deadline)
             usable = True
         except InputError:
             usable = True

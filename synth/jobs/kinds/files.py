@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import io
+import json
 import re
+import tempfile
 import zipfile
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+from synth.analysis.reporting import explored
 from synth.errors import ExtraNeededError
 from synth.jobs.kinds import kind as kind_named
 from synth.jobs.kinds.asked import checked_keys, front_in, is_comparison
 from synth.jobs.kinds.contract import NOTHING, Record, Sources
 from synth.jobs.kinds.report import ReportAsked, reported
+from synth.jobs.kinds.verify import unpack
 from synth.results import ParetoFront
 from synth.results.drawings import report
 from synth.results.front_record import FRONT_FILE
+from synth.results.loading import load_front
 
 __all__ = ["ExtraNeededError", "UnknownFileError", "files_of", "render"]
 
@@ -23,6 +29,7 @@ BUNDLE = "bundle.zip"
 WORKBOOK = "designs.xlsx"
 PLOT = "front.svg"
 REPORTS = ("report.html", "report.pdf")
+EXPLORER, EXPLORED = "explorer.html", "explorer.json"  # the page, and what it shows for a page of others
 SHEETS = ("_sheet.html", "_sheet.pdf", "_sheet.json", "_live.xlsx")
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all in an archive, so that the same records give the same bytes
 OPTIONS = ("length", "full", "about", "design")
@@ -96,6 +103,11 @@ def render(
         return Record.of(name, derived[name])
     if name == PLOT:
         return Record.of(name, _drawn(front))
+    if name == EXPLORED:
+        return Record.of(name, _explored(records))
+    if name == EXPLORER:
+        files, _ = reported(records, ReportAsked.read({**given, "formats": ["explorer"]}), sources)
+        return Record.of(name, files[name])
     sheet = re.fullmatch(r"design_(\d+)(_sheet|_live)\.[a-z]+", name)
     if sheet is not None:
         given["design"] = int(sheet.group(1))
@@ -113,6 +125,14 @@ def _derived(front: ParetoFront) -> dict[str, str]:
     return front.record_files(str((front.record or {}).get("calculation", "")))
 
 
+def _explored(records: Mapping[str, bytes]) -> str:
+    """Return what the explorer shows of a front."""
+    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
+        folder = Path(place, "front")
+        unpack(records, folder)
+        return json.dumps(explored(load_front(folder)), ensure_ascii=False, allow_nan=False)
+
+
 def _drawn(front: ParetoFront) -> str:
     """Return the drawing of a front, as notebooks show it."""
     draw = report("plot")
@@ -126,6 +146,7 @@ def _front_files(front: ParetoFront) -> list[str]:
     derived = _derived(front)
     stems = [name.removesuffix(".yaml") for name in derived if name.startswith("design_")]
     drawn = [PLOT] if front.designs and report("plot") is not None else []
+    drawn += [EXPLORER, EXPLORED] if report("explorer_record") is not None else []
     return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
 
 

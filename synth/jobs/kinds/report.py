@@ -34,7 +34,7 @@ from synth.results.loading import load_front
 
 MAIN = "report.json"  # which files there are, and what else is to be told
 KEYS = (OF, FAMILY, "design", "full", "formats", "length", "about")
-FORMATS = ("html", "pdf", "xlsx", "json")
+FORMATS = ("html", "explorer", "pdf", "xlsx", "json")
 LENGTHS = ("summary", "normal", "full")
 FULL = 5
 LOGO = "logo"  # of ``about`` names a file: no request does

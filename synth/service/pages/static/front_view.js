@@ -16,6 +16,7 @@ const MOST = 200, SHOWN = 14;
  * @param {string} explorer address of the module that draws fronts, empty where there is none
  */
 export async function frontView(element, job, explorer) {
+  element.replaceChildren(h("p", { class: "note" }, "Loading the front …"));
   if (explorer && (await explored(element, job, explorer))) return;
   const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
   const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
@@ -25,11 +26,17 @@ export async function frontView(element, job, explorer) {
     ...(points.length > 1 ? [plotOf(objectives, points, { label: "The front", choose: (design) => table.choose(design.rank) })] : []), table.element);
 }
 
+/** Let the explorer draw; tell whether it could: else the page draws the front itself. */
 async function explored(element, job, explorer) {
   const { files } = await get(`/jobs/${job.id}/files`);
-  const found = files.find((file) => file.name === RECORD);
-  if (!found) return false;
-  const [{ mount }, record] = await Promise.all([import(explorer), fetch(found.href).then((answer) => answer.json())]);
+  if (!files.some((file) => file.name === RECORD)) return false;
+  let drawn;
+  try {
+    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`)]);
+  } catch {
+    return false;
+  }
+  const [{ mount }, record] = drawn;
   document.head.append(h("link", { rel: "stylesheet", href: explorer.replace(/\.js$/, ".css") }));
   const slot = h("div", { class: "explored" });
   element.replaceChildren(slot);
