@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 import weakref
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -40,9 +41,11 @@ def connect(url: str, token: str | None = None, *, settings: ClientSettings = CL
     ServiceRefusedError
         The service is not there, or does not take the token.
     """
-    client = ServiceClient(Transport(url, token, settings))
-    client.version()
-    return client
+    # Who has mistyped an address learns so at once; patience is for jobs that are under way.
+    first = ServiceClient(Transport(url, token, replace(settings, patience=0.0)))
+    with first:
+        first.version()
+    return ServiceClient(Transport(url, token, settings))
 
 
 class ServiceClient:
@@ -217,6 +220,20 @@ class ServiceClient:
     ) -> RemoteJob:
         """Check a front again without the search: as ``synth.verify``."""
         return self._of("verify", front, progress, time_limit=time_limit)
+
+    def report(
+        self, front: ParetoFront | RemoteJob | str, *, progress: Progress | None = None, **asked: Any
+    ) -> RemoteJob:
+        """Write the report of a front, as ``ParetoFront.report`` does.
+
+        Parameters
+        ----------
+        front : ParetoFront, RemoteJob or str
+        progress : callable, optional
+        **asked
+            ``design``, ``full``, ``formats``, ``length``, ``about``.
+        """
+        return self._of("report", front, progress, **asked)
 
     def batch(
         self,

@@ -49,6 +49,8 @@ def shown_kind(value: Any) -> Any:
 
 def refuse_several(family: Any, where: str) -> None:
     """Refuse several families; ``where`` is the name of the spec that states them."""
+    if not isinstance(family, (str, list, tuple)):
+        raise InputError(f"{where}: family", shown_kind(family), "a name", ("family",))
     if asks_several(family):
         right = "one family (clutchsynth run compares several)"
         raise InputError(f"{where}: family", shown_families(family), right, ("family",))

@@ -52,6 +52,32 @@ CODES: Mapping[int, str] = MappingProxyType(
 )
 
 
+# What would be right, by the type of a fault that a schema tells: its own words are for programmers.
+WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        "missing": "a value",
+        "extra_forbidden": "no key of this name; the description of the interface lists those there are",
+        "string_type": "a text",
+        "string_too_long": "at most {max_length} characters",
+        "string_too_short": "at least {min_length} characters",
+        "string_pattern_mismatch": "a text without other signs than its description allows",
+        "int_type": "a whole number",
+        "int_parsing": "a whole number",
+        "int_from_float": "a whole number",
+        "float_type": "a number",
+        "float_parsing": "a number",
+        "bool_type": "true or false",
+        "bool_parsing": "true or false",
+        "greater_than_equal": "{ge} or more",
+        "less_than_equal": "at most {le}",
+        "list_type": "a list",
+        "dict_type": "a JSON object",
+        "model_type": "a JSON object",
+        "model_attributes_type": "a JSON object",
+    }
+)
+
+
 class Problem(BaseModel):
     """One thing that is wrong in the input."""
 
@@ -233,8 +259,16 @@ def _fault(told: Mapping[str, Any]) -> InputError:
     place = tuple(told["loc"])
     path = place[1:] if place[:1] in (("body",), ("query",), ("path",)) else place
     value = None if told["type"] == "missing" else _short(told.get("input"))
-    right = str(told["msg"]).removeprefix("Input should be ")
+    right = WORDS.get(told["type"], "{msg}").format(
+        msg=str(told["msg"]).removeprefix("Input should be "), **_bounds(told)
+    )
     return InputError(".".join(map(str, path)) or "body", value, right, path)
+
+
+def _bounds(told: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the numbers that a schema names with a fault."""
+    names = ("ge", "le", "max_length", "min_length")
+    return {name: value for name, value in (told.get("ctx") or {}).items() if name in names}
 
 
 def _short(value: Any) -> Any:

@@ -238,6 +238,10 @@ def resume(
     from synth.terminal.batch_console import batch_display, print_summary
 
     store, found = _find(job, database)
+    if found.code is not None:
+        with store:
+            _let_workers_go_on(store, found)
+        return
     with store, heard_again() as check:
         try:
             claim_output(Path(found.folder), BATCH, found.id)
@@ -254,6 +258,21 @@ def resume(
     if not quiet:
         print_summary(counts, place, Path(found.folder), stopped)
     raise typer.Exit(_code(counts, stopped))
+
+
+def _let_workers_go_on(store: Store, found: Job) -> None:
+    """Open a job of a service again: workers of its database go on with it.
+
+    Raises
+    ------
+    InputError
+        The job has not ended, or is done.
+    """
+    if not store.resume(found.id, found.tenant, str(found.code)):
+        raise InputError(
+            "JOB", found.id, f"a job that was cancelled or stopped, or has failed; this one is {found.state}"
+        )
+    print(f"{found.id}: open again; the workers of its database go on with it")
 
 
 def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:

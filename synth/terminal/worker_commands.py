@@ -46,7 +46,7 @@ def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: F
 
     if slots is not None:
         whole_number(slots, "--slots", INPUT_LIMITS.workers, path=("slots",))
-    with Store(database) as store:
+    with Store(database, create=False) as store:
         serving = Worker(store, slots or cores(), spare=spare, say=tell)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: serving.stop())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from alembic.config import Config
 
 from synth.jobs.batch import BatchJob, batch, resume
 from synth.jobs.database import HEAD, engine_for, file_url
+from synth.jobs.job_settings import JOBS, RunnerSettings
 from synth.jobs.job_table import CANCELLED, DONE, OPEN
 from synth.jobs.outputs import write_outputs
 from synth.jobs.store import Store
@@ -83,8 +85,11 @@ def test_a_batch_that_the_first_version_has_stopped_ends_with_the_same_bytes(tmp
         if state["done"] > 1:
             raise KeyboardInterrupt
 
-    stopped = batch("multi_plate_clutch", rows, tmp_path / "out", database=database, progress=stop, **asked)
-    assert stopped.stopped
+    often = replace(JOBS, runner=RunnerSettings(pause=0.0, report_share=1e9))
+    common = {"parts": None, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
+    settings = SearchSettings(points=1)
+    planned = BatchJob("multi_plate_clutch", rows, tmp_path / "out", None, None, database, settings, common, often)
+    assert planned.result(1, None, stop).stopped
     _put_back(database)
     with Store(database) as store:
         (job,) = store.jobs()

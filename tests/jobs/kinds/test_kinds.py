@@ -318,7 +318,7 @@ def test_an_explanation_says_how_to_change_the_question() -> None:
     ("name", "expected"),
     [
         ("prices", {"outcome": "feasible", "designs": 1, "asked": 1}),
-        ("near_equals", {"outcome": "infeasible", "found": 0, "complete": True}),
+        ("near_equals", {"outcome": "feasible", "found": 1, "complete": True}),
         ("rate", {"rated": 1, "missing": 0}),
         ("verify", {"outcome": "holds", "findings": 0}),
         ("report", {"files": ["report.html", "design_01_sheet.html", "design_01_sheet.json"]}),

@@ -46,7 +46,7 @@ OTHERS = {
 def interface(engines: Engines, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Interface]:
     """Yield the specification of a service that listens, the header that opens it, and two jobs that have ended."""
     folder = tmp_path_factory.mktemp("service")
-    with working(folder, engines, called=False) as service, listened(service) as address:
+    with working(folder, engines, called=False, failed_tokens=10_000) as service, listened(service) as address:
         headers = bearer(service.token("read", "submit", "admin"))
         with service.store.engine.begin() as connection:
             connection.execute(sa.update(Token).values(id=OWN))
