@@ -80,8 +80,10 @@ def parts(tmp_path: Path) -> Iterator[Parts]:
 def test_workers_and_the_scheduler_may_die_on_the_way(
     parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    numbers = JobSettings(runner=RunnerSettings(pause=0.0))  # rows are solved in milliseconds: every one is to be seen
-    alone = synth.batch(Rod, rows(60), tmp_path / "alone", objectives=["mass"], points=1)
+    numbers = JobSettings(
+        runner=RunnerSettings(pause=0.0, report_share=1e9)
+    )  # rows are solved in milliseconds: every one is to be seen
+    alone = synth.batch(Rod, rows(240), tmp_path / "alone", objectives=["mass"], points=1)
     scheduler = parts.scheduler()
     first, _ = parts.worker(), parts.worker()
     parts.ready(2)
@@ -101,7 +103,7 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
     result = batch(
         numbers,
         Rod,
-        rows(60),
+        rows(240),
         tmp_path / "cluster",
         objectives=["mass"],
         points=1,
@@ -109,7 +111,7 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
         progress=disturb,
     )
     assert len(parts.processes) == 6, "everything was solved before anything was killed"
-    assert result.counts == {"optimal": 60}
+    assert result.counts == {"optimal": 240}
     written = [(r.folder / "designs.csv").read_bytes() for r in (alone, result)]
     assert written[0] == written[1]
     from synth.jobs.store import Store

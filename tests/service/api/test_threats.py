@@ -154,7 +154,7 @@ def test_a_search_without_end_ends_at_its_time_and_others_go_on(engines: Engines
         client = Client(service, service.token(tenant="greedy"))
         other = Client(service, service.token(tenant="other"))
         begun = time.monotonic()
-        endless = client.submit("synthesis", LONG)
+        endless = client.submit("synthesis", {**LONG, "points": 500, "gap": 1e-6, "grid": False})
         client.until(endless, lambda told: told["state"] == "running")
         for _ in range(3):
             assert other.ended(other.submit("synthesis", QUICK))["state"] == "done"
