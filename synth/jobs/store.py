@@ -352,24 +352,8 @@ class Store(JobQueue):
 
     def rows(self, job: str, canonical: bool) -> Iterator[Answered]:
         """Return the rows beside their answers, some at a time: in canonical order, or as in the table."""
-        joined = sa.and_(Result.job == Row.job, Result.key == Row.key)
-        asked = (
-            sa.select(
-                Row.line,
-                Row.key,
-                Row.family,
-                Row.cells,
-                Row.remarks,
-                Row.faults,
-                Result.status,
-                Result.seconds,
-                Result.layout,
-                Result.content,
-            )
-            .join(Result, joined, isouter=True)
-            .where(Row.job == job)
-            .order_by(*((Row.position, Row.line) if canonical else (Row.line,)))
-        )
+        order = (Row.position, Row.line) if canonical else (Row.line,)
+        asked = answered_rows().where(Row.job == job).order_by(*order)
         with self.engine.connect().execution_options(stream_results=True, yield_per=self.settings.chunk) as connection:
             for row in connection.execute(asked):
                 yield Answered(*row)
@@ -390,6 +374,23 @@ class Store(JobQueue):
         with self.engine.begin() as connection:
             found = connection.execute(sa.select(Layout.key, Layout.content).where(Layout.job == job))
             return {key: content for key, content in found}
+
+
+def answered_rows() -> sa.Select[Any]:
+    """Return the question for rows beside their answers, with the columns of :class:`Answered`."""
+    joined = sa.and_(Result.job == Row.job, Result.key == Row.key)
+    return sa.select(
+        Row.line,
+        Row.key,
+        Row.family,
+        Row.cells,
+        Row.remarks,
+        Row.faults,
+        Result.status,
+        Result.seconds,
+        Result.layout,
+        Result.content,
+    ).join(Result, joined, isouter=True)
 
 
 def _chunks(items: Iterable[Any], size: int) -> Iterator[list[Any]]:

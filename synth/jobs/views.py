@@ -10,21 +10,9 @@ import sqlalchemy as sa
 
 from synth.jobs.job_queue import JobQueue
 from synth.jobs.models import Job, JobRecord, Layout, Result, Row, RowQuestion, Tenant, Upload, moment
-from synth.jobs.store import Answered
+from synth.jobs.store import Answered, answered_rows
 
 BAD_INPUT, NOT_SOLVED = "bad_input", "not_solved"  # rows without an answer: they ask nothing, or wait
-ANSWERED = (
-    Row.line,
-    Row.key,
-    Row.family,
-    Row.cells,
-    Row.remarks,
-    Row.faults,
-    Result.status,
-    Result.seconds,
-    Result.layout,
-    Result.content,
-)
 
 
 @dataclass(frozen=True)
@@ -143,14 +131,14 @@ def rows_after(queue: JobQueue, job: str, line: int, most: int, statuses: Sequen
             stands.append(sa.and_(Row.key.is_not(None), Result.status.is_(None)))
         wanted.append(sa.or_(*stands))
     with queue.engine.connect() as connection:
-        found = connection.execute(_beside().where(*wanted).order_by(Row.line).limit(most))
+        found = connection.execute(answered_rows().where(*wanted).order_by(Row.line).limit(most))
         return [Answered(*row) for row in found]
 
 
 def row_at(queue: JobQueue, job: str, line: int) -> tuple[Answered, dict[str, Any] | None] | None:
     """Return a row of a batch beside its answer, and what it asks; None where there is none."""
     with queue.engine.connect() as connection:
-        row = connection.execute(_beside().where(Row.job == job, Row.line == line)).one_or_none()
+        row = connection.execute(answered_rows().where(Row.job == job, Row.line == line)).one_or_none()
         if row is None:
             return None
         asked = sa.select(RowQuestion.content).where(RowQuestion.job == job, RowQuestion.key == row.key)
@@ -162,8 +150,3 @@ def layouts_of(queue: JobQueue, job: str, keys: Collection[str]) -> dict[str, di
     asked = sa.select(Layout.key, Layout.content).where(Layout.job == job, Layout.key.in_(list(keys)))
     with queue.engine.connect() as connection:
         return {key: content for key, content in connection.execute(asked)}
-
-
-def _beside() -> sa.Select[Any]:
-    joined = sa.and_(Result.job == Row.job, Result.key == Row.key)
-    return sa.select(*ANSWERED).join(Result, joined, isouter=True)

@@ -248,7 +248,6 @@ class Worker:
 
     def _hear(self, task: UnitAtWork) -> Message | None:
         """Wait for the end of a task; None where it was ended for a reason of ours."""
-        written = 0.0
         while not task.abort:
             if self.stopping.is_set():
                 task.abort = SHUTDOWN
@@ -258,9 +257,7 @@ class Worker:
                 continue
             if message.kind != TOLD:
                 return message
-            now = time.monotonic()
-            if task.claim.task != ROWS and now - written >= self.settings.engine.tell:
-                written = now
+            if task.claim.task != ROWS:  # the process itself tells no more often than anybody can read
                 self._tell(task.job, message.content)
         return None
 
