@@ -548,6 +548,9 @@ class JointLimits:
         Caps of that picture.
     numbers : int
         Combinations of all questions together, as their numbers must fit 64 bits.
+    side_by_side : int
+        Levels that begin as one box where each searches a range of its own: alone each box is repeated for every
+        level, and all in one they are told apart late.
     """
 
     turns: tuple[tuple[int, int, int], ...] = (
@@ -564,6 +567,7 @@ class JointLimits:
     places: int = 8
     levels: int = 12
     numbers: int = 2**61
+    side_by_side: int = 4
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -38,6 +38,7 @@ GIVEN = {
     "bounds": "double",
     "tag": "int",
     "cutoffs": "double",
+    "floors": "double",
     "constants": "double",
     "right_sides": "double",
     "root_low": "double",
@@ -107,6 +108,8 @@ class CompiledQuestion:
     margins : (float, float)
         By how much a value may miss the grid, relative and absolute.
     sizes : CodeSizes
+    floors : array (clusters, objectives), optional
+        The least that objectives may be, with their sign, by the cluster of the first factor.
     """
 
     tables: Sequence[tuple[int, np.ndarray, np.ndarray]]
@@ -120,6 +123,7 @@ class CompiledQuestion:
     grids: Sequence[np.ndarray]
     margins: tuple[float, float]
     sizes: CodeSizes
+    floors: np.ndarray | None = None
 
 
 class Prepared:
@@ -141,6 +145,8 @@ class Prepared:
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
             for name in ("constants", "right_sides", "lower", "upper", "spans")
         }
+        if question.floors is not None:
+            self.kept["floors"] = np.ascontiguousarray(question.floors, dtype=float)
         self.kept["steep"] = np.ascontiguousarray(steep, dtype=float)
         for name, end in (("root_low", question.root.low), ("root_high", question.root.high)):
             self.kept[name] = np.where(question.root.narrowed, end, np.nan)

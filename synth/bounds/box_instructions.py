@@ -61,7 +61,7 @@ OTHERS = {
     "down(a, b)": f"a + {-SLACK!r} * v_max(v_abs(a), b)",
 }
 LEAF = re.compile(
-    r"\b(?:[lhoax]\d+|[rabc]_(?:low|high)|[stmpq])\b(?!\()|[BC]\[\d+\]|(?<![\w.\]])(?:\d+\.?\d*(?:e[+-]?\d+)?|INFINITY|NAN)(?![\w.])"
+    r"\b(?:[lhoax]\d+|[rabc]_(?:low|high)|[stmpq])\b(?!\()|[BCF]\[\d+\]|(?<![\w.\]])(?:\d+\.?\d*(?:e[+-]?\d+)?|INFINITY|NAN)(?![\w.])"
 )
 CROSSED = re.compile(r"choose\(l(\d+) > h\1, h\1, l\1\)")
 OF_TWO = re.compile(r"(?:(v_fmax|v_fmin)\((\w+), )?([lh]\d+|[st]) ([-+*/]) ([lh]\d+|[st])\)?")
@@ -244,6 +244,7 @@ class _Lists:
             "constants": [f"{end}{k}" for k in sweeps.constants for end in "lh"],
             "right_sides": [f"B[{j}]" for j in range(sweeps.limits)],
             "cutoffs": [f"C[{j}]" for j in range(len(sweeps.goals))],
+            "floors": [f"F[{j}]" for j in range(len(sweeps.goals))],
             "tables": [f"{end}{k}" for k in sweeps.tables for end in "lh"],
             "variables": [f"{end}{k}" for k in moved for end in "lh"],
             "inner": [f"{end}{k}" for k in inner for end in "lh"],

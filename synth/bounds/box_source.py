@@ -180,7 +180,8 @@ def _tighten(code: Code) -> str:
     sweeps, nodes = code.sweeps, code.nodes
     lines = [
         "static vi tighten_one(const Batch *b, const Whole *whole, Registers *r) {",
-        "    const vd *const RL = whole->RL, *const RH = whole->RH, *const B = whole->B, *const C = r->C;",
+        "    const vd *const RL = whole->RL, *const RH = whole->RH, *const B = whole->B;",
+        "    const vd *const C = r->C, *const F = r->F;",
         "    vd(*const V)[2] = r->V, (*const T)[2] = r->T;",
     ]
     lines += [f"    const vd l{k} = all(b->constants[{i}]), h{k} = l{k};" for i, k in enumerate(sweeps.constants)]

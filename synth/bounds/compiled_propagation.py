@@ -119,7 +119,8 @@ class CompiledPropagation:
 
     def _question(self, every: bool) -> CompiledQuestion:
         question = self._propagation.question
-        instance, n = question.instance, question.n
+        instance, n, floors = question.instance, question.n, self._propagation.floors
+        goals = len(question.contractors[every].nodes.goals)
         return CompiledQuestion(
             tables=self._propagation.tables[every],
             constants=np.array(question.constants[every]),
@@ -132,6 +133,7 @@ class CompiledPropagation:
             grids=question.grids,
             margins=self._margins,
             sizes=self._limits.sizes,
+            floors=None if floors is None else floors[:, :goals],
         )
 
     def _halves(self) -> Halves:

@@ -68,7 +68,7 @@ class ListedCode:
             at["registers"],
             len(listed.literals),
             len(sweeps.constants),
-            *(at[name] for name in ("literals", "constants", "right_sides", "cutoffs")),
+            *(at[name] for name in ("literals", "constants", "right_sides", "cutoffs", "floors")),
             *(at[name] for name in ("tables", "variables", "open", "goals")),
         ]
         self._kept = [

@@ -14,13 +14,13 @@ from synth.special import SpecialFunction
 
 
 def python_text(sweeps: SweepStatements, narrowed: np.ndarray) -> str:
-    """Return the code of ``contract(V, L, K, B, C, RL, RH, passes, n) -> (dead, goals, open)``.
+    """Return the code of ``contract(V, L, K, B, C, F, RL, RH, passes, n) -> (dead, goals, open)``.
 
     V: ends of the variables (tightened in place), L: ends of tables, K: constants, B: constant right
-    sides, C: cutoffs of the goals, RL and RH: what holds over the whole question. Only nodes that are
-    ``narrowed`` are held within it.
+    sides, C: cutoffs of the goals, F: their floors, RL and RH: what holds over the whole question. Only nodes that
+    are ``narrowed`` are held within it.
     """
-    out = ["def contract(V, L, K, B, C, RL, RH, passes, n):"]
+    out = ["def contract(V, L, K, B, C, F, RL, RH, passes, n):"]
     out += [f"    l{k} = h{k} = K[{i}]" for i, k in enumerate(sweeps.constants)]
     out += [f"    l{k}, h{k} = L[{i}]" for i, k in enumerate(sweeps.tables)]
     out += [f"    l{k}, h{k} = V[{i}]" for k, i in sweeps.variables]

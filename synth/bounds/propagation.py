@@ -60,6 +60,7 @@ class Propagation:
         self.question, self.cells = question, cells
         self._ends = [self._ends_per_cluster(f) for f in range(len(question.factors))]
         self.tables = self._in_order()
+        self.floors = self._floors_per_cluster()
         self._codes: dict[tuple[bool, bool], Code] = {}
 
     def among(self, question: QuestionBounds, first: ClusterTree) -> Propagation:
@@ -77,6 +78,7 @@ class Propagation:
         own.cells = Cells([first, *self.cells.trees[1:]], question.instance.combinations.radix)
         own._ends = [own._ends_per_cluster(0), *self._ends[1:]]
         own.tables = own._in_order()
+        own.floors = own._floors_per_cluster()
         return own
 
     def run(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Propagated:
@@ -99,9 +101,11 @@ class Propagation:
         tables = [(a.take(boxes.cell[:, f]), b.take(boxes.cell[:, f])) for f, a, b in self.tables[every]]
         constants, right_sides = question.constants[every], question.right_sides
         most = None if cutoffs is None else list(np.moveaxis(cutoffs, -1, 0))
+        floors = self.floors
+        least = [-np.inf] * len(question.goals) if floors is None else list(floors[boxes.cell[:, 0]].T)
         with np.errstate(all="ignore"):
             dead, goals, undecided = function(
-                variables, tables, constants, right_sides, most, root.low, root.high, passes, count
+                variables, tables, constants, right_sides, most, least, root.low, root.high, passes, count
             )
         low, high = np.empty((count, width)), np.empty((count, width))
         for i, (x, y) in enumerate(variables):
@@ -127,6 +131,19 @@ class Propagation:
             ends = np.fmax(low[:, column], root.low[node]), np.fmin(high[:, column], root.high[node])
             result[node] = np.ascontiguousarray(ends[0]), np.ascontiguousarray(ends[1])
         return result
+
+    def _floors_per_cluster(self) -> np.ndarray | None:
+        """Return the least that objectives may be, per cluster of the first factor; None where all may be anything."""
+        given, tree = self.question.instance.floors, self.cells.trees[0] if self.cells.trees else None
+        if not given or tree is None:
+            return None
+        per_row = np.full((len(tree.leaf_of_row), len(self.question.goals)), -np.inf)
+        for k, values in given.items():
+            # Rows of a leaf are equal in all else that counts: what the lowest floor allows counts for all of them.
+            per_leaf = np.full(len(tree), np.inf)
+            np.minimum.at(per_leaf, tree.leaf_of_row, values)
+            per_row[:, k] = per_leaf[tree.leaf_of_row]
+        return tree.hull(per_row)[0]
 
     def _in_order(self) -> dict[bool, Tables]:
         ends = {node: (f, *pair) for f, own in enumerate(self._ends) for node, pair in own.items()}

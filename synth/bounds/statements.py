@@ -63,9 +63,9 @@ Statement = Assign | Kill | Enclose | Hold | Narrow | EndOfFirstSweep
 class SweepStatements:
     """The statements of the first forward-backward sweep and of those that follow, and what they read and give.
 
-    ``l3`` and ``h3`` are the ends of node 3, ``B`` the constant right sides, ``C`` the cutoffs, ``RL`` and ``RH``
-    what holds over the whole question, ``o4`` whether limit 4 is open; ``s``, ``t`` and ``m`` are numbers and ``p``
-    and ``q`` conditions on the way.
+    ``l3`` and ``h3`` are the ends of node 3, ``B`` the constant right sides, ``C`` the cutoffs and ``F`` the floors of
+    objectives, ``RL`` and ``RH`` what holds over the whole question, ``o4`` whether limit 4 is open; ``s``, ``t`` and
+    ``m`` are numbers and ``p`` and ``q`` conditions on the way.
     """
 
     first: tuple[Statement, ...]

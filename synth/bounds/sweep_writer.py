@@ -20,7 +20,7 @@ class SweepWriter:
     root : Root
         Tells the signs that hold over the whole question.
     capped : bool
-        Whether objectives have cutoffs.
+        Whether objectives have cutoffs; then they may have floors as well.
 
     Attributes
     ----------
@@ -156,6 +156,11 @@ class SweepWriter:
             self._set(f"h{k}", f"v_fmin(h{k}, C[{j}])")
         elif self._moves(k):
             self._set(f"l{k}", f"v_fmax(l{k}, -C[{j}])")
+        self.out.append(Kill(f"h{k} < F[{j}]" if goal.sign > 0 else f"-l{k} < F[{j}]"))
+        if self._moves(k) and goal.sign > 0:
+            self._set(f"l{k}", f"v_fmax(l{k}, F[{j}])")
+        elif self._moves(k):
+            self._set(f"h{k}", f"v_fmin(h{k}, -F[{j}])")
 
     def _loose(self, end: str, k: int | None, scale: float, side: int) -> str:
         if k is not None and self._positive(k) and self.root.low[k] > scale:

@@ -38,10 +38,13 @@ class SearchSpace(ABC):
         How many factors, from the first, tell scenarios apart. They are given, not for the search to choose.
     cutoffs : mapping
         Number of an objective -> the most that it may be in each scenario, as a value with its sign.
+    floors : mapping
+        The same for the least that it may be, which is asked for wherever objectives have cutoffs.
     """
 
     scenario_factors: int = 0
     cutoffs: Mapping[int, np.ndarray] = MappingProxyType({})
+    floors: Mapping[int, np.ndarray] = MappingProxyType({})
 
     def __init__(
         self,

@@ -70,6 +70,21 @@ class BoxOperations:
             return self.contract(boxes, np.full(self.goals, np.inf), passes)
         return self.contract(boxes, None, passes, every_goal=True)
 
+    def roots(self, scenarios: int) -> Boxes:
+        """Return the box of everything, once for each of the clusters of at most so many scenarios."""
+        root, tree = self.root(), self.cells.trees[0]
+        waiting, clusters = [0], list[int]()
+        while waiting:
+            k = waiting.pop()
+            if tree.leaf[k] or tree.size[k] <= scenarios:
+                clusters.append(k)
+            else:
+                waiting += [int(tree.right[k]), int(tree.left[k])]
+        boxes = root.take(np.zeros(len(clusters) * len(root), dtype=np.int64))
+        cell = boxes.cell.copy()
+        cell[:, 0] = clusters[: len(boxes)]
+        return replace(boxes, cell=cell)
+
     def nothing(self) -> Boxes:
         """Return no boxes."""
         return self._boxes(self.cells.whole()).take(slice(0, 0))

@@ -1,6 +1,6 @@
 """The service under load, under kills, and how soon it does what somebody waits for.
 
-``python -m tests.benchmarks.service load|cancel|kill|wait [--database URL]`` measures one of them by itself.
+``python -m tests.benchmarks.service load|cancel|kill|wait|soak [--database URL]`` measures one of them by itself.
 Every figure is of a server with its own worker, started as its users start it, and asked over HTTP.
 """
 
@@ -414,14 +414,49 @@ def wait(database: str | None = None, rows: int = 1000, count: int = 20) -> dict
     }
 
 
-MEASURES = {"load": load, "cancel": cancel, "kill": kill, "wait": wait}
+# ---- soak -----------------------------------------------------------------------------------------------------------
+
+
+def soak(database: str | None = None, jobs: int = 10_000, pages: int = 10) -> dict[str, Any]:
+    """Ask for many jobs one after the other, two at a time; memory of every process, ten times on the way."""
+    sizes: list[dict[str, float]] = []
+    ends: Counter[str] = Counter()
+    with served(database) as service, httpx.Client(base_url=service.url, timeout=60.0) as client:
+        begin, waiting = time.monotonic(), list[str]()
+        for k in range(1, jobs + 1):
+            waiting.append(submit(client, spec(FAMILIES[k % len(FAMILIES)], points=3 + k % 5, seed=k)))
+            if len(waiting) > 2:
+                job = waiting.pop(0)
+                ends[ended(client, job)["state"]] += 1
+                client.get(f"{API}/jobs/{job}/result").raise_for_status()
+                client.get(f"{API}/jobs/{job}/designs").raise_for_status()
+            if k % max(jobs // pages, 1) == 0:
+                found = service.processes()
+                sizes.append({name: sum(map(resident, pids)) / 1e6 for name, pids in found.items()})
+                print(k, f"{time.monotonic() - begin:.0f} s", sizes[-1], flush=True)
+        ends.update(ended(client, job)["state"] for job in waiting)
+    return {
+        "jobs": jobs,
+        "ends": dict(ends),
+        **{f"{name} MB": ", ".join(f"{size[name]:.0f}" for size in sizes) for name in sizes[-1]},
+    }
+
+
+MEASURES = {"load": load, "cancel": cancel, "kill": kill, "wait": wait, "soak": soak}
 
 
 def service(quick: bool) -> list[Report]:
     """Return the tables of the service."""
     rows = []
     for name, measure in MEASURES.items():
-        few: dict[str, Any] = {"load": {"seconds": 10.0}, "cancel": {"count": 8}, "kill": {"kills": 8}}.get(name, {})
+        if name == "soak" and not quick:
+            continue  # an hour: it is asked for by itself
+        few: dict[str, Any] = {
+            "load": {"seconds": 10.0},
+            "cancel": {"count": 8},
+            "kill": {"kills": 8},
+            "soak": {"jobs": 40},
+        }.get(name, {})
         found = measure(None, **(few if quick else {}))
         rows += [{"measure": name, "figure": figure, "value": str(value)} for figure, value in found.items()]
     return [Report("The service", rows)]
@@ -434,10 +469,12 @@ if __name__ == "__main__":
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seconds", type=float, default=SECONDS)
     parser.add_argument("--count", type=int, default=50)
+    parser.add_argument("--jobs", type=int, default=10_000)
     asked = parser.parse_args()
     more: dict[str, Any] = {
         "kill": {"kills": asked.kills},
         "load": {"seconds": asked.seconds},
         "cancel": {"count": asked.count},
+        "soak": {"jobs": asked.jobs},
     }.get(asked.measure, {})
     print(json.dumps(MEASURES[asked.measure](asked.database, **more), indent=1))

@@ -99,6 +99,8 @@ class Case:
         whole = rng.random((boxes, n)) < 0.2
         self.low, self.high = np.where(whole, least, self.low), np.where(whole, most, self.high)
         self.cutoffs = rng.normal(0, 3, (boxes, len(goals))) * most
+        self.floors = np.where(rng.random((CLUSTERS, len(goals))) < 0.6, -np.inf, -2 * most + self.cutoffs.min(axis=0))
+        self.floors = np.where(rng.random(self.floors.shape) < 0.3, rng.normal(-1, 3, self.floors.shape), self.floors)
         self.steep = rng.random((len(constraints) + len(goals), n))
         self.spreads = [rng.random((CLUSTERS, len(constraints) + len(goals))).astype(np.float32) for _ in range(2)]
 
@@ -113,9 +115,10 @@ class Case:
             ends = [(low[b : b + 1, i], high[b : b + 1, i]) for i in range(self.n)]
             tables = [(x[self.cell[b, f]][None], y[self.cell[b, f]][None]) for f, x, y in self.tables]
             caps = [self.cutoffs[b : b + 1, j] for j in range(len(self.goals))] if capped else None
+            least_of = [self.floors[self.cell[b, 0], j][None] for j in range(len(self.goals))]
             with np.errstate(all="ignore"):
                 dead, least, flags = code.function(self.root)(
-                    ends, tables, self.constants, self.bounds, caps, self.root.low, self.root.high, passes, 1
+                    ends, tables, self.constants, self.bounds, caps, least_of, self.root.low, self.root.high, passes, 1
                 )
             alive[b] = not dead[0]
             low[b], high[b] = [float(x[0]) for x, _ in ends], [float(y[0]) for _, y in ends]
@@ -138,6 +141,7 @@ class Case:
             [np.empty(0)] * self.n,
             TUNING.tolerances.margins,
             sizes,
+            self.floors,
         )
         prepared = Prepared(len(self.constraints), question)
         boxes = Boxes(

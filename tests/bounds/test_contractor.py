@@ -73,7 +73,7 @@ def random_expressions(rng, symbols, data, count):
     return pool[-4:]
 
 
-def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=None):
+def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=None, floors=None):
     """Contract boxes as a question does: constants, tables per cluster, what holds over everything, generated code.
 
     ``data`` holds, per data input, a number or the column of the factor it belongs to.
@@ -97,7 +97,10 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
     count = len(low)
     function = contractor.code(root, caps is not None).function(root)
     with np.errstate(all="ignore"):
-        dead, goals, opens = function(variables, tables, constants, right, caps, root.low, root.high, passes, count)
+        least = [-np.inf] * len(contractor.nodes.goals) if floors is None else floors
+        dead, goals, opens = function(
+            variables, tables, constants, right, caps, least, root.low, root.high, passes, count
+        )
     return SimpleNamespace(
         alive=~dead & (not root.empty),
         low=np.stack([np.broadcast_to(a, (count,)) for a, _ in variables], axis=1),
@@ -174,25 +177,46 @@ class Question:
         caps = [self.values[2] + spare[0] + TIE, -self.values[3] + spare[1] + TIE]
         return constraints, goals, caps, kept
 
-    def contracted(self, constraints, goals, caps, passes):
+    def floors(self):
+        """Return floors of the objectives that the points keep, some with nothing to spare."""
+        spare = self.rng.exponential(0.3, (2, self.boxes))
+        spare = np.where(self.rng.random((2, self.boxes)) < 0.3, np.inf, spare * (self.rng.random(spare.shape) < 0.6))
+        return [self.values[2] - spare[0] - TIE, -self.values[3] - spare[1] - TIE]
+
+    def contracted(self, constraints, goals, caps, passes, floors=None):
         contractor = Contractor(PropagatedNodes(self.program, self.layout, constraints, goals))
-        return contraction(contractor, self.data, self.trees, self.cell, self.low, self.high, caps, passes)
+        return contraction(
+            contractor, self.data, self.trees, self.cell, self.low, self.high, caps, passes, floors=floors
+        )
 
 
 @pytest.mark.slow
-@given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
-@example(8564, 1, False)  # a limit settles the sign of a variable that boxes have with both signs
+@given(st.integers(0, 10**6), st.integers(1, 3), st.sampled_from(["", "caps", "caps and floors"]))
+@example(8564, 1, "")  # a limit settles the sign of a variable that boxes have with both signs
 @settings(deadline=None, derandomize=True, max_examples=repetitions(60, 120))
-def test_a_box_with_a_feasible_point_survives_and_keeps_it(seed, passes, capped):
+def test_a_box_with_a_feasible_point_survives_and_keeps_it(seed, passes, held):
     question = Question(seed)
     constraints, goals, caps, kept = question.limits()
-    result = question.contracted(constraints, goals, caps if capped else None, passes)
+    floors = question.floors() if "floors" in held else None
+    result = question.contracted(constraints, goals, caps if held else None, passes, floors)
     assert result.alive[kept].all()
     slack = 1e-7 * (1 + np.abs(question.point))
     good = (question.point >= result.low - slack) & (question.point <= result.high + slack)
     assert good[kept].all()
     objectives = np.stack([question.values[2], -question.values[3]], axis=1)
     assert not np.any((result.bounds > objectives + 1e-7 * (1 + np.abs(objectives)))[kept])
+
+
+def test_a_box_dies_below_the_floor_of_an_objective_and_is_narrowed_to_it():
+    limit = [("at_most", 0, None, 9.0)]
+    below = contract(lambda x, y: [x + y, x], limit, [(1, 1)], [0, 0], [2, 2], cutoffs=[9.0], floors=[2.1])
+    assert not below.alive[0]
+    above = contract(lambda x, y: [x + y, x], limit, [(1, 1)], [0, 0], [2, 2], cutoffs=[9.0], floors=[1.5])
+    assert above.alive[0]
+    assert above.low[0, 0] == 1.5
+    largest = contract(lambda x, y: [x + y, x], limit, [(1, -1)], [0, 0], [2, 2], cutoffs=[9.0], floors=[-0.5])
+    assert largest.high[0, 0] == 0.5
+    assert not contract(lambda x, y: [x + y, x], limit, [(1, -1)], [1, 0], [2, 2], cutoffs=[9], floors=[-0.5]).alive[0]
 
 
 def test_the_random_questions_are_worth_asking():
@@ -253,7 +277,7 @@ def test_a_box_of_one_point_survives_its_own_values(seed):
 # -- what needs care ---------------------------------------------------------------------------------
 
 
-def contract(expressions, constraints, goals, low, high, cutoffs=None, data=(), passes=2):
+def contract(expressions, constraints, goals, low, high, cutoffs=None, data=(), passes=2, floors=None):
     """Return the contraction of one box of a program of x and y (and constants given with their values)."""
     symbols = [ca.SX.sym("x"), ca.SX.sym("y")]
     extra = [ca.SX.sym(f"c{k}") for k in range(len(data))]
@@ -265,7 +289,7 @@ def contract(expressions, constraints, goals, low, high, cutoffs=None, data=(), 
     )
     contractor = Contractor(nodes)
     ends = np.array([low], dtype=float), np.array([high], dtype=float)
-    return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, cutoffs, passes)
+    return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, cutoffs, passes, floors=floors)
 
 
 def test_what_cannot_hold_dies_and_what_can_is_narrowed():

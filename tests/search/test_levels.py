@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.search.front_state import FrontState
-from synth.search.joint.levels import Cutoffs, LevelProof
+from synth.search.joint.levels import Cutoffs, LevelProof, levels_told
 from synth.search.proven_gap import Level, LevelBound
 from synth.search.stages import levels as stage
 from synth.search.stages.proving import proven_at_gap
@@ -52,6 +54,49 @@ def test_the_same_cutoff_stands_once_with_the_most_that_is_to_beat() -> None:
     cutoffs = Cutoffs(first=np.array([2.0, 1.0, 2.0]), to_beat=np.array([5.0, 7.0, 6.0]), tolerance=0.1).told_apart()
     assert cutoffs.first.tolist() == [1.0, 2.0]
     assert cutoffs.to_beat.tolist() == [7.0, 6.0]
+
+
+def test_levels_side_by_side_search_what_no_other_tells_of() -> None:
+    cutoffs = Cutoffs(first=np.array([1.0, 2.0, 2.1, 3.0]), to_beat=np.array([7.0, 6.0, 6.5, 5.0]), tolerance=0.1)
+    asked = cutoffs.side_by_side(np.array([-np.inf, -np.inf, 1.5, 2.5]), 0.5)
+    assert asked.above is not None
+    assert asked.follows is not None
+    # The first has nothing below it, the third is to beat more than the one before it, and of the last more is known.
+    assert asked.follows.tolist() == [False, True, False, False]
+    np.testing.assert_allclose(asked.above, [-np.inf, 1.0, 1.5, 2.5])
+    np.testing.assert_allclose(cutoffs.side_by_side(np.full(4, -np.inf), 0.5).above, [-np.inf, 1.0, -np.inf, 2.1])
+
+
+@given(st.integers(0, 10**6))
+@settings(deadline=None, derandomize=True, max_examples=400)
+def test_levels_side_by_side_say_of_everything_within_their_cutoffs_what_is_true(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    tolerance, points = 0.25, rng.integers(-8, 8, (40, 2)) / 4.0  # ties, and values of both signs
+    asked = Cutoffs(first=rng.integers(-8, 8, 6) / 4.0, to_beat=rng.integers(-8, 8, 6) / 4.0, tolerance=tolerance)
+    if rng.random() < 0.6:
+        asked = replace(asked, to_beat=np.sort(asked.to_beat)[::-1][np.argsort(np.argsort(asked.first))])
+    asked = asked.told_apart()
+    first, to_beat = asked.first, asked.to_beat
+    beaten = points[:, None, 1] < to_beat - tolerance  # of each point, at each level
+    least = np.array([points[own, 0].min(initial=np.inf) for own in beaten.T])
+    excluded = np.where(rng.random(len(first)) < 0.4, np.minimum(least - 0.01, first - 0.01), -np.inf)
+    cutoffs = asked.side_by_side(excluded, float(rng.choice([0.01, 0.5])))
+    assert cutoffs.above is not None
+    within = (points[:, None, 0] > cutoffs.above) & (points[:, None, 0] <= first)
+    known = np.array([rng.choice(points[points[:, 0] <= c, 1]) if (points[:, 0] <= c).any() else 9.0 for c in first])
+    best = np.minimum(to_beat, np.where(rng.random(len(first)) < 0.5, known, np.inf))
+    corners: dict[int, np.ndarray | None] = {}
+    for k in range(len(first)):
+        own = points[within[:, k] & (points[:, 1] < best[k] - tolerance)]
+        corners[k] = None if rng.random() < 0.1 else own - 0.1 * rng.random(own.shape)
+    told = levels_told(cutoffs, best, corners)
+    for level in told:
+        inside = points[points[:, 0] <= level.within[0]]
+        better = inside[inside[:, 1] < level.least - tolerance]
+        held = np.all(better[:, None, :] >= level.corners[None, :, :], axis=2).any(axis=1)
+        assert held.all()
+    if not any(own is None or len(own) for own in corners.values()) and np.array_equal(best, to_beat):
+        assert not (beaten & (points[:, None, 0] <= first)).any()  # what was asked of each is proven
 
 
 class Work:
@@ -235,3 +280,30 @@ def test_what_is_open_is_told_only_where_it_is_asked_for() -> None:
     levels.unproven[:] = [False, True]
     assert [len(level.corners) > 0 for level in levels.levels()] == [False, *(True for _ in levels.trees)]
     assert [len(level.corners) for level in levels.levels(proven_alone=True)] == [0]
+
+
+@pytest.mark.parametrize("objectives", ["mass flexibility", "flexibility mass", "-width mass", "mass -width"])
+def test_levels_prove_the_same_side_by_side_and_each_alone(objectives: str) -> None:
+    asked = {name.strip("-"): "max" if name[0] == "-" else "min" for name in objectives.split()}
+    question = pose(Strut(), NEEDED, catalogs={"rods": RODS}, points=4, objectives=asked)
+    state = FrontState(question.search().state.task)
+    form, rng = state.form, np.random.default_rng(5)
+    share = rng.random((400, form.n))
+    points = form.makeable.nearest(form.lower + share * (form.upper - form.lower))
+    combinations = rng.integers(form.instance.combinations.count, size=400)
+    rows, phi = form.points.feasible_rows(points, combinations)
+    form.archive.add(combinations[rows], points[rows], phi[rows])
+    known, tolerance = form.archive.phi[np.argsort(form.archive.phi[:, 0]), :2], state.rule.tolerance
+    gaps = Cutoffs(first=known[1:, 0], to_beat=known[:-1, 1], tolerance=float(tolerance[1])).told_apart()
+    assert len(gaps) > 3
+    nowhere = np.full(len(gaps), -np.inf)
+    found = []
+    for cutoffs in (gaps, gaps.side_by_side(nowhere, float(tolerance[0]))):
+        levels = state.levels_within(cutoffs)
+        levels.prove(TurnBudget(1e6, SearchEffort(seconds=0.0)), 100.0)
+        assert not levels.unproven.any()
+        found.append({float(level.within[0]): level.least for level in levels.levels()})
+    assert found[0].keys() == found[1].keys() == set(gaps.first.tolist())
+    # Each is the best there is to within the tolerance.
+    assert max(abs(found[0][c] - found[1][c]) for c in found[0]) <= tolerance[1] + 1e-6
+    assert any(found[0][c] < to_beat - tolerance[1] for c, to_beat in zip(gaps.first, gaps.to_beat, strict=True))

@@ -7,7 +7,7 @@
 /* Numbers and addresses of eight bytes each. Registers of a file: first what stays, then what boxes bring, then the rest. */
 typedef struct {
     long long n, limits, goals, tables, nodes, moved, registers, literals, constants;
-    long long literals_at, constants_at, right_sides_at, cutoffs_at, tables_at, variables_at, open_at, goals_at;
+    long long literals_at, constants_at, right_sides_at, cutoffs_at, floors_at, tables_at, variables_at, open_at, goals_at;
     const double *literal;
     const int *variable, *factor, *row_width, *row_place, *first, *later, *last;
 } Shape;
@@ -86,7 +86,10 @@ static void tighten(const Batch *b, const Whole *whole, vd *file, Registers *blo
         const Registers *const r = block + (w < wide ? w : wide - 1);
         for (long long i = 0; i < s->tables; i++)
             for (int end = 0; end < 2; end++) f[s->tables_at + 2 * i + end][w] = r->T[i][end];
-        for (long long j = 0; j < s->goals; j++) f[s->cutoffs_at + j][w] = r->C[j];
+        for (long long j = 0; j < s->goals; j++) {
+            f[s->cutoffs_at + j][w] = r->C[j];
+            f[s->floors_at + j][w] = r->F[j];
+        }
         for (long long i = 0; i < s->moved; i++)
             for (int end = 0; end < 2; end++) f[s->variables_at + 2 * i + end][w] = r->V[s->variable[i]][end];
     }

@@ -93,6 +93,11 @@ static void score(const Batch *b, Registers *r, float counted[LANES][b->score_wi
     }
 }
 
+/* The least that objectives of a box may be, by its cluster of the first factor. */
+static void load_floors(const Batch *b, const int *cell, vd *F, int lane) {
+    for (int j = 0; j < GOALS; j++) F[j][lane] = b->floors ? b->floors[cell[0] * GOALS + j] : -INFINITY;
+}
+
 long long contract(const Batch *b) {
     vd file[REGISTERS];
     Whole whole;
@@ -111,6 +116,7 @@ long long contract(const Batch *b) {
             const int lane = l % LANES;
             for (int i = 0; i < N; i++) { r->V[i][0][lane] = b->low[box * N + i]; r->V[i][1][lane] = b->high[box * N + i]; }
             for (int j = 0; j < GOALS; j++) r->C[j][lane] = b->cutoffs[box * b->cutoffs_step + j];
+            load_floors(b, b->cell + box * b->factors, r->F, lane);
             load_tables(b, b->cell + box * b->factors, r->T, lane);
         }
         tighten(b, &whole, file, block, wide, dead_of);

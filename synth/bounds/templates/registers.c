@@ -10,7 +10,7 @@ typedef struct {
 } Whole;
 
 typedef struct {
-    vd C[MOST_GOALS], V[MOST_N][2], T[MOST_TABLES][2];
+    vd C[MOST_GOALS], F[MOST_GOALS], V[MOST_N][2], T[MOST_TABLES][2];
     vd goals[MOST_GOALS], scores[MOST_N];
     vi undecided[MOST_LIMITS];
 } Registers;

@@ -184,6 +184,7 @@ long long grow(const Batch *b, Tree *t) {
             memcpy(own_cells[number], cell, factors * sizeof *cell);
             for (int i = 0; i < N; i++) { r->V[i][0][lane] = box->low[i]; r->V[i][1][lane] = box->high[i]; }
             for (int j = 0; j < GOALS; j++) r->C[j][lane] = cutoffs[j];
+            load_floors(b, cell, r->F, lane);
             load_tables(b, cell, r->T, lane);
             number++;
         }
@@ -193,7 +194,7 @@ long long grow(const Batch *b, Tree *t) {
             Registers *const r = block + l / LANES;
             const int lane = l % LANES;
             for (int i = 0; i < N; i++) { r->V[i][0][lane] = r->V[i][0][0]; r->V[i][1][lane] = r->V[i][1][0]; }
-            for (int j = 0; j < GOALS; j++) r->C[j][lane] = r->C[j][0];
+            for (int j = 0; j < GOALS; j++) { r->C[j][lane] = r->C[j][0]; r->F[j][lane] = r->F[j][0]; }
             for (int i = 0; i < TABLES; i++) { r->T[i][0][lane] = r->T[i][0][0]; r->T[i][1][lane] = r->T[i][1][0]; }
         }
         t->contracted += number;

@@ -162,7 +162,7 @@ class JointOptima:
         Of questions that these are among.
     sought : int
         Number of the objective that is sought.
-    cutoffs : mapping, optional
+    cutoffs, floors : mapping, optional
         As for :class:`JointInstance`.
     needs : Needs, optional
         What designs must beat; otherwise the best known by more than the gap.
@@ -176,13 +176,14 @@ class JointOptima:
         sought: int = 0,
         cutoffs: Mapping[int, np.ndarray] | None = None,
         needs: Needs | None = None,
+        floors: Mapping[int, np.ndarray] | None = None,
     ) -> None:
         self.questions, self.clock = list(questions), clock
         first = questions[0]
         self.tuning, self.limits = first.tuning, first.tuning.joint
         self.shared, self.workers, self.sought = shared, first.settings.workers, sought
         moving = () if shared is None else shared.moving
-        self.instance = JointInstance([q.instance for q in questions], moving, cutoffs)
+        self.instance = JointInstance([q.instance for q in questions], moving, cutoffs, floors)
         self.gap, self.needs = first.settings.gap, needs
         self.goals = with_ties(first.instance.model, dict(first.chosen)) if shared is None else shared.goals
         self.form = self._prepared()
@@ -282,7 +283,9 @@ class JointOptima:
             return positions
         shared = self.shared or SharedBounds(self.questions, tuple(self.instance.moving))
         cutoffs = {k: values[positions] for k, values in self.instance.cutoffs.items()}
-        own = JointOptima([self.questions[q] for q in positions], self.clock, shared, self.sought, cutoffs)
+        floors = {k: values[positions] for k, values in self.instance.floors.items()}
+        questions = [self.questions[q] for q in positions]
+        own = JointOptima(questions, self.clock, shared, self.sought, cutoffs, floors=floors)
         proven = own.prove(own.told_apart(), True)
         known, codec = own.known, own.instance.combinations
         numbers = self.instance.combinations.joined(positions[known.questions()], codec.own(known.combination))
@@ -343,7 +346,11 @@ class JointOptima:
         form.counters.solved_combinations = self.form.counters.solved_combinations
         form.bounding.branching.adopt(self.form.bounding.branching.statistics())
         form.archive = known = self.none_known()
-        return JointTree(self, form, known, form.boxes.root())
+        return JointTree(self, form, known, self.everything(form))
+
+    def everything(self, form: Formulation) -> Boxes:
+        """Return the boxes to begin with: one of all questions, or of few where they share little."""
+        return form.boxes.roots(self.limits.side_by_side) if self.instance.floors else form.boxes.root()
 
     def none_known(self) -> IncumbentPerScenario:
         """Return what will hold the best design of each question."""

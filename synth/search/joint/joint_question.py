@@ -41,15 +41,23 @@ class JointInstance(SearchSpace):
     cutoffs : mapping, optional
         Number of an objective -> the most that it may be in each question, as a value with its sign: it tells
         questions apart.
+    floors : mapping, optional
+        Number of an objective -> the least that it may be in each question. Of questions that are not told apart the
+        lowest one holds.
     """
 
     scenario_factors = 1
     combinations: JointCombinations
 
     def __init__(
-        self, each: Sequence[Instance], moving: Collection[str] = (), cutoffs: Mapping[int, np.ndarray] | None = None
+        self,
+        each: Sequence[Instance],
+        moving: Collection[str] = (),
+        cutoffs: Mapping[int, np.ndarray] | None = None,
+        floors: Mapping[int, np.ndarray] | None = None,
     ) -> None:
-        self.each, self.first, self.cutoffs = list(each), each[0], dict(cutoffs or {})
+        self.each, self.first = list(each), each[0]
+        self.cutoffs, self.floors = dict(cutoffs or {}), dict(floors or {})
         first, codec = self.first, JointCombinations([i.combinations for i in each])
         super().__init__(first.model, first.ranges, first.limits, first.selection, codec)
         names, asked = {*moving, *different(each)}, [i.values.requirements for i in each]

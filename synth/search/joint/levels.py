@@ -6,12 +6,11 @@ objectives could still be good has no cap; with the first objective capped outri
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from synth.bounds.boxes import Boxes
 from synth.bounds.branching import BranchingStatistics
 from synth.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
@@ -36,11 +35,18 @@ class Cutoffs:
         phi of the second objective; infinite where nothing is.
     tolerance : float
         In phi of the second objective: by how much a design must be better to count.
+    above : array (levels,), optional
+        phi of the first objective that a level searches above; by default everything within its cutoff.
+    follows : array of bool (levels,), optional
+        Whether what lies no higher is searched by the level before, which is to beat no less; otherwise it is proven
+        elsewhere that nothing there beats what the level is to beat.
     """
 
     first: np.ndarray
     to_beat: np.ndarray
     tolerance: float
+    above: np.ndarray | None = None
+    follows: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.first)
@@ -52,12 +58,36 @@ class Cutoffs:
         np.maximum.at(to_beat, places, self.to_beat)
         return Cutoffs(first=first, to_beat=to_beat, tolerance=self.tolerance)
 
+    def side_by_side(self, excluded: np.ndarray, width: float) -> Cutoffs:
+        """Return the same where levels, which are in order, do not search what others tell of.
+
+        Parameters
+        ----------
+        excluded : array (levels,)
+            phi of the first objective within which it is proven that nothing beats what a level is to beat; -infinity
+            where it is of nothing.
+        width : float
+            In phi: levels search at least so much below their cutoffs.
+        """
+        before = np.concatenate([[-np.inf], self.first[:-1]])
+        follows = np.concatenate([[False], self.to_beat[1:] <= self.to_beat[:-1]]) & (before > excluded)
+        above = np.minimum(np.where(follows, before, excluded), self.first - width)
+        return replace(self, above=above, follows=follows)
+
 
 class LevelTree:
     """One tree over all levels, by one way of bounding."""
 
     def __init__(self, proof: LevelProof, tree: JointTree) -> None:
         self.proof, self.tree = proof, tree
+
+    def corners(self, level: int) -> np.ndarray:
+        """Return phi of the lower bounds of its open boxes that speak of a level."""
+        tree, form = self.tree, self.tree.form
+        boxes, questions = self.proof.clock.open_of(tree.left, tree.under_way), form.boxes.cells.trees[0]
+        holding = np.array([level in questions.rows(k) for k in range(len(questions))])
+        own = boxes.take(holding[boxes.cell[:, 0]])
+        return lowest(form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1])
 
     @property
     def extent(self) -> float:
@@ -97,8 +127,12 @@ class LevelProof:
         # Settling ties may make a proven design worse by so much; the proof is as much finer.
         self.room = task.tuning.tolerances.rounded
         needs = Needs(to_beat=cutoffs.to_beat, tolerance=cutoffs.tolerance - self.room)
-        capped = {CAPPED: shared.objectives.signed(CAPPED, cutoffs.first)}
-        self.search = JointOptima([task] * len(cutoffs), clock, shared, SOUGHT, capped, needs)
+        capped, floors = {CAPPED: shared.objectives.signed(CAPPED, cutoffs.first)}, {}
+        if cutoffs.above is not None:
+            # Levels overlap by what a design may miss its cutoff.
+            above = cutoffs.above - task.tuning.tolerances.tie
+            floors = {CAPPED: np.where(np.isinf(above), -np.inf, shared.objectives.signed(CAPPED, above))}
+        self.search = JointOptima([task] * len(cutoffs), clock, shared, SOUGHT, capped, needs, floors)
         self.unproven = self.search.told_apart()
         self.known_before: set[bytes] = set()
         self.trees: list[LevelTree] = []
@@ -129,7 +163,7 @@ class LevelProof:
     def look(self) -> None:
         """Look for good designs of the levels of which it is not proven what is best."""
         search = self.search
-        search.pool = search.form.boxes.root()
+        search.pool = search.everything(search.form)
         if len(search.pool) and self.unproven.any():
             search.heuristics.first(search.rule(self.unproven), search.pool)
 
@@ -156,7 +190,7 @@ class LevelProof:
 
     def _prove(self, budget: TurnBudget, first: float, between: Callable[[], None]) -> None:
         search = self.search
-        search.pool = search.form.boxes.root()
+        search.pool = search.everything(search.form)
         if not len(search.pool):
             self.unproven[:] = False
             return
@@ -171,19 +205,15 @@ class LevelProof:
 
         ``proven_alone``: only of levels that are proven.
         """
-        best = np.minimum(self.search.known.best(), self.cutoffs.to_beat)
-        told = self.search.told_apart() & ~(self.unproven & proven_alone)
-        trees = [t.tree for t in self.trees]
-        open_boxes = [(t, self.clock.open_of(t.left, t.under_way)) for t in trees]
-        result = []
-        for k in np.flatnonzero(told):
-            within = np.array([self.cutoffs.first[k], np.inf])
-            tolerance, least = np.array([0.0, self.cutoffs.tolerance]), float(best[k]) + self.room
-            each = [np.empty((0, 2))]
-            if self.unproven[k]:
-                each = [_corners_of(t, boxes, int(k)) for t, boxes in open_boxes]
-            result += [Level(within, SOUGHT, least, tolerance, corners) for corners in each]
-        return result
+        best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.room
+        apart = np.flatnonzero(self.search.told_apart()).tolist()
+        told: list[Level] = []
+        for open_of in [tree.corners for tree in self.trees] or [lambda _: None]:
+            corners = {k: open_of(k) if self.unproven[k] else np.empty((0, 2)) for k in apart}
+            told += levels_told(self.cutoffs, best, corners)
+        proven = {float(level.within[CAPPED]): level for level in told if not len(level.corners)}
+        still_open = [level for level in told if len(level.corners)]
+        return [*proven.values(), *([] if proven_alone else still_open)]
 
     def own(self, combination: int) -> int:
         """Return the number that a combination has in the question."""
@@ -209,9 +239,29 @@ class LevelProof:
         self.search.heuristics.improve(self.search.rule(self.unproven))
 
 
-def _corners_of(tree: JointTree, boxes: Boxes, level: int) -> np.ndarray:
-    """Return phi of the lower bounds of those boxes that speak of a level."""
-    questions = tree.form.boxes.cells.trees[0]
-    holding = np.array([level in questions.rows(k) for k in range(len(questions))])
-    own = boxes.take(holding[boxes.cell[:, 0]])
-    return lowest(tree.form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1])
+def levels_told(cutoffs: Cutoffs, best: np.ndarray, corners: Mapping[int, np.ndarray | None]) -> list[Level]:
+    """Return what is told of levels.
+
+    A level that follows another one says what both say: nothing in either range is better than the least of both, but
+    for what is open in either.
+
+    Parameters
+    ----------
+    cutoffs : Cutoffs
+    best : array (levels,)
+        phi of the second objective that nothing beats by more than the tolerance, but for what is open.
+    corners : dict of int to array (boxes, 2) or None
+        Of the levels that are told, in order: lower bounds of phi of their open boxes; None where all may be open.
+    """
+    result: list[Level] = []
+    least, held = np.inf, list[np.ndarray | None]()
+    for k, own in corners.items():
+        if cutoffs.follows is None or not cutoffs.follows[k]:
+            least, held = np.inf, []
+        least, held = min(least, float(best[k])), [*held, own]
+        known = [x for x in held if x is not None and len(x)]
+        if not any(x is None for x in held):
+            within, tolerance = np.array([cutoffs.first[k], np.inf]), np.array([0.0, cutoffs.tolerance])
+            both = known[0] if len(known) == 1 else lowest(np.concatenate([np.empty((0, 2)), *known]))
+            result.append(Level(within, SOUGHT, least, tolerance, both))
+    return result

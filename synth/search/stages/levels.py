@@ -14,7 +14,7 @@ from synth.search.archive import rows_of
 from synth.search.front_state import FrontState
 from synth.search.joint.levels import CAPPED, SOUGHT, Cutoffs, LevelProof
 from synth.search.polishing import polish_extremes
-from synth.search.proven_gap import LevelBound
+from synth.search.proven_gap import Level, LevelBound
 from synth.search.pruning import NonImprovement, PruningRule
 from synth.search.stages.best_by_turns import prove_end
 from synth.search.stages.first_designs import few_known, search_neighbourhoods
@@ -129,8 +129,9 @@ def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: Prun
     """Search levels and note what is proven of them; tell whether nothing is open. Designs go into the archive."""
     closed = True
     for some in _in_numbers(state, len(first)):
-        cutoffs = Cutoffs(first=first[some], to_beat=to_beat[some], tolerance=float(state.rule.tolerance[SOUGHT]))
-        levels, budget = state.levels_within(cutoffs.told_apart()), state.turn_budget()
+        asked = Cutoffs(first=first[some], to_beat=to_beat[some], tolerance=float(state.rule.tolerance[SOUGHT]))
+        cutoffs = _side_by_side(state, asked.told_apart())
+        levels, budget = state.levels_within(cutoffs), state.turn_budget()
         search = levels.prove_soon if few_known(state) else levels.prove
         state.begin_tree(None)
         try:
@@ -205,11 +206,21 @@ def proven_by_levels(state: FrontState, phi: np.ndarray) -> np.ndarray:
 
 def _covered(state: FrontState, first: float, second: float) -> bool:
     """Tell whether it is proven that nothing within a cutoff of the first objective is better in the second."""
-    return any(
-        level.sought == SOUGHT
-        and not len(level.corners)
-        and level.within[CAPPED] >= first
-        and level.least >= second
-        and level.tolerance[SOUGHT] <= state.rule.tolerance[SOUGHT]
-        for level in state.proof.levels
-    )
+    return any(level.within[CAPPED] >= first and level.least >= second for level in _closed(state))
+
+
+def _side_by_side(state: FrontState, cutoffs: Cutoffs) -> Cutoffs:
+    """Let levels search what is not told by others: those before them, and those that are proven."""
+    closed = [(float(level.within[CAPPED]), level.least) for level in _closed(state)]
+    excluded = [
+        max((within for within, least in closed if within < first and least >= to_beat), default=-np.inf)
+        for first, to_beat in zip(cutoffs.first, cutoffs.to_beat, strict=True)
+    ]
+    return cutoffs.side_by_side(np.array(excluded), float(state.rule.tolerance[CAPPED]))
+
+
+def _closed(state: FrontState) -> list[Level]:
+    """Return the levels of the second objective that are proven as finely as is asked for."""
+    finest = state.rule.tolerance[SOUGHT]
+    closed = [level for level in state.proof.levels if level.sought == SOUGHT and not len(level.corners)]
+    return [level for level in closed if level.tolerance[SOUGHT] <= finest]
