@@ -308,7 +308,7 @@ def kill(database: str | None = None, kills: int = 100) -> dict[str, Any]:
         reader.start()
         while sum(killed.values()) < kills:
             _keep_busy(service, asked, jobs, chance)
-            time.sleep(chance.uniform(0.05, 2.0))
+            time.sleep(chance.uniform(0.05, 6.0))  # some jobs end between two kills, and some are struck
             what = chance.choice(("server", "worker", "engine", "engine"))
             victims = service.processes()[what]
             if not victims:
