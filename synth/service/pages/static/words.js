@@ -59,8 +59,8 @@ export function badge(job) {
   return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
 }
 
-// Of rows of a batch: words, and the class of their share in the bar.
+// Of rows of a batch: words, the class of their share in the bar and of their badge, and a mark.
 export const ROWS = {
-  optimal: ["Optimal", "good"], feasible: ["Feasible", "fair"], infeasible: ["Not feasible", "warn"], not_solved: ["Not solved", "soft"],
-  refused: ["Refused", "warn"], bad_input: ["Faulty", "bad"], failed: ["Failed", "bad"],
+  optimal: ["Optimal", "good", "✓"], feasible: ["Feasible", "fair", "✓"], infeasible: ["Not feasible", "warn", "!"], not_solved: ["Not solved", "soft", "○"],
+  refused: ["Refused", "warn", "–"], bad_input: ["Faulty", "bad", "✗"], failed: ["Failed", "bad", "✗"],
 };
