@@ -6,7 +6,7 @@ import { amount, h, say, words } from "./dom.js";
 import { count } from "./words.js";
 
 const place = document.getElementById("batch");
-const MOST_FAULTS = 100, PATIENCE = 300;
+const MOST_FAULTS = 100, PATIENCE = 300, LONG = 40; // letters of a cell that needs room
 const table = { brought: null, families: [], faults: [] };
 
 const file = h("input", { type: "file", id: "file", class: "unseen", accept: ".csv,.xlsx,text/csv", "aria-describedby": "file-kinds", onchange: () => file.files[0] && bring(file.files[0]) });
@@ -83,11 +83,11 @@ function preview() {
   const wrong = new Map(table.faults.map((one) => [`${one.line} ${one.column}`, one]));
   const cell = (row, k) => {
     const found = wrong.get(`${row.line} ${header[k]}`);
-    return h("td", found ? { class: "wrong", title: found.message } : {}, found ? h("span", { class: "unseen" }, "faulty: ") : null, row.cells[k] ?? "");
+    return h("td", { class: found ? "wrong" : (row.cells[k] ?? "").length > LONG ? "long" : "", title: found ? found.message : null }, found ? h("span", { class: "unseen" }, "faulty: ") : null, row.cells[k] ?? "");
   };
   first.hidden = false;
   first.replaceChildren(h("h2", {}, name), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "First rows" }, h("table", { class: "sheet" },
-    h("caption", {}, `The first ${count(rows.length, "row")} of ${amount(size)} bytes`),
+    h("caption", {}, `${amount(size)} bytes; the first ${count(rows.length, "row")}`),
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Line"), header.map((title) => h("th", { scope: "col" }, title)))),
     h("tbody", {}, rows.map((row) => h("tr", {}, h("th", { scope: "row", class: "number" }, row.line), header.map((_, k) => cell(row, k))))))));
 }

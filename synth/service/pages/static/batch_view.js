@@ -3,17 +3,11 @@
 import { faultCard, get } from "./api.js";
 import { amount, duration, h, unitText, words } from "./dom.js";
 import { sizesCard } from "./sizes_card.js";
-import { LIVE, ROWS } from "./words.js";
+import { LIVE, ROWS, rowBadge } from "./words.js";
 
 const PERIOD = 3000; // ms between two looks at the rows while they are answered
 const SHOWN_CELLS = 4;
 const WAITING = "waiting"; // rows that nobody has answered yet: no status of a row
-
-/** Return how a row stands, as a badge. */
-export function rowBadge(status) {
-  const [text, kind, mark] = ROWS[status] ?? [words(status || "open"), "", "○"];
-  return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
-}
 
 /** Return what a row has found as people read it: names in words, units as they are written. */
 export const designText = (text) => words(text).replaceAll(/(\d) ([A-Za-z%°][A-Za-z0-9*/()%°]*)(?=,|$)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
@@ -62,7 +56,7 @@ export function batchView(element, job) {
       table.replaceChildren(h("table", { class: "rows" }, more > 0 ? h("caption", {}, `The first ${heads.length} of ${page.header.length} columns; all are in rows.csv and on the page of a row.`) : null,
         h("thead", {}, h("tr", {}, ["Line", "Stands", ...heads, "Best design, or why there is none"].map((name) => h("th", { scope: "col" }, name)))),
         h("tbody", {}, page.rows.map((row) => h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
-          h("td", { class: "best" }, row.best_design ? designText(row.best_design) : row.explanation || "–", row.remarks ? h("p", { class: "note" }, row.remarks) : null))))));
+          h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.explanation || "–"), row.remarks ? h("p", { class: "note" }, row.remarks) : null))))));
     } else table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
     later.hidden = !page.next;
     later.onclick = () => { cursors.push(page.next); rows().then(() => chosen.focus()); };
@@ -106,8 +100,8 @@ export function batchView(element, job) {
       if (LIVE.includes(job.state) && total && Date.now() - looked > PERIOD) rows();
     },
   };
-  element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "How the rows stand"), bar, legend, facts), sizesCard(job),
-    h("section", { class: "card stack" }, h("div", { class: "heading" }, chosen, all), table, h("p", { class: "row" }, earlier, later)));
+  element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "How the rows stand"), bar, legend, facts),
+    h("section", { class: "card stack" }, h("div", { class: "heading" }, chosen, all), table, h("p", { class: "row" }, earlier, later)), sizesCard(job));
   view.show(job);
   if (!looked) rows();
   return view;

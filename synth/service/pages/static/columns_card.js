@@ -50,7 +50,7 @@ export function columnsCard(changed) {
       const merged = new Map((await Promise.all(known.map((family) => namesOf(family).catch(() => [])))).flat().map((row) => [row.name, row]));
       if (offered === families) for (const one of all) one.offer(merged);
     }
-    for (const one of all) one.understood(answer ? names.get(one.title) ?? "" : null);
+    for (const one of all) one.understood(answer ? names.get(one.title) ?? "" : one.likely());
     const mapped = Object.keys(request()).length, carried = answer ? answer.carried.length : 0;
     own.textContent = [`${all.length - carried} understood`, carried ? `${carried} carried along` : "", mapped ? `${mapped} chosen here` : ""].filter(Boolean).join(" · ");
     if (!answer) own.textContent = "";
@@ -112,10 +112,16 @@ class Column {
     this.measured();
   }
 
-  /** Tell what the service makes of the column; null while it cannot say. */
+  /** What the heading says, where the service cannot tell because another one is wrong. */
+  likely() {
+    const name = this.title.split(" [")[0].trim();
+    return this.rows.has(name) || STRUCTURE.includes(name) ? name : "";
+  }
+
+  /** Tell what the service makes of the column. */
   understood(name) {
-    if (name !== null && this.choice.value === "") this.name = name;
-    this.said.textContent = name === null && !this.name ? "as the heading says" : this.name ? `as the heading says: ${words(this.name)}` : "no name of ours: carried along";
+    if (this.choice.value === "") this.name = name;
+    this.said.textContent = this.name ? `as the heading says: ${words(this.name)}` : "no name of ours: carried along";
     this.element.classList.toggle("carried", this.choice.value === CARRY || (this.choice.value === "" && name === ""));
     this.measured();
   }

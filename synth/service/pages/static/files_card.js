@@ -16,5 +16,5 @@ export async function filesCard(element, job) {
   const first = Object.keys(MEANS).map((name) => files.find((file) => file.name === name)).filter(Boolean);
   const rest = files.filter((file) => !MEANS[file.name]);
   element.append(h("section", { class: "card" }, h("h2", {}, "Take it away"), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
-    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more files`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
+    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "file" : "files"}`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
 }

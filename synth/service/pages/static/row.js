@@ -1,11 +1,10 @@
 // A row of a batch: what it asks, and the designs that it has found.
 
 import { faultCard, get, maySubmit, post, sentence } from "./api.js";
-import { rowBadge } from "./batch_view.js";
 import { amount, duration, h, symbol, unitText, words } from "./dom.js";
 import { plotOf } from "./plot.js";
 import { yamlText } from "./spec.js";
-import { count } from "./words.js";
+import { count, rowBadge } from "./words.js";
 
 const place = document.getElementById("row");
 const { job: id, line } = place.dataset;
@@ -96,14 +95,16 @@ function found(row, columns, designs, request, family) {
 /** Return everything that is kept of a design: its objectives large, then sizes, parts, what follows, and limits. */
 function panelOf(design, many, columns, objectives, kinds) {
   const value = ({ name, unit }) => `${typeof design[name] === "number" ? amount(design[name]) : words(design[name] ?? "")} ${unitText(unit)}`.trim();
-  const line = (column) => [h("dt", { title: kinds.get(column.name)?.text ?? "" }, words(column.name), symbol(kinds.get(column.name)?.symbol)), h("dd", { class: "number" }, typeof design[column.name] === "string" && kinds.get(column.name)?.section === "part" ? design[column.name] : value(column))];
+  const line = (column) => [h("dt", { title: kinds.get(column.name)?.text ?? "" }, words(column.name), " ", symbol(kinds.get(column.name)?.symbol)), h("dd", { class: "number" }, typeof design[column.name] === "string" && kinds.get(column.name)?.section === "part" ? design[column.name] : value(column))];
   const rest = columns.filter((column) => !BESIDE.includes(column.name) && !column.name.startsWith(LIMIT) && !objectives.includes(column));
   const groups = GROUPS.map(([title, sections]) => [title, rest.filter(({ name }) => sections.includes(kinds.get(name)?.section ?? "derived"))]).filter(([, own]) => own.length);
+  const group = ([title, own]) => h("div", {}, h("h3", {}, title), h("dl", { class: "facts" }, own.map(line)));
   const limits = columns.filter((column) => column.name.startsWith(LIMIT) && design[column.name] !== "" && design[column.name] !== null).map((column) => [column.name.slice(LIMIT.length), Number(design[column.name])]).sort((a, b) => b[1] - a[1]);
   return h("section", { class: "card stack", "aria-label": `Design ${design.rank}` }, h("h2", {}, many > 1 ? `Design ${design.rank}` : "The design"),
     h("dl", { class: "figures" }, objectives.map((column) => h("div", {}, h("dt", {}, words(column.name)), h("dd", {}, value(column))))),
-    h("div", { class: "panels" }, groups.map(([title, own]) => h("div", {}, h("h3", {}, title), h("dl", { class: "facts" }, own.map(line)))),
-      limits.length ? h("div", {}, h("h3", {}, "Limits used"), h("dl", { class: "facts limits" }, limits.map(([name, share]) => [h("dt", {}, words(name)), h("dd", { class: share >= HOT ? "hot" : "" }, h("span", { class: "number" }, `${Math.round(100 * share)} %`), share >= HOT ? h("span", { class: "note" }, " decides") : null)]))) : null));
+    h("div", { class: "panels" }, h("div", { class: "stack" }, groups.slice(0, -1).map(group)),
+      limits.length ? h("div", {}, h("h3", {}, "Limits used"), h("dl", { class: "facts limits" }, limits.map(([name, share]) => [h("dt", {}, words(name)), h("dd", { class: share >= HOT ? "hot" : "" }, h("span", { class: "number" }, `${Math.round(100 * share)} %`), share >= HOT ? h("span", { class: "note" }, " decides") : null)]))) : null,
+      groups.slice(-1).map(group)));
 }
 
 begin();

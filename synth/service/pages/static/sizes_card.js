@@ -3,9 +3,9 @@
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { cellsOf, headingOf, sheet } from "./csv.js";
 import { amount, h, s, unitText, words } from "./dom.js";
-import { LIVE, badge, count, outcomeText } from "./words.js";
+import { LIVE, badge, count, outcomeText, rowBadge } from "./words.js";
 
-const WIDE = 720, HIGH = 240, LEFT = 78, RIGHT = 22, TOP = 18, BOTTOM = 46;
+const WIDE = matchMedia("(max-width: 620px)").matches ? 360 : 720, HIGH = 250, LEFT = 78, RIGHT = 22, TOP = 28, BOTTOM = 46;
 const MOST_LISTED = 5;
 
 /** Return what a batch offers where it has designs: its standard sizes. */
@@ -58,16 +58,23 @@ async function curveOf(job) {
 export async function sizesView(element, job) {
   const [record, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), curveOf(job)]);
   const batch = job.parent;
-  const line = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "row" ? h("code", {}, text.slice(0, 8)) : null);
+  const told = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "family" ? words(text) : name === "status" ? rowBadge(text) : null);
+  const lines = (text) => without(cellsOf(text), "row"); // known by its line here
   const [, ...left] = cellsOf(unserved), unit = unitText(record.unit);
   element.replaceChildren(
     h("section", { class: "card stack certificate proven" }, h("h2", {}, `${count(record.variants, "size")} for ${count(cellsOf(assignment).length - 1, "row")}`),
       h("p", {}, `Total excess of ${words(record.objective)} over each row's own best: ${amount(record.total_excess)} ${unit}, ${record.gap > 0 ? `proven to within ${amount(100 * record.gap)} %` : "proven"}. The fewest that serve all rows: ${record.fewest}${record.fewest_proven ? "" : ", not proven to be the fewest"}.`),
       left.length ? h("p", { class: "fault" }, `${count(left.length, "row")} ${left.length === 1 ? "is" : "are"} not served; see below.`) : null),
-    drawn,
-    h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(cellsOf(variants), { label: "The sizes" })),
-    h("section", { class: "card stack" }, h("h2", {}, "Which row gets which"), sheet(cellsOf(assignment), { label: "Which row gets which", cell: line })),
-    ...(left.length ? [h("section", { class: "card stack" }, h("h2", {}, "Not served"), sheet(cellsOf(unserved), { label: "Not served", cell: line }))] : []));
+    h("section", { class: "card" }, drawn),
+    h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(cellsOf(variants), { label: "The sizes", cell: told })),
+    h("section", { class: "card stack" }, h("h2", {}, "Which row gets which"), sheet(lines(assignment), { label: "Which row gets which", cell: told })),
+    ...(left.length ? [h("section", { class: "card stack" }, h("h2", {}, "Not served"), sheet(lines(unserved), { label: "Not served", cell: told }))] : []));
+}
+
+/** Return lines without a column. */
+function without(lines, name) {
+  const k = lines[0].indexOf(name);
+  return lines.map((line) => line.filter((_, own) => own !== k));
 }
 
 /** Draw what fewer sizes cost: the total excess over their number. */
@@ -76,11 +83,11 @@ function curve(points, unit, chosen, objective) {
   const most = Math.max(...points.map((point) => point.excess)) || 1, [low, high] = [points[0].variants, points.at(-1).variants];
   const step = 10 ** Math.floor(Math.log10(most)), tick = [0.2, 0.5, 1, 2].map((k) => k * step).find((own) => most / own <= 5) ?? 2 * step;
   const x = (variants) => LEFT + ((variants - low) / (high - low || 1)) * (WIDE - LEFT - RIGHT), y = (excess) => HIGH - BOTTOM - (excess / most) * (HIGH - TOP - BOTTOM);
-  const every = Math.max(1, Math.ceil((high - low) / 12));
+  const every = Math.max(1, Math.ceil((high - low) / (WIDE / 60)));
   const lines = [...Array(Math.floor(most / tick) + 1).keys()].map((k) => k * tick);
   const label = `Total excess of ${words(objective)} over the number of sizes`;
   const told = (point) => `${count(point.variants, "size")}: ${amount(point.excess)} ${unitText(unit)}${point.variants === chosen ? ", chosen" : ""}`.trim();
-  return h("figure", { class: "card" }, h("figcaption", { class: "note" }, `${label}${unitText(unit) ? `, in ${unitText(unit)}` : ""}. What more sizes would save, and fewer cost.`),
+  return h("figure", {}, h("figcaption", { class: "note" }, `${label}${unitText(unit) ? `, in ${unitText(unit)}` : ""}. What more sizes would save, and fewer cost.`),
     s("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, class: "plot", role: "img", "aria-label": `${label}. ${points.map(told).join("; ")}` },
       lines.map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, amount(Number(value.toPrecision(6))))]),
       points.filter((point) => (point.variants - low) % every === 0).map((point) => s("text", { x: x(point.variants), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, point.variants)),
