@@ -161,16 +161,29 @@ function show(answer) {
   go.disabled = answer.checked <= answer.bad;
   go.textContent = answer.bad && !go.disabled ? `Start ${count(good, "row")} without the faulty` : `Start ${count(good, "row")}`;
   preview();
-  const faults = answer.faults.slice(0, MOST_FAULTS), more = answer.more_faults + answer.faults.length - faults.length;
+  const apart = gathered(answer.faults), faults = apart.slice(0, MOST_FAULTS), more = answer.more_faults + apart.length - faults.length;
   told.replaceChildren(h("h2", {}, "Check"), state,
     faults.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Faults" }, h("table", {}, h("thead", {}, h("tr", {}, ["Line", "Column", "There stands", "Right would be"].map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, faults.map((one) => h("tr", {}, h("th", { scope: "row", class: "number" }, one.line), h("td", {}, one.column ?? ""), h("td", { class: "fault wrong" }, one.value === null ? "nothing" : String(one.value)), h("td", {}, one.expected)))))) : "",
+      h("tbody", {}, faults.map((one) => h("tr", {}, h("th", { scope: "row", class: "number" }, linesText(one.lines)), h("td", {}, one.column ?? ""), h("td", { class: "fault wrong" }, one.value === null ? "nothing" : String(one.value)), h("td", {}, one.expected)))))) : "",
     more ? h("p", { class: "note" }, `and ${amount(more)} more`) : "",
     faults.length ? h("p", { class: "note" }, "Mend them in the file and bring it again, what you have chosen here stays; or go on without these rows.") : "",
     answer.carried.length ? h("p", { class: "note" }, `Carried along unread: ${answer.carried.join(", ")}.`) : "",
     ...Object.entries(answer.unused).map(([name, unused]) => h("p", { class: "note" }, `Not used by ${words(name)}: ${unused.join(", ")}.`)),
     h("p", { class: "row" }, go));
 }
+
+/** Return faults; what is missing in many lines is one of them. */
+function gathered(faults) {
+  const found = new Map();
+  for (const one of faults) {
+    const key = one.value === null ? `${one.column}\n${one.expected}` : one;
+    if (found.has(key)) found.get(key).lines.push(one.line);
+    else found.set(key, { ...one, lines: [one.line] });
+  }
+  return [...found.values()];
+}
+
+const linesText = (lines) => lines.slice(0, 3).join(", ") + (lines.length > 3 ? ` and ${amount(lines.length - 3)} more` : "");
 
 async function start() {
   go.disabled = true;

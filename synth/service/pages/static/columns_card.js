@@ -23,7 +23,7 @@ async function namesOf(family) {
  * @param {() => void} changed called when somebody has chosen
  */
 export function columnsCard(changed) {
-  const columns = h("ul", { class: "columns" });
+  const columns = h("ul", { class: "meanings" });
   const own = h("span", { class: "note" });
   const element = h("section", { class: "card", hidden: true }, h("details", { open: true }, h("summary", {}, h("h2", {}, "What the columns mean"), own), columns));
   let all = [], families = null;
