@@ -2,7 +2,7 @@
 
 import { Refusal, ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { columnsCard } from "./columns_card.js";
-import { amount, h, say, words } from "./dom.js";
+import { amount, h, say, unitText, words } from "./dom.js";
 import { count } from "./words.js";
 
 const place = document.getElementById("batch");
@@ -25,11 +25,22 @@ const go = h("button", { type: "button", class: "primary", disabled: true, oncli
 const state = h("p", { role: "status" });
 
 const asks = {
-  family: asked("Family", h("select", { id: "family", onchange: later })),
-  objectives: asked("Objectives", h("input", { id: "objectives", autocomplete: "off", spellcheck: "false", placeholder: "those of the family", oninput: later })),
+  family: asked("Family", h("select", { id: "family", onchange: () => { offerObjectives(); later(); } })),
   points: asked("Designs for each row, at most", h("input", { id: "points", inputmode: "numeric", value: "1", autocomplete: "off", oninput: later })),
   title: asked("Title", h("input", { id: "title", maxlength: "200", autocomplete: "off", placeholder: "made of the file, if empty" })),
 };
+
+const objectives = h("div", { class: "objectives", role: "group", "aria-label": "Objectives" });
+
+/** Offer what the family that is chosen can make small or large. */
+async function offerObjectives() {
+  const name = asks.family.field.value;
+  objectives.replaceChildren(h("p", { class: "note" }, name ? "…" : "Each family has its own; choose one for all rows to choose among them."));
+  if (!name) return;
+  const rows = (await get(`/families/${name}`).catch(() => ({ rows: [] }))).rows.filter((row) => row.section === "objective");
+  if (name !== asks.family.field.value) return;
+  objectives.replaceChildren(...rows.map((row) => h("label", {}, h("input", { type: "checkbox", value: row.name, checked: row.default === "yes", "data-usual": row.default, onchange: later }), words(row.name), h("span", { class: "note" }, [row.sense === "max" ? "large" : "", unitText(row.unit)].filter(Boolean).join(" · ")))));
+}
 
 /** Return a field with its label and a place for what is wrong with it. */
 function asked(text, field) {
@@ -46,8 +57,9 @@ async function begin() {
     field.replaceChildren(h("option", { value: "" }, "as a column of the table says"), ...families.map((one) => h("option", { value: one.name }, one.title)));
     const wanted = new URLSearchParams(location.search).get("family");
     field.value = families.some((one) => one.name === wanted) ? wanted : "";
+    await offerObjectives();
     place.replaceChildren(maySubmit() ? h("div", {}, h("section", { class: "card stack" }, h("h2", {}, "The table"), dropped, fault), first,
-      h("section", { class: "card" }, h("h2", {}, "What is asked of all rows"), h("div", { class: "asks" }, Object.values(asks).map((one) => one.element))),
+      h("section", { class: "card" }, h("h2", {}, "What is asked of all rows"), h("div", { class: "asks" }, Object.values(asks).map((one) => one.element)), h("h3", {}, "What to make small or large"), objectives),
       columns.element, told) : h("p", { class: "card note" }, "Your token may look at jobs, not ask for any."));
   } catch (error) {
     place.replaceChildren(faultCard(error, () => location.reload()));
@@ -100,11 +112,12 @@ function later() {
 }
 
 function request() {
-  const names = asks.objectives.field.value.split(",").map((name) => name.trim().replaceAll(" ", "_")).filter(Boolean);
+  const boxes = [...objectives.querySelectorAll("input")];
+  const names = boxes.some((box) => box.checked !== (box.dataset.usual === "yes")) ? boxes.filter((box) => box.checked).map((box) => box.value) : null;
   const many = asks.points.field.value.trim();
   const family = asks.family.field.value;
   const mapping = columns.request();
-  return { upload: table.brought.id, ...(family ? { family } : {}), ...(names.length ? { objectives: names } : {}), ...(many ? { points: /^\d+$/.test(many) ? Number(many) : many } : {}), ...(Object.keys(mapping).length ? { mapping } : {}) };
+  return { upload: table.brought.id, ...(family ? { family } : {}), ...(names ? { objectives: names } : {}), ...(many ? { points: /^\d+$/.test(many) ? Number(many) : many } : {}), ...(Object.keys(mapping).length ? { mapping } : {}) };
 }
 
 async function check() {

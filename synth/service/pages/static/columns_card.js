@@ -59,8 +59,10 @@ export function columnsCard(changed) {
   /** Show what is wrong with a heading at its column; tell whether it was one. */
   function fault(problem) {
     for (const one of all) one.fault("");
-    const found = all.find((one) => problem && (problem.value === one.title || problem.message.startsWith(`mapping: ${one.title}:`)));
-    found?.fault(problem.message.replace(/ \(or '.*$/s, ""), problem.expected.split(" (or ")[0]);
+    const places = (title) => [`mapping: ${title}:`, `, line 1, column ${title}:`, `, line 1: got '${title}'`, `, line 1: got "${title}"`];
+    const found = all.find((one) => problem && (problem.value === one.title || places(one.title).some((text) => problem.message.includes(text))));
+    const told = problem?.value === null || problem?.value === undefined ? "expected" : `got ${problem.value}; expected`;
+    found?.fault(`${told} ${problem?.expected.replace(/ \(or '.*$/s, "")}`, problem?.expected.split(" (or ")[0], problem?.value !== found.title);
     if (found) element.querySelector("details").open = true;
     return Boolean(found);
   }
@@ -80,7 +82,7 @@ class Column {
     this.groups = [];
     this.choice = h("select", { id: `means-${k}`, "aria-label": `What ${title} means`, "aria-describedby": `means-${k}-fault`, onchange: () => { this.unit.value = ""; this.measured(); changed(); } },
       this.said, h("option", { value: CARRY }, "left out: only carried along"));
-    this.unit = h("input", { id: `unit-${k}`, class: "unit", "aria-label": `Unit of ${title}`, autocomplete: "off", spellcheck: "false", oninput: changed });
+    this.unit = h("input", { id: `unit-${k}`, class: "unit", "aria-label": `Unit of ${title}`, "aria-describedby": `means-${k}-fault`, autocomplete: "off", spellcheck: "false", oninput: changed });
     this.measure = h("label", { class: "row note", hidden: true }, "in", this.unit);
     this.wrong = h("p", { class: "fault", id: `means-${k}-fault` });
     this.mend = h("p", { class: "row" });
@@ -141,8 +143,10 @@ class Column {
     return name && unit && name !== CARRY ? `${name} [${unit}]` : name;
   }
 
-  fault(text, meant = "") {
-    this.wrong.textContent = text;
+  /** Show what is wrong with what the column means, or with its unit. */
+  fault(text, meant = "", measured = false) {
+    this.wrong.textContent = text && text[0].toUpperCase() + text.slice(1);
+    this.unit.setAttribute("aria-invalid", String(Boolean(text) && measured && !this.measure.hidden));
     this.choice.setAttribute("aria-invalid", String(Boolean(text)));
     this.element.classList.toggle("bad", Boolean(text));
     const take = (value, words) => h("button", { type: "button", class: "small", onclick: () => { this.wanted = value; this.offer(this.rows); this.changed(); this.choice.focus(); } }, words);
