@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import time
 from collections.abc import Callable, Iterator
@@ -18,7 +19,7 @@ from tests.service.working import BATCH, DUTY, FRONT, LONG, QUICK
 
 pytestmark = [pytest.mark.slow, needs_chromium]
 Visit = Callable[..., AbstractContextManager[Visitor]]
-SOON = 5.0  # s: what somebody waits for at the first start
+SOON = 5.0  # s: what somebody waits for at the first start, where nothing else runs
 EVIL = "<img src=x onerror=alert(1)>"
 HOSTILE = (
     EVIL,
@@ -42,12 +43,21 @@ TOO_SMALL = {
     },
     "points": 3,
 }
-TABLE = (
-    "Machine,load_torqe [N*m],Speed,driven_inertia [kg*m2],engagements_per_hour [1/h],jerk_limit [rad/s3],wear_life_min,ramp_time [s]\n"
-    "winch,400,26.6,30,50,18,200000,2\n"
-    'crane,"6,5",26.6,30,50,18,200000,2\n'
-    "hoist,600,26.6,30,50,18,200000,2\n"
-)
+TABLE = """\
+Machine,load_torqe [N*m],Speed,driven_inertia [kg*m2],engagements_per_hour [1/h],jerk_limit [rad/s3],wear_life_min,fix
+winch,400,26.6,30,50,18,200000,ramp_time = 2 s
+crane,"6,5",26.6,30,50,18,200000,ramp_time = 2 s
+hoist,600,26.6,30,50,18,200000,ramp_time = 2 s
+"""
+
+FOCUSED = """(() => {
+  const one = document.activeElement, near = one.closest('label, .drop, .typed, p');
+  const lit = (own, part) => own && getComputedStyle(own, part).outlineStyle !== 'none';
+  window.seen ??= new Map();
+  if (!seen.has(one)) seen.set(one, seen.size);
+  const seenAt = [one, near, near?.querySelector('.button')].some((own) => lit(own)) || lit(one, '::after');
+  return [seen.get(one), one.tagName, seenAt, one.outerHTML.slice(0, 80)];
+})()"""
 
 
 @pytest.fixture(scope="module")
@@ -70,6 +80,11 @@ def visited(browser: Any, site: Site) -> Visit:
     return begin
 
 
+def soon() -> float:
+    """Return what somebody waits for at most: longer where others use the machine as well."""
+    return SOON * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
+
+
 def typed(page: Any, name: str) -> Any:
     """Return the field of a requirement."""
     return page.locator(f"#f-requirements-{name}")
@@ -84,13 +99,13 @@ def test_a_first_start_leads_to_a_front_with_one_click(site: Site, visited: Visi
         found.goes("/")
         offered = found.page.locator(".offers li")
         found.sees(".offers li")
-        assert time.monotonic() - begun < SOON
+        assert time.monotonic() - begun < soon()
         assert offered.count() == 3
         begun = time.monotonic()
         offered.first.get_by_role("button", name="Run it").click()
         found.page.wait_for_url("**/jobs/*")
-        found.sees(".explored table.designs tbody tr", seconds=SOON)
-        assert time.monotonic() - begun < SOON
+        found.sees(".explored table.designs tbody tr", seconds=soon())
+        assert time.monotonic() - begun < soon()
         found.goes("/")
         assert found.sees(".studies li .badge").inner_text().endswith("Done")
 
@@ -195,6 +210,7 @@ def test_a_table_is_understood_checked_asked_and_led_from_a_row_to_its_designs(s
         found.sees(".job-head .badge", "Done", seconds=40.0)
         found.sees(".legend li", "2 optimal")
         page.get_by_role("button", name="1 faulty").click()
+        found.sees("h2", "Rows: faulty")
         assert "expected a decimal point" in found.sees(".rows .best", "6,5").inner_text()
         assert page.locator(".rows tbody tr").count() == 1
         page.reload()
@@ -412,14 +428,7 @@ def test_everything_is_reached_by_keys_and_what_has_the_focus_is_seen(site: Site
             reached = set()
             for _ in range(wanted + 5):
                 page.keyboard.press("Tab")
-                told = page.evaluate(
-                    "(() => { const one = document.activeElement, style = getComputedStyle(one); "
-                    "const near = one.closest('label, .drop, .typed, p'); "
-                    "window.seen ??= new Map(); if (!seen.has(one)) seen.set(one, seen.size); "
-                    "const lit = [one, near, near?.querySelector('.button')].some((own) => own && "
-                    "getComputedStyle(own).outlineStyle !== 'none') || getComputedStyle(one, '::after').outlineStyle !== 'none'; "
-                    "return [seen.get(one), one.tagName, one === document.body || lit, one.outerHTML.slice(0, 80)]; })()"
-                )
+                told = page.evaluate(FOCUSED)
                 if told[1] == "BODY":
                     break
                 reached.add(told[0])

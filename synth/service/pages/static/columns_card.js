@@ -81,7 +81,7 @@ class Column {
     this.said = h("option", { value: "" }, "as the heading says");
     this.groups = [];
     this.choice = h("select", { id: `means-${k}`, "aria-label": `What ${title} means`, "aria-describedby": `means-${k}-fault`, onchange: () => { this.unit.value = ""; this.measured(); changed(); } },
-      this.said, h("option", { value: CARRY }, "left out: only carried along"));
+      this.said, h("option", { value: CARRY }, "left out: carried along unread"));
     this.unit = h("input", { id: `unit-${k}`, class: "unit", "aria-label": `Unit of ${title}`, "aria-describedby": `means-${k}-fault`, autocomplete: "off", spellcheck: "false", oninput: changed });
     this.measure = h("label", { class: "row note", hidden: true }, "in", this.unit);
     this.wrong = h("p", { class: "fault", id: `means-${k}-fault` });
@@ -123,7 +123,7 @@ class Column {
   /** Tell what the service makes of the column. */
   understood(name) {
     if (this.choice.value === "") this.name = name;
-    this.said.textContent = this.name ? `as the heading says: ${words(this.name)}` : "no name of ours: carried along";
+    this.said.textContent = this.name ? `${words(this.name)}, as the heading says` : "carried along: no name of ours";
     this.element.classList.toggle("carried", this.choice.value === CARRY || (this.choice.value === "" && name === ""));
     this.measured();
   }

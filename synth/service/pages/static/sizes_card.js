@@ -59,14 +59,15 @@ export async function sizesView(element, job) {
   const [record, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), curveOf(job)]);
   const batch = job.parent;
   const told = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "family" ? words(text) : name === "status" ? rowBadge(text) : null);
-  const lines = (text) => without(cellsOf(text), "row"); // known by its line here
+  const one = new Set(cellsOf(variants).slice(1).map((cells) => cells[1])).size < 2; // family
+  const lines = (text) => ["row", ...(one ? ["family"] : [])].reduce(without, cellsOf(text)); // a row is known by its line here
   const [, ...left] = cellsOf(unserved), unit = unitText(record.unit);
   element.replaceChildren(
     h("section", { class: "card stack certificate proven" }, h("h2", {}, `${count(record.variants, "size")} for ${count(cellsOf(assignment).length - 1, "row")}`),
       h("p", {}, `Total excess of ${words(record.objective)} over each row's own best: ${amount(record.total_excess)} ${unit}, ${record.gap > 0 ? `proven to within ${amount(100 * record.gap)} %` : "proven"}. The fewest that serve all rows: ${record.fewest}${record.fewest_proven ? "" : ", not proven to be the fewest"}.`),
       left.length ? h("p", { class: "fault" }, `${count(left.length, "row")} ${left.length === 1 ? "is" : "are"} not served; see below.`) : null),
     h("section", { class: "card" }, drawn),
-    h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(cellsOf(variants), { label: "The sizes", cell: told })),
+    h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(lines(variants), { label: "The sizes", cell: told })),
     h("section", { class: "card stack" }, h("h2", {}, "Which row gets which"), sheet(lines(assignment), { label: "Which row gets which", cell: told })),
     ...(left.length ? [h("section", { class: "card stack" }, h("h2", {}, "Not served"), sheet(lines(unserved), { label: "Not served", cell: told }))] : []));
 }
@@ -74,6 +75,7 @@ export async function sizesView(element, job) {
 /** Return lines without a column. */
 function without(lines, name) {
   const k = lines[0].indexOf(name);
+  if (k < 0) return lines;
   return lines.map((line) => line.filter((_, own) => own !== k));
 }
 
