@@ -24,6 +24,7 @@ export function batchView(element, job) {
   const later = h("button", { type: "button", class: "small", hidden: true }, "Later rows");
   const earlier = h("button", { type: "button", class: "small", hidden: true, onclick: () => { cursors.pop(); rows().then(() => chosen.focus()); } }, "Earlier rows");
   const all = h("button", { type: "button", class: "small", hidden: true, onclick: () => choose("") }, "Show all rows");
+  const lines = new Map(); // of the table, by the line of the row
   const marks = new Map(); // how rows stand -> its share in the bar, and its button
 
   async function rows() {
@@ -52,15 +53,34 @@ export function batchView(element, job) {
     const heads = page.header.slice(0, SHOWN_CELLS), more = page.header.length - heads.length;
     chosen.textContent = status ? `Rows: ${label(status)}` : "All rows";
     all.hidden = !status;
-    if (page.rows.length) {
+    const same = page.rows.length > 0 && page.rows.length === lines.size && page.rows.every((row) => lines.has(row.line));
+    if (same) page.rows.forEach((row) => renew(row, heads));
+    else if (page.rows.length) {
+      lines.clear();
       table.replaceChildren(h("table", { class: "rows" }, more > 0 ? h("caption", {}, `The first ${heads.length} of ${page.header.length} columns; all are in rows.csv and on the page of a row.`) : null,
         h("thead", {}, h("tr", {}, ["Line", "Stands", ...heads, "Best design, or why there is none"].map((name) => h("th", { scope: "col" }, name)))),
-        h("tbody", {}, page.rows.map((row) => h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
-          h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.explanation || "–"), row.remarks ? h("p", { class: "note" }, row.remarks) : null))))));
-    } else table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
+        h("tbody", {}, page.rows.map((row) => renew(row, heads)))));
+    } else {
+      lines.clear();
+      table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
+    }
     later.hidden = !page.next;
     later.onclick = () => { cursors.push(page.next); rows().then(() => chosen.focus()); };
     earlier.hidden = cursors.length < 2;
+  }
+
+  /** Return the line of a row; of one that stands there and has changed, only that line is another one. */
+  function renew(row, heads) {
+    const known = lines.get(row.line), text = JSON.stringify([row, LIVE.includes(shown.state)]);
+    if (known?.text === text) return known.line;
+    const waits = row.status === "not_solved" && LIVE.includes(shown.state);
+    const line = h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(waits ? WAITING : row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
+      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.explanation || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
+    const focused = known?.line.contains(document.activeElement);
+    known?.line.replaceWith(line);
+    if (focused) line.querySelector("a").focus();
+    lines.set(row.line, { line, text });
+    return line;
   }
 
   /** Keep what somebody may point at; only numbers change. */

@@ -69,6 +69,7 @@ export const ROWS = {
 
 /** Return how a row stands, as a badge. */
 export function rowBadge(status) {
-  const [text, kind, mark] = ROWS[status] ?? [words(status || "open"), "", "○"];
+  const known = words(status || "waiting");
+  const [text, kind, mark] = ROWS[status] ?? [known[0].toUpperCase() + known.slice(1), "", "○"];
   return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
 }
