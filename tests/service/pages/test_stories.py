@@ -452,6 +452,8 @@ def test_what_is_printed_has_nothing_to_press(
                 == 0
             )
             assert page.locator("h1").first.is_visible()
+            for heading in page.locator("main th[scope=col]:visible").all():
+                assert heading.inner_text().strip(), name
             ground = page.evaluate("getComputedStyle(document.querySelector('.card, .explored')).backgroundColor")
             assert ground in ("rgb(255, 255, 255)", "rgba(0, 0, 0, 0)"), ground
             page.emulate_media(media="screen", color_scheme="light")

@@ -108,8 +108,8 @@ class Visitor(Opened):
     def expects(self, status: int) -> None:
         """Take note of a refusal that the page has shown: browsers call each one an error."""
         said = f"error: Failed to load resource: the server responded with a status of {status} "
-        (found,) = [fault for fault in self.faults if fault.startswith(said)][:1] or [None]
-        assert found, (status, self.faults)
+        found = next((fault for fault in self.faults if fault.startswith(said)), None)
+        assert found is not None, (status, self.faults)
         self.faults.remove(found)
 
 

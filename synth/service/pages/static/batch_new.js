@@ -20,9 +20,9 @@ h("p", { class: "note", id: "file-kinds" }, "CSV in UTF-8, or the first sheet of
 const fault = h("p", { class: "fault", role: "alert" });
 const columns = columnsCard(later);
 const first = h("section", { class: "card", hidden: true });
-const told = h("section", { class: "card stack", hidden: true });
 const go = h("button", { type: "button", class: "primary", disabled: true, onclick: start }, "Start");
-const state = h("p", { role: "status" });
+const state = h("p", { role: "status" }), detail = h("div", { class: "stack" });
+const told = h("section", { class: "card stack", hidden: true }, h("h2", {}, "Check"), state, detail, h("p", { class: "row" }, go)); // what is told aloud stays where it is
 
 const asks = {
   family: asked("Family", h("select", { id: "family", onchange: () => { offerObjectives(); later(); } })),
@@ -124,7 +124,6 @@ async function check() {
   const own = (number += 1);
   told.hidden = false;
   go.disabled = true;
-  if (!told.contains(state)) told.replaceChildren(h("h2", {}, "Check"), state);
   state.textContent = "Checking the rows …";
   try {
     const answer = await post("/batches/check", request());
@@ -162,7 +161,8 @@ async function refused(error) {
     at.field.setAttribute("aria-invalid", "true");
     text = `${at.element.querySelector("label").textContent}: see above.`;
   } else if (columns.fault(problem)) text = "A heading is not understood; say above what it means.";
-  told.replaceChildren(h("h2", {}, "Check"), state, h("p", { class: "row" }, go));
+  detail.replaceChildren();
+  go.textContent = "Start";
   state.textContent = text;
   state.className = "fault";
 }
@@ -175,14 +175,13 @@ function show(answer) {
   go.textContent = answer.bad && !go.disabled ? `Start ${count(good, "row")} without the faulty` : `Start ${count(good, "row")}`;
   preview();
   const apart = gathered(answer.faults), faults = apart.slice(0, MOST_FAULTS), more = answer.more_faults + apart.length - faults.length;
-  told.replaceChildren(h("h2", {}, "Check"), state,
+  detail.replaceChildren(
     faults.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Faults" }, h("table", {}, h("thead", {}, h("tr", {}, ["Line", "Column", "There stands", "Right would be"].map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, faults.map((one) => h("tr", {}, h("th", { scope: "row", class: "number" }, linesText(one.lines)), h("td", {}, one.column ?? ""), h("td", { class: "fault wrong" }, one.value === null ? "nothing" : String(one.value)), h("td", {}, one.expected)))))) : "",
     more ? h("p", { class: "note" }, `and ${amount(more)} more`) : "",
     faults.length ? h("p", { class: "note" }, "Mend them in the file and bring it again, what you have chosen here stays; or go on without these rows.") : "",
     answer.carried.length ? h("p", { class: "note" }, `Carried along unread: ${answer.carried.join(", ")}.`) : "",
-    ...Object.entries(answer.unused).map(([name, unused]) => h("p", { class: "note" }, `Not used by ${words(name)}: ${unused.join(", ")}.`)),
-    h("p", { class: "row" }, go));
+    ...Object.entries(answer.unused).map(([name, unused]) => h("p", { class: "note" }, `Not used by ${words(name)}: ${unused.join(", ")}.`)));
 }
 
 /** Return faults; what is missing in many lines is one of them. */

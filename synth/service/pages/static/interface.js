@@ -46,13 +46,19 @@ function described(path, method, own) {
     parameters.length ? table("Parameters", ["Parameter", "In", "Type", "What it is"], parameters.map((one) => [named(one.name, one.required), one.in, typeOf(one.schema), coded(one.description ?? one.schema?.description ?? "")])) : null,
     body ? [h("h3", {}, "Body"), fieldsOf(body[1].schema, 0) ?? h("p", {}, coded(body[1].schema?.description ?? own.requestBody.description ?? (example === undefined ? body[0] : "An object, as below.")))] : null,
     example === undefined ? null : [h("h3", {}, "By example"), h("pre", { tabindex: "0", "aria-label": "Example" }, curl(path, method, example))],
-    h("h3", {}, "Answers"), Object.entries(own.responses ?? {}).map(([status, answer]) => answerOf(status, answer)));
+    h("h3", {}, "Answers"), answersOf(own.responses ?? {}));
 }
 
-function answerOf(status, answer) {
-  const [media, content] = Object.entries(answer.content ?? {})[0] ?? [];
-  const fields = status < "300" && media === "application/json" ? fieldsOf(content.schema, 0) : null;
-  return h("div", {}, h("p", {}, h("code", {}, status), ` ${answer.description ?? ""}`), fields);
+/** Return what may come back; what answers with the same object tells its fields once. */
+function answersOf(responses) {
+  const told = new Set();
+  return h("ul", { class: "schema" }, Object.entries(responses).map(([status, answer]) => {
+    const [media, content] = Object.entries(answer.content ?? {})[0] ?? [];
+    const kind = JSON.stringify(content?.schema ?? null);
+    const fields = status < "300" && media === "application/json" && !told.has(kind) ? fieldsOf(content.schema, 0, false) : null;
+    told.add(kind);
+    return h("li", {}, h("code", {}, status), ` ${answer.description ?? ""}`, fields);
+  }));
 }
 
 /** Return a text with what stands in backticks as code. */
@@ -79,11 +85,11 @@ function typeOf(schema) {
 }
 
 /** Return the fields of an object, and below each those of what it holds. */
-function fieldsOf(schema, level) {
+function fieldsOf(schema, level, asked = true) {
   const own = resolved(schema), fields = Object.entries(own.properties ?? {});
   if (!fields.length) return null;
   const inner = (one) => { const held = some(one)[0] ?? one; return resolved(held).type === "array" ? resolved(held).items : held; };
-  return h("ul", { class: "schema" }, fields.map(([name, one]) => h("li", {}, named(name, own.required?.includes(name)), " ", h("span", { class: "note" }, typeOf(one)), one.description ? [" – ", coded(one.description)] : "", level + 1 < DEEPEST ? fieldsOf(inner(one), level + 1) : null)));
+  return h("ul", { class: "schema" }, fields.map(([name, one]) => h("li", {}, named(name, asked && own.required?.includes(name)), " ", h("span", { class: "note" }, typeOf(one)), one.description ? [" – ", coded(one.description)] : "", level + 1 < DEEPEST ? fieldsOf(inner(one), level + 1, asked) : null)));
 }
 
 function exampleOf(content) {
