@@ -20,6 +20,7 @@ FAMILIES_TASK, DECLARATION_TASK, EXAMPLES_TASK = "families", "declaration", "exa
 CHECK_TASK, EVALUATE_TASK, CHANGED_TASK = "check", "evaluate", "changed"
 FILES_TASK, RENDER_TASK, DESIGNS_TASK = "files", "render", "designs"
 UPLOAD_TASK, PART_TABLE_TASK = "upload", "part_table"
+TABLES_TASK, TABLE_TASK = "tables", "table"
 TASKS: Mapping[str, str] = MappingProxyType(
     {
         ROWS_TASK: "synth.jobs.engine_work:rows",
@@ -39,6 +40,8 @@ TASKS: Mapping[str, str] = MappingProxyType(
         DESIGNS_TASK: "synth.jobs.kinds.designs:page",
         UPLOAD_TASK: "synth.jobs.kinds.brought:rows_of_file",
         PART_TABLE_TASK: "synth.jobs.kinds.brought:part_table",
+        TABLES_TASK: "synth.jobs.kinds.shipped:tables",
+        TABLE_TASK: "synth.jobs.kinds.shipped:table",
     }
 )
 

@@ -23,6 +23,7 @@ from synth.service.api import (
     file_routes,
     job_routes,
     result_routes,
+    table_routes,
     tenant_routes,
 )
 from synth.service.attempts import FailedTokens
@@ -44,6 +45,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     event_routes.router,
     batch_routes.router,
     catalogue_routes.router,
+    table_routes.router,
     tenant_routes.router,
     token_routes.router,
 )

@@ -44,9 +44,9 @@ class Opened:
         page.on("dialog", lambda dialog: (self.faults.append(f"dialog: {dialog.message}"), dialog.dismiss()))
         page.on("request", lambda request: self.asked.append(request.url))
 
-    def strangers(self) -> list[str]:
-        """Return what was asked for beside the page itself and what is in it."""
-        return [url for url in self.asked if not url.startswith(("file:", "data:", "blob:", "about:"))]
+    def strangers(self, home: str = "file:") -> list[str]:
+        """Return what was asked for beside the page itself and what is in it; ``home`` is where the page is from."""
+        return [url for url in self.asked if not url.startswith((home, "data:", "blob:", "about:"))]
 
 
 @contextmanager

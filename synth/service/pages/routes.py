@@ -17,7 +17,9 @@ from fastapi.routing import APIRoute
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
+from synth.jobs.job_table import BATCH
 from synth.service.api.asking import OwnJob
+from synth.service.api.result_routes import LARGEST_LINE
 from synth.service.auth import Administrator, Reader
 from synth.service.errors import ServiceError, not_found, request_id_of
 from synth.service.pages.assets import EXPLORER_MODULE, assets, static_place
@@ -174,6 +176,14 @@ async def job(found: OwnJob, principal: Reader) -> HTMLResponse:
     """Show a job: how it stands, and what it has found."""
     explorer = f"{static_place()}/{EXPLORER_MODULE}" if EXPLORER_MODULE in assets() else ""
     return shown("job", found.title, "", principal, job=found.id, explorer=explorer)
+
+
+@router.get("/jobs/{job}/rows/{line}")
+async def row(found: OwnJob, line: Annotated[int, Path(ge=1, le=LARGEST_LINE)], principal: Reader) -> HTMLResponse:
+    """Show a row of a batch: what it asks, and the designs that it has found."""
+    if found.kind != BATCH:
+        raise not_found()
+    return shown("row", f"Line {line} · {found.title}", "", principal, job=found.id, line=line)
 
 
 @router.get(SIGN_IN)

@@ -67,6 +67,17 @@ def test_jobs_of_others_are_not_there(service: Service) -> None:
     assert foreign.headers["content-security-policy"] == POLICY
 
 
+def test_rows_are_those_of_batches(service: Service) -> None:
+    study = job_of(service, 1, "Hoist")
+    new = NewJob(kind="batch", title=EVIL, request={}, fingerprint="b" * 64, code="c", tenant=1)
+    batch = service.store.submit(new)[0]
+    shown = service("GET", f"/jobs/{batch}/rows/2")
+    assert (shown.status_code, EVIL in shown.text) == (200, False)
+    assert 'data-line="2"' in shown.text
+    for address in (f"/jobs/{study}/rows/2", f"/jobs/{batch}/rows/0", f"/jobs/{batch}/rows/x", "/jobs/nothing/rows/2"):
+        assert service("GET", address).status_code == 404, address
+
+
 def test_a_title_is_text_whatever_stands_in_it(service: Service) -> None:
     job = job_of(service, 1, EVIL)
     text = service("GET", f"/jobs/{job}").text

@@ -113,3 +113,6 @@ document.getElementById("sign-out")?.addEventListener("click", async () => {
   await ask("DELETE", "/session");
   location.assign("/sign-in");
 });
+
+// On a phone the navigation is wider than the window: where one is shall be seen.
+document.querySelector(".top [aria-current]")?.scrollIntoView({ block: "nearest", inline: "center" });

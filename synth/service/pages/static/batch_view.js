@@ -1,81 +1,130 @@
 // A batch: how its rows stand, and what each has found.
 
 import { faultCard, get } from "./api.js";
-import { duration, h, words } from "./dom.js";
-import { LIVE, ROWS, count } from "./words.js";
+import { amount, duration, h, unitText, words } from "./dom.js";
+import { sizesCard } from "./sizes_card.js";
+import { LIVE, ROWS, rowBadge } from "./words.js";
 
 const PERIOD = 3000; // ms between two looks at the rows while they are answered
 const SHOWN_CELLS = 4;
+const WAITING = "waiting"; // rows that nobody has answered yet: no status of a row
+
+/** Return what a row has found as people read it: names in words, units as they are written. */
+export const designText = (text) => words(text).replaceAll(/(\d) ([A-Za-z%°][A-Za-z0-9*/()%°]*)(?=,|$)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
 
 /** Show a batch, while it is worked at and after. */
 export function batchView(element, job) {
-  let shown = job, status = "", cursors = [null], looked = 0;
+  const address = new URLSearchParams(location.search);
+  let shown = job, status = ROWS[address.get("status")] ? address.get("status") : "", cursors = [null], looked = 0, asked = 0;
   const bar = h("div", { class: "shares", role: "img" });
   const legend = h("ul", { class: "row legend" });
-  const facts = h("p", { class: "note number", role: "status" });
+  const facts = h("p", { class: "note number" });
   const table = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Rows" });
-  const pager = h("p", { class: "row" });
+  const chosen = h("h2", { tabindex: "-1" }, "All rows");
+  const later = h("button", { type: "button", class: "small", hidden: true }, "Later rows");
+  const earlier = h("button", { type: "button", class: "small", hidden: true, onclick: () => { cursors.pop(); rows().then(() => chosen.focus()); } }, "Earlier rows");
+  const all = h("button", { type: "button", class: "small", hidden: true, onclick: () => choose("") }, "Show all rows");
+  const lines = new Map(); // of the table, by the line of the row
+  const marks = new Map(); // how rows stand -> its share in the bar, and its button
 
   async function rows() {
-    const asked = new URLSearchParams({ limit: "50" });
-    if (status) asked.set("status", status);
-    if (cursors.at(-1)) asked.set("cursor", cursors.at(-1));
+    const own = (asked += 1);
+    const query = new URLSearchParams({ limit: "50" });
+    if (status) query.set("status", status);
+    if (cursors.at(-1)) query.set("cursor", cursors.at(-1));
     looked = Date.now();
     try {
-      draw(await get(`/jobs/${job.id}/rows?${asked}`));
+      const page = await get(`/jobs/${job.id}/rows?${query}`);
+      if (own === asked) draw(page);
     } catch (error) {
-      table.replaceChildren(faultCard(error, rows));
+      if (own === asked) table.replaceChildren(faultCard(error, rows));
     }
   }
 
-  function draw(page) {
-    const heads = page.header.slice(0, SHOWN_CELLS);
-    const more = page.header.length - heads.length;
-    table.replaceChildren(h("table", {}, h("caption", {}, more > 0 ? `The first ${heads.length} of ${page.header.length} columns; all are in rows.csv.` : ""),
-      h("thead", {}, h("tr", {}, ["Line", ...heads, "Stands", "Best design, or why there is none"].map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, page.rows.map((row) => h("tr", {}, h("td", { class: "number" }, row.line), heads.map((_, k) => h("td", {}, row.cells[k] ?? "")),
-        h("td", {}, mark(row.status)), h("td", { class: "best" }, row.best_design ? words(row.best_design) : row.explanation || "–", row.remarks ? h("p", { class: "note" }, row.remarks) : null))))));
-    if (!page.rows.length) table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
-    pager.replaceChildren(
-      cursors.length > 1 ? h("button", { type: "button", class: "small", onclick: () => { cursors.pop(); rows(); } }, "Earlier rows") : "",
-      page.next ? h("button", { type: "button", class: "small", onclick: () => { cursors.push(page.next); rows(); } }, "Later rows") : "");
+  function choose(name) {
+    status = name;
+    cursors = [null];
+    history.replaceState(null, "", status ? `?status=${status}` : location.pathname);
+    view.show(shown);
+    rows();
   }
 
-  const mark = (name) => {
-    const [text, kind] = ROWS[name] ?? [words(name || "open"), ""];
-    return h("span", { class: `badge ${kind}` }, text);
-  };
+  function draw(page) {
+    const heads = page.header.slice(0, SHOWN_CELLS), more = page.header.length - heads.length;
+    chosen.textContent = status ? `Rows: ${label(status)}` : "All rows";
+    all.hidden = !status;
+    const same = page.rows.length > 0 && page.rows.length === lines.size && page.rows.every((row) => lines.has(row.line));
+    if (same) page.rows.forEach((row) => renew(row, heads));
+    else if (page.rows.length) {
+      lines.clear();
+      table.replaceChildren(h("table", { class: "rows" }, more > 0 ? h("caption", {}, `The first ${heads.length} of ${page.header.length} columns; all are in rows.csv and on the page of a row.`) : null,
+        h("thead", {}, h("tr", {}, ["Line", "Stands", ...heads, "Best design, or why there is none"].map((name) => h("th", { scope: "col" }, name)))),
+        h("tbody", {}, page.rows.map((row) => renew(row, heads)))));
+    } else {
+      lines.clear();
+      table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
+    }
+    later.hidden = !page.next;
+    later.onclick = () => { cursors.push(page.next); rows().then(() => chosen.focus()); };
+    earlier.hidden = cursors.length < 2;
+  }
+
+  /** Return the line of a row; of one that stands there and has changed, only that line is another one. */
+  function renew(row, heads) {
+    const known = lines.get(row.line), text = JSON.stringify([row, LIVE.includes(shown.state)]);
+    if (known?.text === text) return known.line;
+    const waits = row.status === "not_solved" && LIVE.includes(shown.state);
+    const line = h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(waits ? WAITING : row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
+      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.explanation || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
+    const focused = known?.line.contains(document.activeElement);
+    known?.line.replaceWith(line);
+    if (focused) line.querySelector("a").focus();
+    lines.set(row.line, { line, text });
+    return line;
+  }
+
+  /** Keep what somebody may point at; only numbers change. */
+  function told(name, number) {
+    if (!marks.has(name)) {
+      const part = h("span", { class: `share ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}` }), said = h("span");
+      const dot = h("span", { class: `dot ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}`, "aria-hidden": "true" });
+      const line = h("li", {}, name === WAITING ? h("span", { class: "badge" }, dot, said) : h("button", { type: "button", class: "small", onclick: () => choose(status === name ? "" : name) }, dot, said));
+      marks.set(name, { part, said, line });
+      bar.append(part);
+      legend.append(line);
+    }
+    const { part, said, line } = marks.get(name);
+    part.style.flexGrow = String(number);
+    part.title = said.textContent = `${amount(number)} ${label(name)}`;
+    part.hidden = line.hidden = !number;
+    line.querySelector("button")?.setAttribute("aria-pressed", String(status === name));
+  }
 
   const view = {
     show(job) {
       shown = job;
-      const told = job.progress ?? {};
-      const facted = job.summary?.status ?? { ...(told.bad ? { bad_input: told.bad } : {}), ...told.status };
-      const total = job.summary?.rows ?? told.rows ?? job.rows;
-      const done = Object.values(facted).reduce((sum, number) => sum + number, 0);
-      const parts = Object.entries(facted).filter(([, number]) => number);
-      if (total > done) parts.push(["waiting", total - done]);
-      bar.replaceChildren(...parts.map(([name, number]) => share(name, number)));
-      bar.setAttribute("aria-label", parts.map(([name, number]) => `${number} ${label(name)}`).join(", ") || "nothing yet");
-      legend.replaceChildren(...parts.map(([name, number]) => h("li", {}, name === "waiting" ? h("span", { class: "badge" }, `${number} waiting`)
-        : h("button", { type: "button", class: "small", "aria-pressed": String(status === name), onclick: () => { status = status === name ? "" : name; cursors = [null]; view.show(shown); rows(); } }, h("span", { class: `dot ${ROWS[name]?.[1] ?? ""}`, "aria-hidden": "true" }), `${number} ${label(name)}`))));
+      const progress = job.progress ?? {};
+      const parts = { ...(job.summary?.status ?? { ...(progress.bad ? { bad_input: progress.bad } : {}), ...progress.status }) };
+      const total = job.summary?.rows ?? progress.rows ?? job.rows;
+      const done = Object.values(parts).reduce((sum, number) => sum + number, 0);
+      parts[WAITING] = Math.max(0, total - done);
+      for (const name of new Set([...Object.keys(ROWS).filter((name) => parts[name]), ...Object.keys(parts), ...marks.keys()])) told(name, parts[name] ?? 0);
+      bar.append(marks.get(WAITING).part);
+      legend.append(marks.get(WAITING).line);
+      bar.setAttribute("aria-label", Object.entries(parts).filter(([, number]) => number).map(([name, number]) => `${number} ${label(name)}`).join(", ") || "nothing yet");
       const seconds = job.started ? (job.ended ?? Date.now() / 1000) - job.started : 0;
-      const rate = seconds > 1 && done ? done / seconds : 0;
-      facts.textContent = [total ? `${done} of ${count(total, "row")}` : "The table is read", rate ? `${rate >= 1 ? `${rate.toFixed(1)} rows a second` : `${(60 * rate).toFixed(1)} rows a minute`}` : "",
+      const answered = done - (parts.bad_input ?? 0); // faulty rows take no time
+      const rate = seconds > 1 && answered ? answered / seconds : 0;
+      facts.textContent = [total ? `${amount(done)} of ${amount(total)} ${total === 1 ? "row" : "rows"}` : "The table is read", rate ? `${rate >= 1 ? `${rate.toFixed(1)} rows a second` : `${(60 * rate).toFixed(1)} rows a minute`}` : "",
         rate && total > done && LIVE.includes(job.state) ? `about ${duration((total - done) / rate)} left` : ""].filter(Boolean).join(" · ");
       if (LIVE.includes(job.state) && total && Date.now() - looked > PERIOD) rows();
     },
   };
-  element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "Rows"), bar, legend, facts), h("section", { class: "card" }, table, pager));
+  element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "How the rows stand"), bar, legend, facts),
+    h("section", { class: "card stack" }, h("div", { class: "heading" }, chosen, all), table, h("p", { class: "row" }, earlier, later)), sizesCard(job));
   view.show(job);
   if (!looked) rows();
   return view;
 }
 
-const label = (name) => (name === "waiting" ? "waiting" : (ROWS[name]?.[0] ?? words(name)).toLowerCase());
-
-function share(name, number) {
-  const part = h("span", { class: `share ${name === "waiting" ? "waiting" : ROWS[name]?.[1] ?? ""}`, title: `${number} ${label(name)}` });
-  part.style.flexGrow = String(number);
-  return part;
-}
+const label = (name) => (name === WAITING ? WAITING : (ROWS[name]?.[0] ?? words(name)).toLowerCase());

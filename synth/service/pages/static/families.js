@@ -2,19 +2,24 @@
 
 import { faultCard, get, maySubmit } from "./api.js";
 import { amount, h, symbol, unitText, words } from "./dom.js";
+import { count } from "./words.js";
 
 const place = document.getElementById("families");
 const SECTIONS = [
-  ["needed", "Needed"], ["limit", "Limits"], ["assumption", "Assumptions"], ["option", "Options"], ["variable", "Sizes"], ["count", "Counts"], ["part", "Parts"],
-  ["objective", "Objectives"], ["derived", "Derived quantities"], ["refusal", "What is refused"], ["advice", "Advice"],
+  ["needed", "Needed", "what a study must state"], ["limit", "Limits you may set", "asked only where they are stated"], ["assumption", "Assumptions", "each with a default and its source"],
+  ["option", "Options", "how it is built and what it is judged by"], ["variable", "Sizes", "searched within their ranges"], ["count", "Counts", "whole numbers that are searched"], ["choice", "Choices", ""],
+  ["part", "Parts", "rows of part tables"], ["objective", "Objectives", "what is made small or large"], ["derived", "What follows", "computed by formulas, each with its source"],
+  ["kept", "Limits of the model", "what every design keeps"], ["column", "Columns of parts", "that formulas read"], ["setting", "Settings of simulations", ""], ["refusal", "What is refused", ""], ["advice", "Advice", ""],
 ];
+const TABLE = /^rows of (\w+)/;
+const HEADS = ["Name", "Unit", "Default", "Range or choices", "Meaning", "Source"];
 
 async function begin() {
   try {
     if (place.dataset.family) declaration(await get(`/families/${place.dataset.family}`));
     else list((await get("/families")).families);
   } catch (error) {
-    place.replaceChildren(faultCard(error, () => location.reload()));
+    place.replaceChildren(error.status === 404 ? h("section", { class: "card stack" }, h("h1", {}, "No such family"), h("p", {}, h("a", { href: "/families" }, "To the families"))) : faultCard(error, () => location.reload()));
   }
   place.setAttribute("aria-busy", "false");
 }
@@ -22,27 +27,50 @@ async function begin() {
 function list(families) {
   place.replaceChildren(h("h1", {}, "Families"), h("p", { class: "note lead" }, "What can be designed, and where its formulas come from."),
     h("ul", { class: "offers" }, families.map((family) => h("li", { class: "card stack" }, h("h2", {}, h("a", { href: `/families/${family.name}` }, family.title)), h("p", { class: "grow" }, family.line),
-      h("p", { class: "note" }, `${family.sources.length} sources · ${family.options.length} options`), maySubmit() ? h("p", {}, h("a", { class: "button small", href: `/new?family=${family.name}` }, "New study")) : null))));
+      h("p", { class: "note" }, `${count(family.sources.length, "source")} · ${count(family.options.length, "option")}`), maySubmit() ? h("p", {}, h("a", { class: "button small", href: `/new?family=${family.name}`, "aria-label": `New study: ${family.title}` }, "New study")) : null))));
 }
+
+/** Where a row stands: limits that a model keeps are told apart from those that somebody may set. */
+const sectionOf = (row) => (row.kind === "limit" ? "kept" : row.section);
 
 function declaration(family) {
   document.title = `${family.title} · clutchsynth`;
-  const find = h("input", { type: "search", class: "find", placeholder: "Find a name or a text", "aria-label": "Find a name or a text", oninput: () => {
-    const wanted = find.value.toLowerCase();
-    for (const line of place.querySelectorAll("tbody tr")) line.hidden = !line.textContent.toLowerCase().includes(wanted);
+  const told = h("span", { class: "note", role: "status" });
+  const find = h("input", { type: "search", class: "find", placeholder: "Find a name, a text, a source", "aria-label": "Find a name, a text or a source", oninput: () => {
+    const wanted = find.value.toLowerCase(), lines = [...place.querySelectorAll("tbody tr")];
+    for (const line of lines) line.hidden = !line.textContent.toLowerCase().includes(wanted);
+    for (const one of place.querySelectorAll("section[data-section]")) one.hidden = Boolean(wanted) && !one.querySelector("tbody tr:not([hidden])");
     if (wanted) for (const one of place.querySelectorAll("details")) one.open = true;
+    told.textContent = wanted ? `${lines.filter((line) => !line.hidden).length} found` : "";
   } });
-  place.replaceChildren(h("p", { class: "note" }, h("a", { href: "/families" }, "Families")), h("div", { class: "heading" }, h("h1", {}, family.title), h("div", { class: "row" }, find, maySubmit() ? h("a", { class: "button primary", href: `/new?family=${family.name}` }, "New study") : null)),
+  place.replaceChildren(h("p", { class: "note" }, h("a", { href: "/families" }, "Families")), h("div", { class: "heading" }, h("h1", {}, family.title), h("div", { class: "row" }, told, find, maySubmit() ? h("a", { class: "button primary", href: `/new?family=${family.name}` }, "New study") : null)),
     h("section", { class: "card" }, h("h2", {}, "Sources"), h("ul", { class: "sources" }, family.sources.map((source) => h("li", {}, source)))),
-    ...SECTIONS.map(([name, title]) => section(title, family.rows.filter((row) => row.section === name))).filter(Boolean));
+    ...SECTIONS.map(([name, title, hint]) => section(title, hint, family.rows.filter((row) => sectionOf(row) === name))).filter(Boolean));
 }
 
-function section(title, rows) {
+function section(title, hint, rows) {
   if (!rows.length) return null;
-  return h("section", { class: "card" }, h("details", { open: title === "Needed" }, h("summary", {}, h("h2", {}, title), h("span", { class: "note" }, String(rows.length))), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": title }, h("table", { class: "declared" },
-    h("thead", {}, h("tr", {}, ["Name", "Unit", "Default", "Range or choices", "Meaning", "Source"].map((name) => h("th", { scope: "col" }, name)))),
-    h("tbody", {}, rows.map((row) => h("tr", {}, h("th", { scope: "row" }, h("code", {}, row.name), " ", symbol(row.symbol)), h("td", {}, unitText(row.unit)), h("td", { class: "default" }, row.optional && row.default === null ? "not asked" : amount(row.default)),
-      h("td", { class: "choices" }, row.choices || (row.lower === null ? "" : `${amount(row.lower)} … ${amount(row.upper)}`)), h("td", { class: "text" }, row.text), h("td", { class: "text note" }, row.source))))))));
+  const empty = (head) => rows.every((row) => cellOf(row)[head] === null);
+  const heads = HEADS.filter((head) => head === "Name" || !empty(head));
+  const groups = [...new Set(rows.map((row) => row.group ?? ""))];
+  const lines = (group) => rows.filter((row) => (row.group ?? "") === group).map((row) => h("tr", {}, heads.map((head) => (head === "Name" ? h("th", { scope: "row" }, h("code", {}, row.name), " ", symbol(row.symbol)) : h("td", { class: { Meaning: "text", Source: "text note", Default: "default", "Range or choices": "choices" }[head] ?? "" }, cellOf(row)[head])))));
+  return h("section", { class: "card", "data-section": title }, h("details", { open: title === "Needed" }, h("summary", {}, h("h2", {}, title), h("span", { class: "note" }, [rows.length, hint].filter(Boolean).join(" · "))), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": title }, h("table", { class: "declared" },
+    h("thead", {}, h("tr", {}, heads.map((name) => h("th", { scope: "col" }, name)))),
+    groups.map((group) => h("tbody", {}, group && groups.length > 1 ? h("tr", { class: "group" }, h("th", { scope: "rowgroup", colspan: heads.length }, words(group))) : null, lines(group)))))));
+}
+
+/** Return what stands in the columns; null where nothing does. */
+function cellOf(row) {
+  const table = TABLE.exec(row.choices ?? "")?.[1];
+  const ranged = row.lower !== null && row.lower !== undefined || row.upper !== null && row.upper !== undefined;
+  return {
+    Unit: unitText(row.unit) || null,
+    Default: row.optional && row.default === null ? "not asked" : row.default === null || row.default === "" ? null : amount(row.default),
+    "Range or choices": table ? ["rows of ", h("a", { href: `/catalogues?table=${table}` }, words(table)), row.choices.slice("rows of ".length + table.length)]
+      : row.choices || (ranged ? `${row.lower === null ? "" : amount(row.lower)} … ${row.upper === null ? "" : amount(row.upper)}` : null),
+    Meaning: row.text || null,
+    Source: row.source || null,
+  };
 }
 
 begin();

@@ -15,6 +15,6 @@ export async function filesCard(element, job) {
   const link = (file, button) => h("a", { class: button ? "button" : "", href: file.href, download: file.name.split("/").at(-1) }, button ? MEANS[file.name] : file.name);
   const first = Object.keys(MEANS).map((name) => files.find((file) => file.name === name)).filter(Boolean);
   const rest = files.filter((file) => !MEANS[file.name]);
-  element.append(h("section", { class: "card" }, h("h2", {}, "Take it away"), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
-    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more files`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
+  element.append(h("section", { class: "card files-card" }, h("h2", {}, "Take it away"), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
+    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "file" : "files"}`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
 }

@@ -6,6 +6,7 @@ import { duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
 import { filesCard } from "./files_card.js";
 import { nothingView } from "./nothing_view.js";
+import { sizesView } from "./sizes_card.js";
 import { watchView } from "./watch_view.js";
 import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 
@@ -139,6 +140,7 @@ async function ended() {
     else if (job.kind === "explain") await nothingView(slot, job, job);
     else if (job.kind === "synthesis" && job.summary?.outcome === "infeasible") await nothingView(slot, job, null);
     else if (job.kind === "synthesis" && job.summary?.designs) await frontView(slot, job, place.dataset.explorer);
+    else if (job.kind === "size_range" && job.summary?.variants) await sizesView(slot, job);
     else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
     await filesCard(below, job);
   } catch (error) {

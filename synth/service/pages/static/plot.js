@@ -2,7 +2,8 @@
 
 import { amount, h, s, unitText, words } from "./dom.js";
 
-const WIDE = 720, HIGH = 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = 5;
+const NARROW = matchMedia("(max-width: 620px)").matches; // letters of a drawing shrink with it
+const WIDE = NARROW ? 360 : 720, HIGH = NARROW ? 270 : 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = NARROW ? 3 : 5;
 
 /** Return round numbers that cover a range. */
 function ticks(low, high) {

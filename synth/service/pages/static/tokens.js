@@ -19,11 +19,13 @@ async function begin() {
 
 async function list() {
   const { tokens } = await get("/tokens");
+  const over = (token) => Boolean(token.revoked) || (token.expires !== null && token.expires < Date.now() / 1000);
+  tokens.sort((a, b) => over(a) - over(b) || b.created - a.created);
   listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
-    h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Last used", "Valid until", ""].map((name) => h("th", { scope: "col" }, name)))),
-    h("tbody", {}, tokens.map((token) => h("tr", {}, h("th", { scope: "row" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, token.used ? when(token.used) : "never"),
+    h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Made", "Last used", "Valid until"].map((name) => h("th", { scope: "col" }, name)), h("td", {}, h("span", { class: "unseen" }, "What can be done")))),
+    h("tbody", {}, tokens.map((token) => h("tr", { class: over(token) ? "over" : "" }, h("th", { scope: "row", class: "text" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, when(token.created)), h("td", {}, token.used ? when(token.used) : "never"),
       h("td", {}, token.expires ? new Date(1000 * token.expires).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" }) : "for ever"),
-      h("td", {}, token.revoked ? h("span", { class: "badge" }, "revoked") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
+      h("td", {}, over(token) ? h("span", { class: "badge" }, token.revoked ? "revoked" : "run out") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
     : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. Make one that may admin first, or you lock yourself out."));
 }
 
@@ -49,13 +51,23 @@ function making() {
   const days = h("input", { id: "days", inputmode: "numeric", autocomplete: "off", placeholder: "365" });
   const boxes = SCOPES.map(([scope, text]) => h("label", {}, h("input", { type: "checkbox", value: scope, checked: scope !== "admin" }), scope, h("span", { class: "note" }, text)));
   const fault = h("p", { class: "fault", role: "alert" });
-  const labelled = (text, field) => h("p", { class: "labelled" }, h("label", { for: field.id }, text), field);
+  const faults = {};
+  const labelled = (text, field) => {
+    faults[field.id] = h("span", { class: "fault", id: `${field.id}-fault` });
+    field.setAttribute("aria-describedby", `${field.id}-fault`);
+    return h("p", { class: "labelled" }, h("label", { for: field.id }, text), field, faults[field.id]);
+  };
+  const fields = { name, tenant, days };
   return h("form", { class: "card stack", novalidate: true, onsubmit: async (event) => {
     event.preventDefault();
     fault.textContent = "";
+    for (const [id, field] of Object.entries(fields)) {
+      faults[id].textContent = "";
+      field.removeAttribute("aria-invalid");
+    }
     const body = { name: name.value.trim(), scopes: boxes.map((box) => box.querySelector("input")).filter((box) => box.checked).map((box) => box.value) };
     if (tenant.value.trim()) body.tenant = tenant.value.trim();
-    if (days.value.trim()) body.days = Number(days.value);
+    if (days.value.trim()) body.days = /^[\d.]+$/.test(days.value.trim()) ? Number(days.value) : days.value.trim();
     try {
       const token = await post("/tokens", body);
       const copy = h("button", { type: "button", class: "small", onclick: () => navigator.clipboard?.writeText(token.value).then(() => { copy.textContent = "Copied"; }) }, "Copy");
@@ -66,9 +78,12 @@ function making() {
       if (open.ok) await list();
       else listed.replaceChildren();
     } catch (error) {
-      fault.textContent = sentence(error.message);
+      const at = error.problems?.find((problem) => fields[problem.path.at(-1)]);
+      (at ? faults[at.path.at(-1)] : fault).textContent = sentence(at?.message ?? error.message);
+      fields[at?.path.at(-1)]?.setAttribute("aria-invalid", "true");
+      fields[at?.path.at(-1)]?.focus();
     }
-  } }, h("h2", {}, "Make a token"), h("div", { class: "asks" }, labelled("Name", name), labelled("Tenant", tenant), labelled("Days", days)), h("div", { class: "objectives", role: "group", "aria-label": "What it may" }, boxes), fault, h("p", {}, h("button", { type: "submit", class: "primary" }, "Make it")));
+  } }, h("h2", {}, "Make a token"), h("div", { class: "asks" }, labelled("Name", name), labelled("Tenant", tenant), labelled("Valid for, in days", days)), h("div", { class: "objectives", role: "group", "aria-label": "What it may" }, boxes), fault, h("p", {}, h("button", { type: "submit", class: "primary" }, "Make it")));
 }
 
 begin();

@@ -35,7 +35,8 @@ export function outcomeText(job) {
   if (job.state === "failed") return job.error?.message ?? "Failed";
   if (job.kind === "batch" && facts.rows) {
     const status = facts.status ?? {};
-    const parts = Object.entries(status).map(([name, number]) => `${number} ${ROWS[name]?.[0].toLowerCase() ?? words(name)}`);
+    const names = [...Object.keys(ROWS).filter((name) => status[name]), ...Object.keys(status).filter((name) => !ROWS[name])];
+    const parts = names.map((name) => [name, status[name]]).map(([name, number]) => `${number} ${ROWS[name]?.[0].toLowerCase() ?? words(name)}`);
     return `${count(facts.rows, "row")}: ${parts.join(", ")}`;
   }
   if (job.state === "cancelled") return "Cancelled";
@@ -43,6 +44,7 @@ export function outcomeText(job) {
   if (job.state === "stopped") return found ? `Stopped at a limit, ${found} kept` : "Stopped at a limit of time or memory";
   if (job.outcome === "infeasible") return job.kind === "explain" ? count(facts.ways ?? 0, "way out", "ways out") : "Nothing is feasible";
   if (job.outcome === "not_solved") return "No answer within the time";
+  if (job.kind === "size_range" && facts.variants) return `${count(facts.variants, "size")} for all rows that can be served`;
   if (found) return `${found}, ${facts.certificate === "global" && !facts.interrupted ? "proven" : "not proven to be the best"}`;
   return "Done";
 }
@@ -59,8 +61,15 @@ export function badge(job) {
   return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
 }
 
-// Of rows of a batch: words, and the class of their share in the bar.
+// Of rows of a batch: words, the class of their share in the bar and of their badge, and a mark.
 export const ROWS = {
-  optimal: ["Optimal", "good"], feasible: ["Feasible", "fair"], infeasible: ["Not feasible", "warn"], not_solved: ["Not solved", "soft"],
-  refused: ["Refused", "warn"], bad_input: ["Faulty", "bad"], failed: ["Failed", "bad"],
+  optimal: ["Optimal", "good", "✓"], feasible: ["Feasible", "fair", "✓"], infeasible: ["Not feasible", "warn", "!"], not_solved: ["Not solved", "soft", "○"],
+  refused: ["Refused", "warn", "–"], bad_input: ["Faulty", "bad", "✗"], failed: ["Failed", "bad", "✗"],
 };
+
+/** Return how a row stands, as a badge. */
+export function rowBadge(status) {
+  const known = words(status || "waiting");
+  const [text, kind, mark] = ROWS[status] ?? [known[0].toUpperCase() + known.slice(1), "", "○"];
+  return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
+}

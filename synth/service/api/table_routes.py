@@ -1,0 +1,79 @@
+"""The part tables that come with the families."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Request, Response
+from pydantic import BaseModel
+
+from synth.jobs.engine_tasks import TABLE_TASK, TABLES_TASK
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged
+from synth.service.api.family_routes import remembered
+from synth.service.auth import Reader
+from synth.service.context import API, Context
+from synth.service.errors import JSON, not_found
+
+router = APIRouter(prefix=API, tags=["catalogues"])
+
+
+class TableEntry(BaseModel):
+    """A table as lists show it."""
+
+    name: str
+    rows: int
+    families: list[str]
+
+
+class TableList(BaseModel):
+    """All tables that come with the families."""
+
+    tables: list[TableEntry]
+
+
+class ShippedColumn(BaseModel):
+    """A column of a part table; `lower` and `upper` are what is plausible, in its unit."""
+
+    name: str
+    unit: str | None
+    symbol: str
+    text: str
+    lower: float | None
+    upper: float | None
+
+
+class TableAnswer(BaseModel):
+    """A table: cells in the units of the columns, nothing where a value is not known."""
+
+    name: str
+    families: list[str]
+    columns: list[ShippedColumn]
+    rows: list[list[float | str | None]]
+
+
+@router.get("/tables", response_model=TableList, responses=NOT_MODIFIED, summary="Tables of the families")
+async def list_tables(request: Request, principal: Reader, context: Context) -> Response:
+    """Tell which part tables there are before anybody brings one, and which families take parts from them."""
+    found = await remembered(context, (TABLES_TASK,), TABLES_TASK, {})
+    return _answer(request, {"tables": found["tables"]}, found["code"])
+
+
+@router.get("/tables/{name}", response_model=TableAnswer, responses=NOT_MODIFIED, summary="One of these tables")
+async def read_table(
+    request: Request,
+    name: Annotated[str, Path(max_length=LONGEST, pattern=WORD, description="Name of a table.")],
+    principal: Reader,
+    context: Context,
+) -> Response:
+    """Give a part table with its units, and with source and confidence of each row."""
+    known = await remembered(context, (TABLES_TASK,), TABLES_TASK, {})
+    if name not in {one["name"] for one in known["tables"]}:
+        raise not_found()
+    found = await remembered(context, (TABLE_TASK, name), TABLE_TASK, {"table": name})
+    return _answer(request, found["table"], found["code"])
+
+
+def _answer(request: Request, told: Any, digest: str) -> Response:
+    content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
+    return tagged(request, content, JSON, f'"{digest}"')
