@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import traceback
 from numbers import Integral
 from types import TracebackType
 from typing import Any
@@ -11,6 +13,8 @@ from synth.plain_text import printable
 
 Key = str | int
 EXPECTED = 8  # times as much room for what is right: that lists names of ours
+EXACT = 2**53  # whole numbers of JSON that every reader knows exactly are smaller
+PLACES = 20  # where an error was raised that are told
 
 
 class InputError(ValueError):
@@ -41,6 +45,21 @@ class InputError(ValueError):
         place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
         right = shortened(expected, EXPECTED * INPUT_LIMITS.message)
         super().__init__(printable(f"{place}: {got}; expected {right}"))
+
+    def told(self) -> dict[str, Any]:
+        """Return it as JSON holds it, for programs and for people.
+
+        Examples
+        --------
+        >>> told = InputError("points", float("inf"), "a whole number", ("points",)).told()
+        >>> told["path"], told["value"], told["expected"]
+        (['points'], 'inf', 'a whole number')
+        """
+        value = self.value
+        plain = value is None or isinstance(value, (bool, int)) or (isinstance(value, float) and math.isfinite(value))
+        if not plain or (isinstance(value, int) and abs(value) >= EXACT):
+            value = shortened(str(value))
+        return {"path": list(self.path), "value": value, "expected": self.expected, "message": str(self)}
 
     def under(self, *keys: Key) -> InputError:
         """Put keys in front of the path, as a reader that was given a part of the input; return the same error."""
@@ -106,6 +125,12 @@ class at:
     ) -> None:
         if isinstance(error, InputError):
             error.under(*self.keys)
+
+
+def where_raised(error: BaseException) -> list[str]:
+    """Return where an error was raised, innermost first, without what it says: that may be what somebody has asked."""
+    frames = traceback.extract_tb(error.__traceback__)
+    return [f"{frame.filename}:{frame.lineno} {frame.name}" for frame in reversed(frames)][:PLACES]
 
 
 def shortened(text: str, most: int = INPUT_LIMITS.message) -> str:

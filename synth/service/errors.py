@@ -24,12 +24,13 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from synth.errors import InputError, shortened
-from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.errors import InputError
+from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
+FAILED = "something went wrong in the program that computes; please tell the request_id"
 NO_HEADERS: Mapping[str, str] = MappingProxyType({})
 CODES: Mapping[int, str] = MappingProxyType(
     {
@@ -131,7 +132,7 @@ class ServiceError(Exception):
     code : str, optional
         For programs; by default that of the status.
     problems : sequence, optional
-        What is wrong in the input, place by place, as :func:`problem` makes them.
+        What is wrong in the input, place by place, as ``InputError.told`` tells it.
     headers : mapping, optional
     """
 
@@ -158,18 +159,9 @@ def not_found(what: str = "there is nothing here, or it is not yours") -> Servic
     return ServiceError(404, what)
 
 
-def problem(error: InputError) -> dict[str, Any]:
-    """Return what is wrong in the input, as programs read it."""
-    value = error.value
-    shown = value if value is None or isinstance(value, (bool, int, float)) else shortened(str(value))
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        shown = value if abs(value) < 1e300 else shortened(str(value))  # neither infinity nor NaN is JSON
-    return {"path": list(error.path), "value": shown, "expected": error.expected, "message": str(error)}
-
-
 def refusal_of(error: InputError) -> ServiceError:
     """Return the refusal of a request whose input is wrong."""
-    return ServiceError(422, str(error), problems=[problem(error)])
+    return ServiceError(422, str(error), problems=[error.told()])
 
 
 def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, Any]] = ()) -> bytes:
@@ -203,7 +195,7 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
         async def handle(request: Request, error: Exception) -> Response:
             refusal: ServiceError = make(error)
             if refusal.status >= 500:
-                request.scope["state"]["failure"] = type(error).__name__  # for the log
+                request.scope["state"]["failure"] = _for_the_log(error)
             return error_response(refusal, request_id_of(request))
 
         app.add_exception_handler(kind, handle)
@@ -219,10 +211,18 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
     told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
+    told(EngineFailedError, lambda _: ServiceError(500, FAILED, "engine_failed"))
     told(EngineCrashedError, later("the process that computes has ended; please come again"))
     told(OperationalError, away)
     told(InterfaceError, away)
     told(PoolTimeoutError, away)
+
+
+def _for_the_log(error: Exception) -> dict[str, Any]:
+    """Return what the log tells of an error: of one in another process where it was raised there."""
+    if isinstance(error, EngineFailedError):
+        return {"error": error.failure.kind, "where": list(error.failure.where)}
+    return {"error": type(error).__name__}
 
 
 def request_id_of(request: Request) -> str:
@@ -250,7 +250,7 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
     found = error.errors()
     if any(fault["type"] == "json_invalid" for fault in found):
         return ServiceError(400, "the body is not JSON", "not_json")
-    problems = [problem(_fault(told)) for told in found]
+    problems = [_fault(told).told() for told in found]
     return ServiceError(422, str(problems[0]["message"]), problems=problems)
 
 

@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
-from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError, Failure
 from synth.service.errors import ServiceError
 from synth.service.recording import LOG
 from synth.service.security import SESSION_COOKIES, check_json
@@ -105,6 +105,7 @@ def added(service: Service, raised: BaseException) -> None:
         (InputError("--database", "jobs.sqlite", "a job database that is whole"), 503, "unavailable"),
         (EngineTimeoutError("check: more than 5 s"), 503, "unavailable"),
         (EngineCrashedError("the process ended with code 1"), 503, "unavailable"),
+        (EngineFailedError(Failure("KeyError", "secret", ("small.py:7 check",))), 500, "engine_failed"),
         (ServiceError(409, "it has ended", "ended"), 409, "ended"),
         (RuntimeError("the answer is secret"), 500, "internal"),
     ],
@@ -130,6 +131,18 @@ def test_an_error_tells_its_number_alone_and_the_log_where_it_was(
     assert line["request_id"] == answer.headers["x-request-id"]
     assert line["error"] == "RuntimeError"
     assert any("test_security" in place for place in line["where"])
+
+
+def test_an_error_of_what_computes_is_told_by_its_number_and_logged_with_its_place(
+    service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
+    added(service, EngineFailedError(Failure("KeyError", "the answer is secret", ("small.py:7 check",))))
+    with caplog.at_level(logging.INFO, LOG.name):
+        answer = service("GET", "/fail?spec=secret")
+    (line,) = [json.loads(record.message) for record in caplog.records]
+    assert "secret" not in answer.text + json.dumps(line)
+    assert (line["error"], line["where"]) == ("KeyError", ["small.py:7 check"])
+    assert line["request_id"] == answer.json()["error"]["request_id"]
 
 
 def test_a_database_that_is_away_is_waited_for(service: Service) -> None:

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
-from synth.errors import InputError, at, shortened
+from synth.errors import InputError, at
 from synth.jobs.kinds import comparison, synthesis
 from synth.jobs.kinds.asked import FAMILY, OF, SPEC, WHERE, catalogs_of, checked_keys, digests, settings_of, spec_of
 from synth.jobs.kinds.contract import NOTHING, Sources
@@ -229,7 +229,7 @@ class _Check:
             self._one_family(spec)
         return {
             "ready": not self.faults,
-            "problems": [told_fault(fault) for fault in self.faults],
+            "problems": [fault.told() for fault in self.faults],
             "read": self.read,
             "combinations": None if self.faults else self.combinations,
         }
@@ -381,11 +381,3 @@ def _left_out(spec: dict[str, Any], fault: InputError) -> bool:
         return False
     spec[key] = {word: value for word, value in entries.items() if word != name}
     return True
-
-
-def told_fault(fault: InputError) -> dict[str, Any]:
-    """Return a fault as JSON holds it."""
-    value = fault.value
-    if value is not None and not isinstance(value, bool):
-        value = shortened(value if isinstance(value, str) else repr(value))
-    return {"path": list(fault.path), "value": value, "expected": fault.expected, "message": str(fault)}
