@@ -40,7 +40,8 @@ class InputError(ValueError):
         self.value = value
         self.expected = expected
         self.path = path
-        got = "is missing" if value is None else f"got {shortened(repr(value))}"
+        shown = str(value).lower() if isinstance(value, bool) else repr(value)  # as files have it
+        got = "is missing" if value is None else f"got {shortened(shown)}"
         # A field names a place in a file: each of the two may be as long as a value.
         place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
         right = shortened(expected, EXPECTED * INPUT_LIMITS.message)

@@ -31,7 +31,7 @@ def must_be_a_design(asked: Spec) -> None:
         raise InputError(
             f"{asked.file}: values",
             None,
-            "the variables, counts and choices of the design (clutchsynth run takes a question)",
+            "the variables, counts and choices of the design; without them it is a question",
             ("values",),
         )
     if asked.fix:

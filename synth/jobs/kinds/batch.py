@@ -27,7 +27,7 @@ from synth.jobs.row_table import EXCEL, RowTable, read_table
 from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import shown_kind
+from synth.question.spec_keys import Described, shown_kind
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")
@@ -35,6 +35,8 @@ KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "tim
 KEYS = (UPLOAD, ROWS, *KEPT)
 SUMMARY = "batch.json"
 FILES = ("designs.csv", "rows.csv", SUMMARY)
+STATED = "rows.json"  # what rows are kept as that stand in a request
+ROW = '{"load_torque": "600 N*m"}'
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -157,15 +159,31 @@ def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:
         given = "both upload and rows" if UPLOAD in stated else None
         raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
     if ROWS in stated:
-        rows = stated[ROWS]
-        if not isinstance(rows, list) or not rows or not all(isinstance(row, Mapping) for row in rows):
-            right = "a list with an object for each row, such as {'load_torque': '600 N*m'}"
-            raise InputError(f"{WHERE}: {ROWS}", shown_kind(rows), right, (ROWS,))
-        return Record.of("rows.json", json.dumps(rows, ensure_ascii=False))
+        return Record.of(STATED, json.dumps(_stated_rows(stated[ROWS]), ensure_ascii=False))
     found = sources.files.get(stated[UPLOAD]) if isinstance(stated[UPLOAD], str) else None
     if found is None:
         raise InputError(f"{WHERE}: {UPLOAD}", stated[UPLOAD], "the id of a file that was uploaded", (UPLOAD,))
     return Record.of(f"{Path(found.name).stem or 'rows'}{_ending(found.name)}", found.content)
+
+
+def _stated_rows(rows: Any) -> list[Any]:
+    """Return rows that stand in a request.
+
+    Raises
+    ------
+    InputError
+        They are no list, there is none, or one of them is none.
+    """
+    with at(ROWS):
+        if not isinstance(rows, list) or not rows:
+            raise InputError(f"{WHERE}: {ROWS}", shown_kind(rows), f"a list with an object for each row, such as {ROW}")
+        for k, row in enumerate(rows):
+            if not isinstance(row, Mapping):
+                raise InputError(f"{WHERE}: {ROWS}: entry {k + 1}", shown_kind(row), f"an object such as {ROW}", (k,))
+        if not any(rows):
+            right = f"names with values in them, such as {ROW}"
+            raise InputError(f"{WHERE}: {ROWS}", Described("empty objects"), right)
+    return rows
 
 
 def _ending(name: str) -> str:

@@ -31,7 +31,7 @@ from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.requirement_values import missing, value_of
 from synth.question.spec import spec_from_mapping
-from synth.question.spec_keys import FIELDS, asks_several
+from synth.question.spec_keys import FIELDS, asks_several, no_family
 from synth.question.uncertainty import read_remaining
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
@@ -220,8 +220,7 @@ class _Check:
         family = spec.get(FAMILY)
         if family is None:
             if isinstance(request, Mapping) and not any(fault.path[:1] == (FAMILY,) for fault in self.faults):
-                right = "the name of a family; clutchsynth families lists them"
-                self.faults.append(InputError(f"{WHERE}: {FAMILY}", None, right, (FAMILY,)))
+                self.faults.append(no_family(WHERE))
         elif asks_several(family):
             if not self.faults:
                 self._caught(comparison.read, spec, self.sources)

@@ -346,3 +346,54 @@ def test_a_front_that_was_changed_is_found_out() -> None:
     other = Sources(records={"front": {**disc(), "calculation.json": b"{}"}})
     found = json.loads(done("verify", {"of": "front"}, other)["verification.json"])
     assert [finding for finding in found["findings"] if "calculation.json" in finding]
+
+
+# ---- words ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["prices", "near_equals", "rate", "verify", "report", "synthesis", "explain", "whatif"]
+)
+def test_an_earlier_job_that_has_not_what_is_wanted_is_not_told_as_missing(name: str) -> None:
+    sources = Sources(records={"table": {"table.json": b"[]"}, "priced": {"question.json": b'{"kind": "prices"}'}})
+    request = {"of": "table", **({"vary": {"load_torque": span(2)}} if name == "whatif" else {})}
+    found = fault(name, request, sources)
+    assert (found.path, str(found.value)) == (("of",), "a batch")
+    assert str(found).startswith("request: of: got a batch; expected a job that ")
+    assert "got a job of the kind prices" in str(fault(name, {**request, "of": "priced"}, sources))
+    assert "question.json" not in str(found)
+
+
+@pytest.mark.parametrize(
+    ("rows", "path", "told"),
+    [
+        ([], ("rows",), "request: rows: got an empty list"),
+        ({}, ("rows",), "request: rows: got an empty mapping"),
+        ([{"load_torque": "50 N*m"}, 1], ("rows", 1), "request: rows: entry 2: got 1; expected an object such as"),
+        ([{}, {}], ("rows",), "request: rows: got empty objects; expected names with values in them, such as"),
+    ],
+)
+def test_rows_that_are_none_are_told_as_what_they_are(rows: Any, path: tuple[Any, ...], told: str) -> None:
+    found = fault("batch", {"family": "disc_clutch", "rows": rows})
+    assert found.path == path
+    assert str(found).startswith(told)
+    assert "'" not in str(found)  # examples are JSON
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"objectives": []}, "objectives: got an empty list; expected at least one of "),
+        ({"limits": {"mass": "<= "}}, "limits: mass: got '<= '; expected a comparison, for example '<= 260 kg'"),
+        ({"limits": {"mass": "<="}}, "limits: mass: got '<='; expected a comparison, for example '<= 260 kg'"),
+        ({"points": True}, "request: points: got true; expected a whole number"),
+        ({"family": None}, "request: family: is missing; expected the name of a family: "),
+        ({"family": "any"}, "one family; to ask several is a comparison"),
+        ({"options": {"practice": 3}}, "one of its words, as the family declares them"),
+        ({"limits": {"colour": "<= 3"}}, "a quantity of disc_clutch; its description lists them"),
+    ],
+)
+def test_what_is_there_is_told_as_it_is_in_words_without_commands(change: dict[str, Any], told: str) -> None:
+    found = str(fault("synthesis", {**DISC, **change}))
+    assert told in found
+    assert "clutchsynth" not in found
