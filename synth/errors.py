@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import traceback
+from collections.abc import Sequence
 from numbers import Integral
 from types import TracebackType
 from typing import Any
@@ -62,6 +63,10 @@ class InputError(ValueError):
             value = shortened(str(value))
         return {"path": list(self.path), "value": value, "expected": self.expected, "message": str(self)}
 
+    def every(self) -> tuple[InputError, ...]:
+        """Return everything that is wrong, one by one: this alone."""
+        return (self,)
+
     def under(self, *keys: Key) -> InputError:
         """Put keys in front of the path, as a reader that was given a part of the input; return the same error."""
         self.path = (*keys, *self.path)
@@ -70,6 +75,35 @@ class InputError(ValueError):
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, tuple[Key, ...]]]:
         """Pickle by the four fields, so that worker processes can hand it on."""
         return type(self), (self.field, self.value, self.expected, self.path)
+
+
+class SeveralErrors(InputError):
+    """Several things are wrong at once; it is told as the first of them, and has the others beside it.
+
+    Parameters
+    ----------
+    faults : sequence of InputError
+        At least one.
+    """
+
+    def __init__(self, faults: Sequence[InputError]) -> None:
+        first = faults[0]
+        super().__init__(first.field, first.value, first.expected, first.path)
+        self.faults = tuple(faults)
+
+    def every(self) -> tuple[InputError, ...]:
+        """Return everything that is wrong, one by one."""
+        return self.faults
+
+    def under(self, *keys: Key) -> InputError:
+        """Put keys in front of all paths."""
+        for fault in self.faults:
+            fault.under(*keys)
+        return super().under(*keys)
+
+    def __reduce__(self) -> tuple[type[SeveralErrors], tuple[tuple[InputError, ...]]]:  # type: ignore[override]
+        """Pickle by what is wrong."""
+        return type(self), (self.faults,)
 
 
 class UnknownOptionError(InputError):

@@ -244,7 +244,11 @@ class Worker:
                 self._broken(task, message.content)
         elif message.kind == REFUSED:
             refusal: InputError = message.content
-            error = {"code": "bad_input", "message": str(refusal), "problems": [refusal.told()]}
+            error = {
+                "code": "bad_input",
+                "message": str(refusal),
+                "problems": [fault.told() for fault in refusal.every()],
+            }
             self._end(task, Ending(state=FAILED, error=error))
         elif message.kind != ANSWERED:
             self._broken(task, message.content)

@@ -161,7 +161,7 @@ def not_found(what: str = "there is nothing here, or it is not yours") -> Servic
 
 def refusal_of(error: InputError) -> ServiceError:
     """Return the refusal of a request whose input is wrong."""
-    return ServiceError(422, str(error), problems=[error.told()])
+    return ServiceError(422, str(error), problems=[fault.told() for fault in error.every()])
 
 
 def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, Any]] = ()) -> bytes:

@@ -40,7 +40,9 @@ ROW = '{"load_torque": "600 N*m"}'
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
-    """Check a request: its table as a whole, and its settings; the rows are checked when it is planned.
+    """Check a request: its table as a whole, its settings, and rows until one can be asked.
+
+    All of them are checked when it is planned.
 
     Raises
     ------
@@ -51,12 +53,13 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     table = table_of(stated, sources)
     kept = {key: value for key, value in stated.items() if key in KEPT}
     with _job(kept, table, sources) as job:
+        job.refuse_hopeless(KIND_SETTINGS.checked_seconds)
         count = counted_lines(job.table)
-        name = f"{job.table.name}: {count} rows"
+        counted = f"{count} row{'' if count == 1 else 's'}"
         asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
         return Posed(
             request=asked,
-            title=name,
+            title=counted if table.name == STATED else f"{job.table.name}: {counted}",
             families=tuple(sorted(job.questioner.named)),
             bulk=True,
             tables=digests(kept.get("catalogs"), sources),
@@ -180,9 +183,9 @@ def _stated_rows(rows: Any) -> list[Any]:
         for k, row in enumerate(rows):
             if not isinstance(row, Mapping):
                 raise InputError(f"{WHERE}: {ROWS}: entry {k + 1}", shown_kind(row), f"an object such as {ROW}", (k,))
-        if not any(rows):
+        if all(value in (None, "") for row in rows for value in row.values()):
             right = f"names with values in them, such as {ROW}"
-            raise InputError(f"{WHERE}: {ROWS}", Described("empty objects"), right)
+            raise InputError(f"{WHERE}: {ROWS}", Described("objects without values"), right)
     return rows
 
 

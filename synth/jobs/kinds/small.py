@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
-from synth.errors import InputError, at
+from synth.errors import InputError, SeveralErrors, at
 from synth.jobs.kinds import comparison, synthesis
 from synth.jobs.kinds.asked import FAMILY, OF, SPEC, WHERE, catalogs_of, checked_keys, digests, settings_of, spec_of
 from synth.jobs.kinds.contract import NOTHING, Sources
@@ -203,6 +203,14 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
         it is ready and asks one family.
     """
     return _Check(sources, settings).of(request)
+
+
+def all_faults(request: Mapping[str, Any], sources: Sources, first: InputError) -> InputError:
+    """Return a refusal that has, beside the fault that was found first, everything else that is wrong with a spec."""
+    check = _Check(sources, KIND_SETTINGS)
+    check.of({key: value for key, value in request.items() if key in (*SPEC, OF)})
+    found = check.faults if any(fault.path == first.path for fault in check.faults) else [first, *check.faults]
+    return SeveralErrors(found) if len(found) > 1 else first
 
 
 class _Check:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -11,8 +12,10 @@ from typing import Any
 import pytest
 
 from synth.errors import InputError
+from synth.jobs.engine_work import read
 from synth.jobs.kinds import KINDS, Sources, kind
 from synth.jobs.kinds.contract import mentioned
+from synth.jobs.kinds.small import check
 from synth.question.spec_patch import patched
 from synth.results.loading import front_of_record
 from synth.tables.catalogs import Catalogs
@@ -348,6 +351,29 @@ def test_a_front_that_was_changed_is_found_out() -> None:
     assert [finding for finding in found["findings"] if "calculation.json" in finding]
 
 
+def test_a_table_of_which_no_row_can_be_asked_is_refused_with_the_faults_of_its_rows() -> None:
+    duty = DISC["requirements"]
+    rows: list[dict[str, Any]] = [{**duty, "load_torque": "many"}, {**duty, "driver_speed": "fast"}]
+    found = fault("batch", {"family": "disc_clutch", "rows": rows})
+    assert [one.path for one in found.every()] == [("rows", 2, "load_torque"), ("rows", 3, "driver_speed")]
+    assert "none of 2 rows can be asked" in str(found)
+    accepted = posed("batch", {"family": "disc_clutch", "rows": [*rows, duty]})
+    assert (accepted.rows, accepted.title) == (3, "3 rows")
+    assert posed("batch", {"family": "disc_clutch", "rows": [duty]}).title == "1 row"
+
+
+def test_everything_that_is_wrong_with_a_spec_is_told_when_it_is_asked() -> None:
+    wrong = {**DISC, "points": 0, "limits": {"mass": "<= 3 s"}, "requirements": {"load_torque": "much"}}
+    payload = {"kind": "synthesis", "request": wrong, "sources": Sources()}
+    with pytest.raises(InputError) as caught:
+        read(payload, lambda state: None)
+    again = pickle.loads(pickle.dumps(caught.value))
+    told = [fault.told() for fault in again.every()]
+    assert told == check(wrong)["problems"]
+    assert len(told) > 3
+    assert str(again) == told[0]["message"]
+
+
 # ---- words ----------------------------------------------------------------------------------------------------------
 
 
@@ -370,7 +396,11 @@ def test_an_earlier_job_that_has_not_what_is_wanted_is_not_told_as_missing(name:
         ([], ("rows",), "request: rows: got an empty list"),
         ({}, ("rows",), "request: rows: got an empty mapping"),
         ([{"load_torque": "50 N*m"}, 1], ("rows", 1), "request: rows: entry 2: got 1; expected an object such as"),
-        ([{}, {}], ("rows",), "request: rows: got empty objects; expected names with values in them, such as"),
+        (
+            [{}, {"a": ""}],
+            ("rows",),
+            "request: rows: got objects without values; expected names with values in them",
+        ),
     ],
 )
 def test_rows_that_are_none_are_told_as_what_they_are(rows: Any, path: tuple[Any, ...], told: str) -> None:
