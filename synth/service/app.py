@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from importlib.metadata import version
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.middleware import Middleware
 
@@ -25,6 +25,7 @@ from synth.service.api import (
     result_routes,
     tenant_routes,
 )
+from synth.service.api.asking import known_query
 from synth.service.attempts import FailedTokens
 from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
 from synth.service.errors import REFUSALS, register_errors
@@ -96,7 +97,7 @@ def create_app(
     app.state.context = context
     register_errors(app, settings.retry_after)
     for router in ROUTERS:
-        app.include_router(router, responses=REFUSALS)
+        app.include_router(router, responses=REFUSALS, dependencies=[Depends(known_query)])
     for router in OUTSIDE:
         app.include_router(router, include_in_schema=False)
     return app

@@ -75,6 +75,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "dict_type": "a JSON object",
         "model_type": "a JSON object",
         "model_attributes_type": "a JSON object",
+        "value_error": "a file with its content",
     }
 )
 
@@ -240,7 +241,11 @@ def _of_input(error: InputError) -> ServiceError:
 
 
 def _of_http(error: HTTPException) -> ServiceError:
-    sentences = {404: "there is nothing here, or it is not yours", 405: "this cannot be done here"}
+    allowed = (error.headers or {}).get("Allow", "")
+    sentences = {
+        404: "there is nothing here, or it is not yours",
+        405: "this cannot be done here" + (f"; expected {allowed}" if allowed else ""),
+    }
     message = sentences.get(error.status_code) or str(error.detail) or HTTPStatus(error.status_code).phrase
     return ServiceError(error.status_code, message, headers=error.headers or NO_HEADERS)
 
@@ -250,6 +255,8 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
     found = error.errors()
     if any(fault["type"] == "json_invalid" for fault in found):
         return ServiceError(400, "the body is not JSON", "not_json")
+    if any(isinstance(fault.get("input"), bytes) for fault in found):
+        return ServiceError(415, "the body is not JSON; expected application/json here")
     problems = [_fault(told).told() for told in found]
     return ServiceError(422, str(problems[0]["message"]), problems=problems)
 
@@ -275,4 +282,6 @@ def _short(value: Any) -> Any:
     """Return a value to be repeated: of a whole object only that it is one."""
     if isinstance(value, Mapping):
         return "an object"
+    if value is None:
+        return "null"
     return "a list" if isinstance(value, (list, tuple)) else value

@@ -227,7 +227,7 @@ class _Check:
         spec = self._entries(request)
         family = spec.get(FAMILY)
         if family is None:
-            if isinstance(request, Mapping) and not any(fault.path[:1] == (FAMILY,) for fault in self.faults):
+            if isinstance(request, Mapping) and not any(fault.path[:1] in ((FAMILY,), (OF,)) for fault in self.faults):
                 self.faults.append(no_family(WHERE))
         elif asks_several(family):
             if not self.faults:
