@@ -89,7 +89,7 @@ class SeveralErrors(InputError):
     def __init__(self, faults: Sequence[InputError]) -> None:
         first = faults[0]
         super().__init__(first.field, first.value, first.expected, first.path)
-        self.faults = tuple(faults)
+        self.args, self.faults = first.args, tuple(faults)
 
     def every(self) -> tuple[InputError, ...]:
         """Return everything that is wrong, one by one."""

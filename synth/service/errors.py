@@ -24,7 +24,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from synth.errors import InputError
+from synth.errors import ExtraNeededError, InputError
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
 
@@ -209,6 +209,7 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     told(HTTPException, _of_http)
     told(RequestValidationError, _of_validation)
     told(InputError, _of_input)
+    told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
     told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
     told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
@@ -229,6 +230,11 @@ def _for_the_log(error: Exception) -> dict[str, Any]:
 def request_id_of(request: Request) -> str:
     """Return the number of a request."""
     return str(request.scope.get("state", {}).get("request_id", ""))
+
+
+def _lacking(error: ExtraNeededError) -> str:
+    install = f"pip install 'clutchsynth[{error.extra}]'"
+    return f"this server lacks the extra {error.extra}; whoever runs it can add it: {install}"
 
 
 def _full(error: QueueFullError) -> str:
