@@ -48,6 +48,12 @@ ROUTERS: tuple[APIRouter, ...] = (
     tenant_routes.router,
     token_routes.router,
 )
+DESCRIPTION = (
+    "What is asked becomes a job, which workers take up. `POST /jobs` and `POST /batches` take `Idempotency-Key`: said "
+    "again with the same body they make no second job. Nothing else needs one: the same part table is the version "
+    "that is there (409 with its `Location`), a file that was brought twice goes by itself, and the value of a token "
+    "is kept nowhere, so that it can be told only once."
+)
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router, assets.router, routes.router)
 
 
@@ -80,6 +86,8 @@ def create_app(
         title="clutchsynth",
         version=version("clutchsynth"),
         summary="Design synthesis of clutches and shaft couplings.",
+        description=DESCRIPTION,
+        servers=[{"url": "/", "description": "This server: all paths stand below its address."}],
         openapi_url=f"{API}/openapi.json",
         docs_url=None,  # the usual pages load scripts from elsewhere
         redoc_url=None,

@@ -112,10 +112,14 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
         401: "There is no token, or it is not valid.",
         403: "The token may not do this.",
         404: "It is not there, or not yours.",
+        405: "The address is there, but cannot be asked this way; Allow tells how.",
+        408: "The body did not arrive in time.",
         413: "The body is too large.",
         415: "The body is of a kind that is not taken.",
+        421: "The service is not known by the name in Host.",
         422: "Something in the input is wrong; problems tell what, where and what would be right.",
         429: "Too much at a time; Retry-After tells when to come again.",
+        500: "Something went wrong here; request_id tells which line of the log says more.",
         503: "Something is not there for now; Retry-After tells when to come again.",
     }.items()
 }
