@@ -202,7 +202,7 @@ class Questioner:
         self.structural = {c.name: c for c in self.columns if c.name in STRUCTURE and not c.carried}
         if self.default is None and FAMILY not in self.structural:
             raise InputError(
-                f"{table.name}, line 1, column {FAMILY}", None, "such a column, or one family for all rows"
+                f"{table.name}, line 1, column {FAMILY}", None, "such a column, or one family for all rows", (FAMILY,)
             )
         for column in self.structural.values():
             if column.unit is not None:

@@ -60,7 +60,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "extra_forbidden": "no key of this name; the description of the interface lists those there are",
         "string_type": "a text",
         "string_too_long": "at most {max_length} characters",
-        "string_too_short": "at least {min_length} characters",
+        "string_too_short": "a text that is not empty",
         "string_pattern_mismatch": "a text without other signs than its description allows",
         "int_type": "a whole number",
         "int_parsing": "a whole number",
@@ -274,7 +274,7 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
 def _fault(told: Mapping[str, Any]) -> InputError:
     """Return what a schema says of one place as a sentence of ours."""
     place = tuple(told["loc"])
-    path = place[1:] if place[:1] in (("body",), ("query",), ("path",)) else place
+    path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
     value = None if told["type"] == "missing" else _short(told.get("input"))
     right = WORDS.get(told["type"], "{msg}").format(
         msg=str(told["msg"]).removeprefix("Input should be "), **_bounds(told)

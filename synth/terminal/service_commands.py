@@ -226,7 +226,7 @@ def list_tenants(data: Data = None, database: ServiceDatabase = None, config: Co
     with _opened(config, data, database) as opened:
         found = Accounts(opened).tenants()
     heads = ("tenant", *(name.replace("_", "-") for name in LIMITS), "created")
-    _print_table([heads, *((one.name, *_limits(one.limits), _day(one.created)) for one in found)])
+    _print_table([heads, *((one.name, *_limits(one.limits), _day(one.created or None)) for one in found)])
 
 
 @tenant_app.command(name="limit")

@@ -231,16 +231,15 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
 
 def _family(stated: Any) -> str | None:
     """Return the family of rows that name none."""
-    with at("family"):
-        if stated is not None and not isinstance(stated, str):
-            raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family")
-        if stated is not None:
-            load(stated)
-        return stated
+    if stated is not None and not isinstance(stated, str):
+        raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family", ("family",))
+    if stated is not None:
+        load(stated)
+    return stated
 
 
 def _mapping(stated: Any) -> dict[str, str]:
-    right = "an object such as {'Lastmoment [Nm]': 'load_torque'} ('carry' for a column that is only carried along)"
+    right = 'an object such as {"Lastmoment [Nm]": "load_torque"} ("carry" for a column that is only carried along)'
     if stated is None:
         return {}
     if not isinstance(stated, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in stated.items()):

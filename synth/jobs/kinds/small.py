@@ -207,6 +207,8 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
 
 def all_faults(request: Mapping[str, Any], sources: Sources, first: InputError) -> InputError:
     """Return a refusal that has, beside the fault that was found first, everything else that is wrong with a spec."""
+    if first.path[:1] == (FAMILY,):
+        return first  # of another family all else would be another fault
     check = _Check(sources, KIND_SETTINGS)
     check.of({key: value for key, value in request.items() if key in (*SPEC, OF)})
     found = check.faults if any(fault.path == first.path for fault in check.faults) else [first, *check.faults]

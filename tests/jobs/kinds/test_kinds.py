@@ -372,6 +372,10 @@ def test_everything_that_is_wrong_with_a_spec_is_told_when_it_is_asked() -> None
     assert told == check(wrong)["problems"]
     assert len(told) > 3
     assert str(again) == told[0]["message"]
+    with pytest.raises(InputError) as caught:
+        read({**payload, "request": {**DISC, "family": "any", "points": 0}}, lambda state: None)
+    assert [fault.path for fault in caught.value.every()] == [("family",)]
+    assert fault("batch", {"family": "x", "rows": [{"load_torque": "50 N*m"}]}).path == ("family",)
 
 
 # ---- words ----------------------------------------------------------------------------------------------------------
