@@ -36,6 +36,12 @@ class Described:
         return self._text
 
 
+# What would be right, where whoever knows of commands may say which.
+ONE_FAMILY = "one family; to ask several is a comparison"
+A_QUESTION = "a question without values; a given design is evaluated, not searched"
+A_DESIGN = "the variables, counts and choices of the design; without them it is a question"
+
+
 def shown_kind(value: Any) -> Any:
     """Return what to show of a value that is of the wrong kind."""
     if value is None:
@@ -59,15 +65,13 @@ def refuse_several(family: Any, where: str) -> None:
     if not isinstance(family, (str, list, tuple)):
         raise InputError(f"{where}: family", shown_kind(family), "a name", ("family",))
     if asks_several(family):
-        right = "one family; to ask several is a comparison"
-        raise InputError(f"{where}: family", shown_families(family), right, ("family",))
+        raise InputError(f"{where}: family", shown_families(family), ONE_FAMILY, ("family",))
 
 
 def refuse_values(values: Mapping[str, Any] | None, where: str) -> None:
     """Refuse a given design where a question is meant; ``where`` is the name of the spec that states it."""
     if values is not None:
-        right = "a question without values; a given design is evaluated, not searched"
-        raise InputError(f"{where}: values", ", ".join(values), right, ("values",))
+        raise InputError(f"{where}: values", ", ".join(values), A_QUESTION, ("values",))
 
 
 def asks_several(family: Any) -> bool:
