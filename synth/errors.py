@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import traceback
+from collections.abc import Sequence
 from numbers import Integral
 from types import TracebackType
 from typing import Any
@@ -11,6 +14,8 @@ from synth.plain_text import printable
 
 Key = str | int
 EXPECTED = 8  # times as much room for what is right: that lists names of ours
+EXACT = 2**53  # whole numbers of JSON that every reader knows exactly are smaller
+PLACES = 20  # where an error was raised that are told
 
 
 class InputError(ValueError):
@@ -36,11 +41,31 @@ class InputError(ValueError):
         self.value = value
         self.expected = expected
         self.path = path
-        got = "is missing" if value is None else f"got {shortened(repr(value))}"
+        shown = str(value).lower() if isinstance(value, bool) else repr(value)  # as files have it
+        got = "is missing" if value is None else f"got {shortened(shown)}"
         # A field names a place in a file: each of the two may be as long as a value.
         place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
         right = shortened(expected, EXPECTED * INPUT_LIMITS.message)
         super().__init__(printable(f"{place}: {got}; expected {right}"))
+
+    def told(self) -> dict[str, Any]:
+        """Return it as JSON holds it, for programs and for people.
+
+        Examples
+        --------
+        >>> told = InputError("points", float("inf"), "a whole number", ("points",)).told()
+        >>> told["path"], told["value"], told["expected"]
+        (['points'], 'inf', 'a whole number')
+        """
+        value = self.value
+        plain = value is None or isinstance(value, (bool, int)) or (isinstance(value, float) and math.isfinite(value))
+        if not plain or (isinstance(value, int) and abs(value) >= EXACT):
+            value = shortened(str(value))
+        return {"path": list(self.path), "value": value, "expected": self.expected, "message": str(self)}
+
+    def every(self) -> tuple[InputError, ...]:
+        """Return everything that is wrong, one by one: this alone."""
+        return (self,)
 
     def under(self, *keys: Key) -> InputError:
         """Put keys in front of the path, as a reader that was given a part of the input; return the same error."""
@@ -50,6 +75,35 @@ class InputError(ValueError):
     def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, tuple[Key, ...]]]:
         """Pickle by the four fields, so that worker processes can hand it on."""
         return type(self), (self.field, self.value, self.expected, self.path)
+
+
+class SeveralErrors(InputError):
+    """Several things are wrong at once; it is told as the first of them, and has the others beside it.
+
+    Parameters
+    ----------
+    faults : sequence of InputError
+        At least one.
+    """
+
+    def __init__(self, faults: Sequence[InputError]) -> None:
+        first = faults[0]
+        super().__init__(first.field, first.value, first.expected, first.path)
+        self.args, self.faults = first.args, tuple(faults)
+
+    def every(self) -> tuple[InputError, ...]:
+        """Return everything that is wrong, one by one."""
+        return self.faults
+
+    def under(self, *keys: Key) -> InputError:
+        """Put keys in front of all paths."""
+        for fault in self.faults:
+            fault.under(*keys)
+        return super().under(*keys)
+
+    def __reduce__(self) -> tuple[type[SeveralErrors], tuple[tuple[InputError, ...]]]:  # type: ignore[override]
+        """Pickle by what is wrong."""
+        return type(self), (self.faults,)
 
 
 class UnknownOptionError(InputError):
@@ -106,6 +160,12 @@ class at:
     ) -> None:
         if isinstance(error, InputError):
             error.under(*self.keys)
+
+
+def where_raised(error: BaseException) -> list[str]:
+    """Return where an error was raised, innermost first, without what it says: that may be what somebody has asked."""
+    frames = traceback.extract_tb(error.__traceback__)
+    return [f"{frame.filename}:{frame.lineno} {frame.name}" for frame in reversed(frames)][:PLACES]
 
 
 def shortened(text: str, most: int = INPUT_LIMITS.message) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.errors import InputError
-from synth.question.spec_keys import refuse_several, refuse_values
+from synth.question.spec_keys import A_DESIGN, refuse_several, refuse_values
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
@@ -31,7 +31,7 @@ def must_be_a_design(asked: Spec) -> None:
         raise InputError(
             f"{asked.file}: values",
             None,
-            "the variables, counts and choices of the design (clutchsynth run takes a question)",
+            A_DESIGN,
             ("values",),
         )
     if asked.fix:

@@ -95,8 +95,18 @@ class ServiceClient:
         return pd.DataFrame(self._transport.ask("GET", f"/families/{family}", params=query).json()["rows"])
 
     def job(self, id: str) -> RemoteJob:
-        """Return a job by its id."""
-        return RemoteJob(self._transport, id)
+        """Return a job by its id.
+
+        Raises
+        ------
+        InputError
+            It is no id.
+        ServiceRefusedError
+            The service has no such job, or it is another tenant's.
+        """
+        found = RemoteJob(self._transport, job_of(id))
+        found.status()
+        return found
 
     def jobs(self, **filters: Any) -> list[dict[str, Any]]:
         """Return the latest jobs as listed; filters are ``state``, ``kind``, ``family``, ``q``, ``limit``."""
@@ -155,11 +165,19 @@ class ServiceClient:
         return self._front(self.submit("synthesis", spec).wait(progress))
 
     def compare(
-        self, families: Any, requirements: Mapping[str, Any], *, progress: Progress | None = None, **asked: Any
+        self,
+        families: Any,
+        requirements: Mapping[str, Any],
+        objectives: Any = None,
+        points: int | None = None,
+        *,
+        progress: Progress | None = None,
+        **asked: Any,
     ) -> RemoteJob:
         """Ask several families the same: as ``synth.compare``; ``"any"`` asks all."""
         named = families if isinstance(families, str) else list(families)
-        spec = {"family": named, "requirements": dict(requirements), **_given(**asked)}
+        stated = _given(objectives=objectives, points=points, **asked)
+        spec = {"family": named, "requirements": dict(requirements), **stated}
         return self.submit("compare", spec).wait(progress)
 
     def whatif(
@@ -167,12 +185,14 @@ class ServiceClient:
         p: str | DesignProblem,
         requirements: Mapping[str, Any],
         vary: Mapping[str, Any],
+        objectives: Any = None,
+        points: int | None = None,
         *,
         progress: Progress | None = None,
         **asked: Any,
     ) -> RemoteJob:
         """Answer a question at many values: as ``synth.whatif``."""
-        spec = _spec(p, requirements, vary=vary, **asked)
+        spec = _spec(p, requirements, vary=vary, objectives=objectives, points=points, **asked)
         return self.submit("whatif", spec).wait(progress)
 
     def explain(
@@ -182,10 +202,16 @@ class ServiceClient:
         return self.submit("explain", _spec(p, requirements, **asked)).wait(progress)
 
     def prices(
-        self, front: ParetoFront | RemoteJob | str, design: Any = None, step: Any = None, *, progress: Any = None
+        self,
+        front: ParetoFront | RemoteJob | str,
+        design: Any = None,
+        step: Any = None,
+        *,
+        progress: Progress | None = None,
+        **asked: Any,
     ) -> RemoteJob:
         """Tell what a per cent of everything costs: as ``synth.prices``."""
-        return self._of("prices", front, progress, design=design, step=step)
+        return self._of("prices", front, progress, design=design, step=step, **asked)
 
     def near_equals(
         self,

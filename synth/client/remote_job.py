@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from synth.client.transport import ServiceRefusedError, Transport, told_input_error
 from synth.errors import InputError
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from synth.results import ParetoFront
 
+CSV = ".csv"
 ENDED = ("done", "failed", "cancelled", "stopped")
 Progress = Callable[[Mapping[str, Any]], None]
 
@@ -148,7 +150,18 @@ class RemoteJob:
         return self._transport.ask("GET", self._path("files", name), params=options).content
 
     def frame(self, name: str) -> pd.DataFrame:
-        """Return a CSV file of the job as a table."""
+        """Return a CSV file of the job as a table.
+
+        Raises
+        ------
+        InputError
+            It is no CSV file of the job.
+        """
+        if not name.endswith(CSV):
+            there = ", ".join(known for known in self.files() if known.endswith(CSV))
+            raise InputError(
+                "name", name, f"a CSV file of the job: {there}" if there else "a job with CSV files", ("name",)
+            )
         import pandas as pd  # costly to import
 
         return pd.read_csv(io.BytesIO(self.file(name, raw="1")))
@@ -158,7 +171,7 @@ class RemoteJob:
         return save_files(folder, {Path(name).name: self.file(name) for name in names})
 
     def _path(self, *more: str) -> str:
-        return "/".join(("/jobs", self.id, *more))
+        return "/".join(("/jobs", quote(self.id, safe=""), *more))
 
 
 def _failure(found: Mapping[str, Any]) -> Exception:
@@ -166,7 +179,7 @@ def _failure(found: Mapping[str, Any]) -> Exception:
     error = found.get("error") or {}
     problems = error.get("problems") or []
     if problems:
-        return told_input_error(problems[0])
+        return told_input_error(problems)
     message = str(error.get("message") or f"the job was {found['state']}")
     return ServiceRefusedError(200, str(error.get("code") or found["state"]), message)
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from synth.errors import ExtraNeededError, InputError
+from synth.errors import ExtraNeededError, InputError, SeveralErrors
 
 if TYPE_CHECKING:
     import httpx
@@ -161,12 +161,19 @@ def _refusal(answer: httpx.Response) -> Exception:
         return ServiceRefusedError(answer.status_code, "no_service", "this is no answer of a clutchsynth service")
     problems = told.get("problems") or []
     if answer.status_code == BAD_INPUT and problems:
-        return told_input_error(problems[0])
+        return told_input_error(problems)
     location = answer.headers.get("Location", "")
     return ServiceRefusedError(answer.status_code, str(told["code"]), str(told["message"]), location)
 
 
-def told_input_error(problem: Mapping[str, Any]) -> InputError:
-    """Return what a service says of a place in the input as the error that the search itself would have raised."""
+def told_input_error(problems: Sequence[Mapping[str, Any]]) -> InputError:
+    """Return what a service says of the input as the error that the search itself would have raised."""
+    found = [_input_error(problem) for problem in problems]
+    return SeveralErrors(found) if len(found) > 1 else found[0]
+
+
+def _input_error(problem: Mapping[str, Any]) -> InputError:
     field = str(problem["message"]).split(": got ", 1)[0].split(": is missing", 1)[0]
-    return InputError(field, problem.get("value"), str(problem["expected"]), tuple(problem["path"]))
+    error = InputError(field, problem.get("value"), str(problem["expected"]), tuple(problem["path"]))
+    error.args = (str(problem["message"]),)  # in the words of the service: a value has gone through JSON
+    return error

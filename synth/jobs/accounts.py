@@ -107,6 +107,15 @@ class TokenEntry:
     revoked: float | None
 
 
+@dataclass(frozen=True, kw_only=True)
+class TenantEntry:
+    """A tenant as lists show it. Times are seconds since 1970, on the clock of the database."""
+
+    name: str
+    limits: TenantLimits
+    created: float
+
+
 class Accounts:
     """The tenants and tokens of a job database.
 
@@ -142,6 +151,40 @@ class Accounts:
             except IntegrityError:  # somebody has made it at the same time
                 continue
         raise InputError("tenant", name, "another name")
+
+    def tenants(self) -> list[TenantEntry]:
+        """Return all tenants, in the order in which they were made."""
+        asked = sa.select(Tenant.name, Tenant.limits, Tenant.created).order_by(Tenant.id)
+        with self.engine.connect() as connection:
+            return [
+                TenantEntry(name=name, limits=TenantLimits.of(limits), created=created)
+                for name, limits, created in connection.execute(asked)
+            ]
+
+    def limit(self, name: str, changes: Mapping[str, float | None]) -> TenantLimits:
+        """Change limits of a tenant that there is; return all that it has now.
+
+        Parameters
+        ----------
+        name : str
+        changes : mapping
+            Fields of :class:`TenantLimits` -> what the tenant may have from now on; None is no limit.
+
+        Raises
+        ------
+        InputError
+            There is no such tenant.
+        """
+        with self.engine.begin() as connection:
+            # Written before it is read: nobody else changes it in between.
+            held = sa.update(Tenant).where(Tenant.name == name).values(created=Tenant.created).returning(Tenant.limits)
+            known = connection.scalar(held)
+            if known is not None:
+                limits = {**known, **changes}
+                connection.execute(sa.update(Tenant).where(Tenant.name == name).values(limits=limits))
+                return TenantLimits.of(limits)
+        names = ", ".join(entry.name for entry in self.tenants())
+        raise InputError("tenant", name, f"one of {names}", ("tenant",))
 
     def local(self) -> Principal:
         """Return who everybody is where no tokens are needed: the tenant of the command line, who may do all."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import shutil
 import tempfile
+import time
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -14,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from sqlalchemy import URL
 
-from synth.errors import InputError, whole_number
+from synth.errors import InputError, SeveralErrors, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
@@ -23,7 +24,7 @@ from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.job_table import BATCH
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_groups import RowGroups
-from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
+from synth.jobs.row_questions import Fault, Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
 from synth.jobs.runner import Runner, Shares
 from synth.jobs.store import Store
@@ -331,6 +332,23 @@ class BatchJob:
             content = {**self._content(), "catalogs": dict(catalogs)}
             return self.store.plan(job, claim, owner, content, self.basis, rows, self._rows_per_unit())
 
+    def refuse_hopeless(self, seconds: float) -> None:
+        """Refuse a table of which no row can be asked, as far as that shows in some seconds.
+
+        Raises
+        ------
+        InputError
+            With what is wrong in the first rows.
+        """
+        end = time.monotonic() + seconds
+        count, first = 0, list[ReadRow]()
+        for count, row in enumerate(self.questioner.rows(), start=1):
+            if row.key is not None or time.monotonic() > end:
+                return
+            if count <= self.numbers.shown_faults:
+                first.append(row)
+        self._refuse(first, count)
+
     @contextmanager
     def _checked(self) -> Iterator[Iterator[dict[str, Any]]]:
         """Check all rows, and give them as they are kept.
@@ -387,11 +405,14 @@ class BatchJob:
     def _refuse(self, rows: list[ReadRow], count: int) -> None:
         if not rows:
             raise InputError(self.table.name, "a header only", "at least one row below the header")
-        fault = rows[0].faults[0]
-        where = f"{self.table.name}, line {fault.line}{f', column {fault.column}' if fault.column else ''}"
         others = f" (none of {count} rows can be asked)" if count > 1 else ""
+        faults = [fault for row in rows for fault in row.faults]
+        raise SeveralErrors([self._input_error(fault, "" if k else others) for k, fault in enumerate(faults)])
+
+    def _input_error(self, fault: Fault, more: str) -> InputError:
+        where = f"{self.table.name}, line {fault.line}{f', column {fault.column}' if fault.column else ''}"
         path = ("rows", fault.line, fault.column) if fault.column else ("rows", fault.line)
-        raise InputError(where, fault.value, f"{fault.expected}{others}", path)
+        return InputError(where, fault.value, f"{fault.expected}{more}", path)
 
     def _content(self) -> dict[str, Any]:
         """Return what is kept with the job: how it is solved, and what its columns are."""

@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError
+from synth.errors import InputError, where_raised
 from synth.jobs.engine_tasks import task_of
 from synth.jobs.job_settings import JOBS, EngineSettings
 
@@ -33,7 +33,39 @@ class EngineTimeoutError(Exception):
 
 
 class EngineCrashedError(Exception):
-    """The process ended while it was at work, or the work ended in an error that is nobody's input."""
+    """The process ended while it was at work."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """How work ended in an error that is nobody's input: the fault is in a program.
+
+    Parameters
+    ----------
+    kind : str
+        The name of the error.
+    told : str
+        What it says; that may be what somebody has asked.
+    where : tuple of str
+        Where it was raised, innermost first.
+    """
+
+    kind: str
+    told: str
+    where: tuple[str, ...]
+
+
+class EngineFailedError(Exception):
+    """The work ended in an error that is nobody's input; the process is there and can go on.
+
+    Parameters
+    ----------
+    failure : Failure
+    """
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(failure.told)
+        self.failure = failure
 
 
 @dataclass(frozen=True)
@@ -129,7 +161,9 @@ class EngineProcess:
         EngineTimeoutError
             It takes longer; the process is of no use any more.
         EngineCrashedError
-            It failed; where the process has ended, it is of no use any more.
+            The process has ended.
+        EngineFailedError
+            The work has failed by an error of a program.
         """
         self.ask(task, payload)
         end = time.monotonic() + deadline
@@ -166,7 +200,7 @@ def answer_of(message: Message) -> Any:
     ------
     InputError
         As the task has raised it.
-    EngineCrashedError
+    EngineFailedError
         It ended in another error.
     """
     if message.kind == ANSWERED:
@@ -174,7 +208,71 @@ def answer_of(message: Message) -> Any:
     if message.kind == REFUSED:
         refusal: InputError = message.content
         raise refusal
-    raise EngineCrashedError(str(message.content))
+    raise EngineFailedError(message.content)
+
+
+class EnginePool:
+    """Processes that are kept warm, or warming up: taken by whoever has work, and put back or replaced.
+
+    Parameters
+    ----------
+    count : int
+        Processes that are started at once.
+    settings : EngineSettings, optional
+    """
+
+    def __init__(self, count: int, settings: EngineSettings = JOBS.engine) -> None:
+        self.settings = settings
+        self._idle: queue.SimpleQueue[EngineProcess] = queue.SimpleQueue()
+        self._all: set[EngineProcess] = set()
+        self._guard = threading.Lock()
+        self.closed = False
+        for _ in range(count):
+            self.add()
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def add(self) -> None:
+        """Start one more, unless all is over."""
+        with self._guard:
+            if not self.closed:
+                engine = EngineProcess(self.settings)
+                self._all.add(engine)
+                self._idle.put(engine)
+
+    def is_empty(self) -> bool:
+        """Tell whether no process is free."""
+        return self._idle.empty()
+
+    def take(self, timeout: float) -> EngineProcess | None:
+        """Return a process that is free, which may be warming up still; None where none is in time."""
+        try:
+            return self._idle.get(timeout=timeout)
+        except queue.Empty:
+            return None
+
+    def put_back(self, engine: EngineProcess, usable: bool = True) -> None:
+        """Give back a process that was taken; one that is of no use any more, or worn, is replaced."""
+        if usable and not engine.is_worn():
+            self._idle.put(engine)
+        else:
+            self.drop(engine)
+            self.add()
+
+    def drop(self, engine: EngineProcess) -> None:
+        """End a process for good."""
+        with self._guard:
+            self._all.discard(engine)
+        engine.end()
+
+    def close(self) -> None:
+        """End all processes."""
+        with self._guard:
+            self.closed = True
+            for engine in self._all:
+                engine.end()
+            self._all.clear()
 
 
 class Engines:
@@ -190,77 +288,47 @@ class Engines:
     """
 
     def __init__(self, count: int, settings: EngineSettings = JOBS.engine, *, lazy: bool = False) -> None:
-        self._settings = settings
-        self._idle: queue.SimpleQueue[EngineProcess] = queue.SimpleQueue()
-        self._all: set[EngineProcess] = set()
-        self._guard = threading.Lock()
-        self._closed = False
+        self.pool = EnginePool(0 if lazy else count, settings)
         self._later = count if lazy else 0
-        for _ in range(0 if lazy else count):
-            self._add()
+        self._guard = threading.Lock()
 
     def _add_late(self) -> None:
         """Start one of those that were not needed so far, where no other is free."""
         with self._guard:
-            if not self._later or not self._idle.empty():
+            if not self._later or not self.pool.is_empty():
                 return
             self._later -= 1
-        self._add()
-
-    def _add(self) -> None:
-        with self._guard:
-            if self._closed:
-                return
-            engine = EngineProcess(self._settings)
-            self._all.add(engine)
-        self._idle.put(engine)
+        self.pool.add()
 
     def call(self, task: str, payload: Any, deadline: float) -> Any:
         """Have a task done; as :meth:`EngineProcess.call`.
 
         Raises
         ------
-        InputError, EngineTimeoutError, EngineCrashedError
+        InputError, EngineTimeoutError, EngineCrashedError, EngineFailedError
             As there; a timeout, too, where no process is free in time.
         """
         self._add_late()
-        try:
-            engine = self._idle.get(timeout=deadline)
-        except queue.Empty:
-            raise EngineTimeoutError(f"{task}: no process is free") from None
+        engine = self.pool.take(deadline)
+        if engine is None:
+            raise EngineTimeoutError(f"{task}: no process is free")
         usable = False
         try:
             # A process that is just starting is waited for longer: nothing is wrong with the question.
-            if not engine.warm(self._settings.start):
+            if not engine.warm(self.pool.settings.start):
                 raise EngineTimeoutError(f"{task}: the process is not ready")
             answer = engine.call(task, payload, deadline)
             usable = True
-        except InputError:
+        except (InputError, EngineFailedError):
             usable = True
             raise
-        except EngineCrashedError:
-            usable = engine.is_alive()
-            raise
         finally:
-            self._put_back(engine, usable)
+            self.pool.put_back(engine, usable)
         return answer
-
-    def _put_back(self, engine: EngineProcess, usable: bool) -> None:
-        if usable and not engine.is_worn():
-            self._idle.put(engine)
-            return
-        with self._guard:
-            self._all.discard(engine)
-        engine.end()
-        self._add()
 
     def close(self) -> None:
         """End all processes."""
-        with self._guard:
-            self._closed = True
-            for engine in self._all:
-                engine.end()
-            self._all.clear()
+        self.pool.close()
 
 
 # ---- in the process -------------------------------------------------------------------------------------------------
@@ -290,7 +358,7 @@ def _serve(pipe: Connection, settings: EngineSettings) -> None:
         except (Exception, SystemExit, KeyboardInterrupt) as error:
             from synth.jobs.solve import told_of
 
-            say(FAILED, told_of(error))
+            say(FAILED, Failure(type(error).__name__, told_of(error), tuple(where_raised(error))))
 
 
 def _listen(pipe: Connection, asked: queue.SimpleQueue[tuple[str, Any]]) -> None:

@@ -11,7 +11,7 @@ from synth.jobs.job_table import BATCH
 from synth.jobs.kinds import batch, small
 from synth.jobs.kinds.asked import catalogs_of
 from synth.jobs.kinds.contract import Record
-from synth.jobs.kinds.files import UnknownFileError, files_of
+from synth.jobs.kinds.files import UnknownFileError, files_to_have
 from synth.jobs.kinds.files import render as rendered
 from synth.model.registry import load
 from synth.results.provenance import code_digest, native_code, problem_digest
@@ -68,10 +68,10 @@ def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def files(payload: Mapping[str, Any], tell: Tell) -> dict[str, int | None]:
-    """Return the names of the files of a job, with their sizes where these are known."""
+    """Return the names of the files of a job that can be had here, with their sizes where these are known."""
     if payload["kind"] == BATCH:
         return dict.fromkeys(batch.FILES)
-    return files_of(payload["kind"], payload["records"])
+    return files_to_have(payload["kind"], payload["records"])
 
 
 def render(payload: Mapping[str, Any], tell: Tell) -> Record | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from synth.errors import InputError
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds import kind
 from synth.jobs.kinds.asked import catalogs_of
@@ -47,8 +48,22 @@ def work(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Check a request; return it as it is stored, and what is told of it."""
-    posed = kind(payload["kind"]).load().read(payload["request"], _sources(payload))
+    """Check a request; return it as it is stored, and what is told of it.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong, as far as one fault does not hide another.
+    """
+    chosen, sources = kind(payload["kind"]), _sources(payload)
+    try:
+        posed = chosen.load().read(payload["request"], sources)
+    except InputError as fault:
+        if not chosen.checked:
+            raise
+        from synth.jobs.kinds.small import all_faults
+
+        raise all_faults(payload["request"], sources, fault) from fault
     return {
         "request": dict(posed.request),
         "title": posed.title,

@@ -420,13 +420,6 @@ class JobTable(Database):
                 for name, media, content in connection.execute(asked.order_by(JobRecord.name))
             }
 
-    def record_list(self, job: str) -> list[tuple[str, str, str, int]]:
-        """Return name, media type, digest and size of the files of a job."""
-        asked = sa.select(JobRecord.name, JobRecord.media, JobRecord.digest, JobRecord.size)
-        with self.engine.connect() as connection:
-            found = connection.execute(asked.where(JobRecord.job == job).order_by(JobRecord.name))
-            return [(name, media, digest, size) for name, media, digest, size in found]
-
     # -- events --------------------------------------------------------------------------------
 
     def tell(self, job: str, kind: str, text: str = "", data: Mapping[str, Any] | None = None) -> None:

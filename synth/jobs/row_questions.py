@@ -149,7 +149,7 @@ def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe
         if not carried:
             meant = None if universe.knows(name) else universe.suggestion(name, unit, present)
             if meant is not None:
-                hint = f"{meant} (or '{title}: carry' in a mapping file, for a column of your own)"
+                hint = f"{meant} (or '{title}: carry' in the mapping, for a column of your own)"
                 raise InputError(where, title, hint)
             if name in STRUCTURE and any(c.name == name and not c.carried for c in columns):
                 raise InputError(where, title, f"one column {name}")
@@ -202,7 +202,7 @@ class Questioner:
         self.structural = {c.name: c for c in self.columns if c.name in STRUCTURE and not c.carried}
         if self.default is None and FAMILY not in self.structural:
             raise InputError(
-                f"{table.name}, line 1, column {FAMILY}", None, "such a column (or a family for all rows: --family)"
+                f"{table.name}, line 1, column {FAMILY}", None, "such a column, or one family for all rows", (FAMILY,)
             )
         for column in self.structural.values():
             if column.unit is not None:

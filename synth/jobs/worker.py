@@ -7,7 +7,6 @@ slot goes on with the spare. Whatever happens to a worker, its units are taken b
 
 from __future__ import annotations
 
-import queue
 import socket
 import threading
 import time
@@ -24,7 +23,9 @@ from synth.jobs.engine_process import (
     REFUSED,
     TOLD,
     EngineCrashedError,
+    EnginePool,
     EngineProcess,
+    Failure,
     Message,
     resident,
 )
@@ -41,6 +42,7 @@ from synth.jobs.store import Store
 from synth.jobs.unit_results import sorted_out
 
 T = TypeVar("T")
+BROKEN = "something went wrong in the program that computes; what the worker has said tells where"
 CANCEL, TIME, MEMORY, PREEMPTED, SHUTDOWN, CRASH, AGE = (
     "cancelled",
     "time",
@@ -66,58 +68,6 @@ class UnitAtWork:
     def bulk(self) -> bool:
         """Whether it makes room for somebody who waits."""
         return self.job.priority == 0
-
-
-class Spares:
-    """Engine processes that are warm, or warming up: so many more than are at work."""
-
-    def __init__(self, count: int, settings: JobSettings) -> None:
-        self._settings = settings
-        self._idle: queue.SimpleQueue[EngineProcess] = queue.SimpleQueue()
-        self._closed = False
-        self._guard = threading.Lock()
-        self._all: set[EngineProcess] = set()
-        for _ in range(count):
-            self.add()
-
-    def add(self) -> None:
-        """Start one more."""
-        with self._guard:
-            if not self._closed:
-                engine = EngineProcess(self._settings.engine)
-                self._all.add(engine)
-                self._idle.put(engine)
-
-    def take(self) -> EngineProcess | None:
-        """Return one that is warm; None where there is none in time, or all is over."""
-        try:
-            engine = self._idle.get(timeout=self._settings.worker.poll)
-        except queue.Empty:
-            return None
-        try:
-            if engine.warm(self._settings.engine.start):
-                return engine
-        except EngineCrashedError:
-            pass
-        self.drop(engine)
-        if not self._closed:
-            time.sleep(self._settings.worker.weigh)  # what ends at once, always, must not keep the machine busy
-            self.add()
-        return None
-
-    def drop(self, engine: EngineProcess) -> None:
-        """End one for good."""
-        with self._guard:
-            self._all.discard(engine)
-        engine.end()
-
-    def close(self) -> None:
-        """End all of them."""
-        with self._guard:
-            self._closed = True
-            for engine in self._all:
-                engine.end()
-            self._all.clear()
 
 
 class Worker:
@@ -148,7 +98,7 @@ class Worker:
         self.shelf = Shelf(store)
         self.owner = new_owner()
         self.slots = slots
-        self.spares = Spares(slots + spare, settings)
+        self.spares = EnginePool(slots + spare, settings.engine)
         self.stopping = threading.Event()
         self.tasks: dict[int, UnitAtWork] = {}  # by slot; a slot alone changes its own
         self.restarts: Counter[str] = Counter()
@@ -183,7 +133,7 @@ class Worker:
         engine: EngineProcess | None = None
         while not self.stopping.is_set():
             if engine is None:
-                engine = self.spares.take()
+                engine = self._warm()
                 continue
             self.code = engine.code
             try:
@@ -208,6 +158,22 @@ class Worker:
                 self.spares.drop(engine)
                 self.spares.add()
                 engine = None
+
+    def _warm(self) -> EngineProcess | None:
+        """Return a process that is warm; None where there is none in time, or all is over."""
+        engine = self.spares.take(self.settings.worker.poll)
+        if engine is None:
+            return None
+        try:
+            if engine.warm(self.settings.engine.start):
+                return engine
+        except EngineCrashedError:
+            pass
+        self.spares.drop(engine)
+        if not self.spares.closed:
+            time.sleep(self.settings.worker.weigh)  # what ends at once, always, must not keep the machine busy
+            self.spares.add()
+        return None
 
     def _do(self, task: UnitAtWork) -> bool:
         """Have a unit done and write what comes out; return whether the process can be used again."""
@@ -275,12 +241,17 @@ class Worker:
                 self._written(job, lambda: self.store.finish(job.id, claim, self.owner, outcomes, errors, most, alone))
                 self._after_rows(job)
             else:
-                self._failed(task, str(message.content))
+                self._broken(task, message.content)
         elif message.kind == REFUSED:
             refusal: InputError = message.content
-            self._end(task, Ending(state=FAILED, error=told_fault(refusal)))
+            error = {
+                "code": "bad_input",
+                "message": str(refusal),
+                "problems": [fault.told() for fault in refusal.every()],
+            }
+            self._end(task, Ending(state=FAILED, error=error))
         elif message.kind != ANSWERED:
-            self._failed(task, str(message.content))
+            self._broken(task, message.content)
         elif claim.task == PLAN:
             self._after_rows(job)  # the engine has written the rows itself: they are many
         else:
@@ -307,6 +278,11 @@ class Worker:
         if wanted:
             self.lost += 1
             self.say(f"job {job.id}: a unit was lost to another worker: the database did not hear in time of this one")
+
+    def _broken(self, task: UnitAtWork, failure: Failure) -> None:
+        """Note an error of a program: where it was raised is for whoever runs it, not for whoever has asked."""
+        self.say(f"job {task.job.id}: {failure.told}; raised at {' < '.join(failure.where)}")
+        self._failed(task, failure.told if task.claim.task == ROWS else BROKEN)
 
     def _failed(self, task: UnitAtWork, error: str) -> None:
         """Note that an attempt failed; after the last one the job has, or these rows have."""
@@ -445,19 +421,3 @@ class Worker:
             call()
         except (DBAPIError, OSError):
             return
-
-
-def told_fault(refusal: InputError) -> Mapping[str, Any]:
-    """Return what is kept of a refusal: of the same form as the errors of the service."""
-    return {
-        "code": "bad_input",
-        "message": str(refusal),
-        "problems": [
-            {
-                "path": list(refusal.path),
-                "value": None if refusal.value is None else str(refusal.value)[:120],
-                "expected": refusal.expected,
-                "message": str(refusal),
-            }
-        ],
-    }

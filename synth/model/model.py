@@ -332,7 +332,7 @@ class Model:
         allowed = [s for s, n in spellings.items() if n in among]
         close = difflib.get_close_matches(word, allowed, n=3, cutoff=0.6)
         hint = f" (did you mean {' or '.join(close)}?)" if close else ""
-        right = f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them"
+        right = f"{what} of {self.title}{hint}; its description lists them"
         raise InputError(field, word, right, path)
 
     def by_name(self, mapping: Mapping[Any, Any], field: str, among: Sequence[str], what: str) -> dict[str, Any]:

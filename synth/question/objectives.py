@@ -9,6 +9,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.model.model import Model
 from synth.question.instance import Instance
+from synth.question.spec_keys import shown_kind
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
@@ -48,7 +49,8 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
             raise InputError("objectives", word, "each objective once", ("objectives", str(word)))
         result[name] = str(sense)
     if not result:
-        raise InputError("objectives", None, "at least one of " + ", ".join(declared), ("objectives",))
+        right = "at least one of " + ", ".join(declared or model.quantity_sx)
+        raise InputError("objectives", shown_kind(asked), right, ("objectives",))
     return result
 
 

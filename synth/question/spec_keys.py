@@ -36,15 +36,28 @@ class Described:
         return self._text
 
 
+# What would be right, where whoever knows of commands may say which.
+ONE_FAMILY = "one family; to ask several is a comparison"
+A_QUESTION = "a question without values; a given design is evaluated, not searched"
+A_DESIGN = "the variables, counts and choices of the design; without them it is a question"
+
+
 def shown_kind(value: Any) -> Any:
     """Return what to show of a value that is of the wrong kind."""
     if value is None:
         return Described("nothing")
     if isinstance(value, Mapping):
-        return Described("a mapping")
+        return Described("a mapping" if value else "an empty mapping")
     if isinstance(value, (list, tuple)):
-        return Described("a list")
+        return Described("a list" if len(value) else "an empty list")
     return value
+
+
+def no_family(where: str) -> InputError:
+    """Return what is said of a spec that names no family; ``where`` is its name."""
+    from synth.model.registry import families  # costly to import; --help does without
+
+    return InputError(f"{where}: family", None, f"the name of a family: {', '.join(families())}", ("family",))
 
 
 def refuse_several(family: Any, where: str) -> None:
@@ -52,15 +65,13 @@ def refuse_several(family: Any, where: str) -> None:
     if not isinstance(family, (str, list, tuple)):
         raise InputError(f"{where}: family", shown_kind(family), "a name", ("family",))
     if asks_several(family):
-        right = "one family (clutchsynth run compares several)"
-        raise InputError(f"{where}: family", shown_families(family), right, ("family",))
+        raise InputError(f"{where}: family", shown_families(family), ONE_FAMILY, ("family",))
 
 
 def refuse_values(values: Mapping[str, Any] | None, where: str) -> None:
     """Refuse a given design where a question is meant; ``where`` is the name of the spec that states it."""
     if values is not None:
-        right = "a question without values; clutchsynth check reads a given design"
-        raise InputError(f"{where}: values", ", ".join(values), right, ("values",))
+        raise InputError(f"{where}: values", ", ".join(values), A_QUESTION, ("values",))
 
 
 def asks_several(family: Any) -> bool:
@@ -134,7 +145,7 @@ def _options(where: str, value: Any) -> Mapping[str, str]:
         if isinstance(chosen, bool):
             options[name] = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         elif not isinstance(chosen, str):
-            right = "one of the words that clutchsynth describe lists"
+            right = "one of its words, as the family declares them"
             raise InputError(f"{where}: {name}", shown_kind(chosen), right, (name,))
     return MappingProxyType(options)
 
@@ -295,8 +306,7 @@ def read_keys(content: Any, where: str, keys: Collection[str]) -> dict[str, Any]
         if key not in FIELDS:
             raise InputError(f"{where}: key", key, hint_at_key(key), (str(key),))
     if "family" in keys and content.get("family") is None:
-        right = "the name of a family; clutchsynth families lists them"
-        raise InputError(f"{where}: family", None, right, ("family",))
+        raise no_family(where)
     checked: dict[str, Any] = {}
     for key, check in FIELDS.items():
         if key in keys:

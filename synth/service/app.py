@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from importlib.metadata import version
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, Depends, FastAPI
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.middleware import Middleware
 
@@ -26,6 +26,7 @@ from synth.service.api import (
     table_routes,
     tenant_routes,
 )
+from synth.service.api.asking import known_query
 from synth.service.attempts import FailedTokens
 from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
 from synth.service.errors import REFUSALS, register_errors
@@ -48,6 +49,12 @@ ROUTERS: tuple[APIRouter, ...] = (
     table_routes.router,
     tenant_routes.router,
     token_routes.router,
+)
+DESCRIPTION = (
+    "What is asked becomes a job, which workers take up. `POST /jobs` and `POST /batches` take `Idempotency-Key`: said "
+    "again with the same body they make no second job. Nothing else needs one: the same part table is the version "
+    "that is there (409 with its `Location`), a file that was brought twice goes by itself, and the value of a token "
+    "is kept nowhere, so that it can be told only once."
 )
 OUTSIDE: tuple[APIRouter, ...] = (health.router, figures.router, assets.router, routes.router)
 
@@ -81,6 +88,8 @@ def create_app(
         title="clutchsynth",
         version=version("clutchsynth"),
         summary="Design synthesis of clutches and shaft couplings.",
+        description=DESCRIPTION,
+        servers=[{"url": "/", "description": "This server: all paths stand below its address."}],
         openapi_url=f"{API}/openapi.json",
         docs_url=None,  # the usual pages load scripts from elsewhere
         redoc_url=None,
@@ -98,7 +107,7 @@ def create_app(
     app.state.context = context
     register_errors(app, settings.retry_after)
     for router in ROUTERS:
-        app.include_router(router, responses=REFUSALS)
+        app.include_router(router, responses=REFUSALS, dependencies=[Depends(known_query)])
     for router in OUTSIDE:
         app.include_router(router, include_in_schema=False)
     return app

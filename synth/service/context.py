@@ -63,8 +63,8 @@ class SmallWork:
         ------
         InputError
             As the task has raised it.
-        EngineTimeoutError, EngineCrashedError
-            It takes too long, too many wait for an answer, or the process has ended.
+        EngineTimeoutError, EngineCrashedError, EngineFailedError
+            It takes too long, too many wait for an answer, the process has ended, or its program has failed.
         """
         if self._threads is None:
             self._threads = CapacityLimiter(self._most)

@@ -24,12 +24,13 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from synth.errors import InputError, shortened
-from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.errors import ExtraNeededError, InputError
+from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
+FAILED = "something went wrong in the program that computes; please tell the request_id"
 NO_HEADERS: Mapping[str, str] = MappingProxyType({})
 CODES: Mapping[int, str] = MappingProxyType(
     {
@@ -59,7 +60,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "extra_forbidden": "no key of this name; the description of the interface lists those there are",
         "string_type": "a text",
         "string_too_long": "at most {max_length} characters",
-        "string_too_short": "at least {min_length} characters",
+        "string_too_short": "a text that is not empty",
         "string_pattern_mismatch": "a text without other signs than its description allows",
         "int_type": "a whole number",
         "int_parsing": "a whole number",
@@ -74,6 +75,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "dict_type": "a JSON object",
         "model_type": "a JSON object",
         "model_attributes_type": "a JSON object",
+        "value_error": "a file with its content",
     }
 )
 
@@ -110,10 +112,14 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
         401: "There is no token, or it is not valid.",
         403: "The token may not do this.",
         404: "It is not there, or not yours.",
+        405: "The address is there, but cannot be asked this way; Allow tells how.",
+        408: "The body did not arrive in time.",
         413: "The body is too large.",
         415: "The body is of a kind that is not taken.",
+        421: "The service is not known by the name in Host.",
         422: "Something in the input is wrong; problems tell what, where and what would be right.",
         429: "Too much at a time; Retry-After tells when to come again.",
+        500: "Something went wrong here; request_id tells which line of the log says more.",
         503: "Something is not there for now; Retry-After tells when to come again.",
     }.items()
 }
@@ -131,7 +137,7 @@ class ServiceError(Exception):
     code : str, optional
         For programs; by default that of the status.
     problems : sequence, optional
-        What is wrong in the input, place by place, as :func:`problem` makes them.
+        What is wrong in the input, place by place, as ``InputError.told`` tells it.
     headers : mapping, optional
     """
 
@@ -158,18 +164,9 @@ def not_found(what: str = "there is nothing here, or it is not yours") -> Servic
     return ServiceError(404, what)
 
 
-def problem(error: InputError) -> dict[str, Any]:
-    """Return what is wrong in the input, as programs read it."""
-    value = error.value
-    shown = value if value is None or isinstance(value, (bool, int, float)) else shortened(str(value))
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        shown = value if abs(value) < 1e300 else shortened(str(value))  # neither infinity nor NaN is JSON
-    return {"path": list(error.path), "value": shown, "expected": error.expected, "message": str(error)}
-
-
 def refusal_of(error: InputError) -> ServiceError:
     """Return the refusal of a request whose input is wrong."""
-    return ServiceError(422, str(error), problems=[problem(error)])
+    return ServiceError(422, str(error), problems=[fault.told() for fault in error.every()])
 
 
 def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, Any]] = ()) -> bytes:
@@ -203,7 +200,7 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
         async def handle(request: Request, error: Exception) -> Response:
             refusal: ServiceError = make(error)
             if refusal.status >= 500:
-                request.scope["state"]["failure"] = type(error).__name__  # for the log
+                request.scope["state"]["failure"] = _for_the_log(error)
             return error_response(refusal, request_id_of(request))
 
         app.add_exception_handler(kind, handle)
@@ -216,18 +213,32 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     told(HTTPException, _of_http)
     told(RequestValidationError, _of_validation)
     told(InputError, _of_input)
+    told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
     told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
     told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
+    told(EngineFailedError, lambda _: ServiceError(500, FAILED, "engine_failed"))
     told(EngineCrashedError, later("the process that computes has ended; please come again"))
     told(OperationalError, away)
     told(InterfaceError, away)
     told(PoolTimeoutError, away)
 
 
+def _for_the_log(error: Exception) -> dict[str, Any]:
+    """Return what the log tells of an error: of one in another process where it was raised there."""
+    if isinstance(error, EngineFailedError):
+        return {"error": error.failure.kind, "where": list(error.failure.where)}
+    return {"error": type(error).__name__}
+
+
 def request_id_of(request: Request) -> str:
     """Return the number of a request."""
     return str(request.scope.get("state", {}).get("request_id", ""))
+
+
+def _lacking(error: ExtraNeededError) -> str:
+    install = f"pip install 'clutchsynth[{error.extra}]'"
+    return f"this server lacks the extra {error.extra}; whoever runs it can add it: {install}"
 
 
 def _full(error: QueueFullError) -> str:
@@ -240,7 +251,11 @@ def _of_input(error: InputError) -> ServiceError:
 
 
 def _of_http(error: HTTPException) -> ServiceError:
-    sentences = {404: "there is nothing here, or it is not yours", 405: "this cannot be done here"}
+    allowed = (error.headers or {}).get("Allow", "")
+    sentences = {
+        404: "there is nothing here, or it is not yours",
+        405: "this cannot be done here" + (f"; expected {allowed}" if allowed else ""),
+    }
     message = sentences.get(error.status_code) or str(error.detail) or HTTPStatus(error.status_code).phrase
     return ServiceError(error.status_code, message, headers=error.headers or NO_HEADERS)
 
@@ -250,14 +265,16 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
     found = error.errors()
     if any(fault["type"] == "json_invalid" for fault in found):
         return ServiceError(400, "the body is not JSON", "not_json")
-    problems = [problem(_fault(told)) for told in found]
+    if any(isinstance(fault.get("input"), bytes) for fault in found):
+        return ServiceError(415, "the body is not JSON; expected application/json here")
+    problems = [_fault(told).told() for told in found]
     return ServiceError(422, str(problems[0]["message"]), problems=problems)
 
 
 def _fault(told: Mapping[str, Any]) -> InputError:
     """Return what a schema says of one place as a sentence of ours."""
     place = tuple(told["loc"])
-    path = place[1:] if place[:1] in (("body",), ("query",), ("path",)) else place
+    path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
     value = None if told["type"] == "missing" else _short(told.get("input"))
     right = WORDS.get(told["type"], "{msg}").format(
         msg=str(told["msg"]).removeprefix("Input should be "), **_bounds(told)
@@ -275,4 +292,6 @@ def _short(value: Any) -> Any:
     """Return a value to be repeated: of a whole object only that it is one."""
     if isinstance(value, Mapping):
         return "an object"
+    if value is None:
+        return "null"
     return "a list" if isinstance(value, (list, tuple)) else value

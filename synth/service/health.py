@@ -51,5 +51,6 @@ def _missing(context: ServiceContext) -> list[str]:
     if known != HEAD:
         return [f"the tables are of version {known}; this server needs {HEAD}"]
     if not context.store.workers(context.settings.ready_worker):
-        return [f"no worker has given a sign of life for {context.settings.ready_worker:g} s"]
+        within = f"within {context.settings.ready_worker:g} s"
+        return [f"no worker has given a sign of life {within}; one that has just begun does so in a few seconds"]
     return []

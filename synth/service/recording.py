@@ -12,12 +12,11 @@ import os
 import re
 import secrets
 import time
-import traceback
 from typing import Any
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from synth.errors import shortened
+from synth.errors import shortened, where_raised
 from synth.jobs.accounts import BEGINNING
 from synth.service.errors import ServiceError, error_response
 from synth.service.metrics import ServiceMetrics
@@ -31,12 +30,6 @@ def log(event: str, **told: Any) -> None:
     """Write a line of the log: JSON, with what has happened and when."""
     line = json.dumps({"time": round(time.time(), 3), "event": event, **told}, default=str)
     LOG.info(TOKENS.sub(f"{BEGINNING}...", line))
-
-
-def where_raised(error: BaseException) -> list[str]:
-    """Return where an error was raised, innermost first, without what it says: that may be what somebody has asked."""
-    frames = traceback.extract_tb(error.__traceback__)
-    return [f"{frame.filename}:{frame.lineno} {frame.name}" for frame in reversed(frames)][:20]
 
 
 class Recorder:
@@ -88,7 +81,7 @@ class Recorder:
         if principal is not None:
             told |= {"tenant": principal.tenant, "token": principal.token}
         if failed is None and "failure" in scope["state"]:
-            told |= {"error": scope["state"]["failure"]}
+            told |= scope["state"]["failure"]
         if failed is not None:
             told |= {"error": type(failed).__name__, "where": where_raised(failed)}
         log("request", **told)

@@ -9,7 +9,10 @@ import asyncio
 import ipaddress
 import itertools
 import json
+import math
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -17,13 +20,15 @@ from starlette.exceptions import HTTPException
 from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from synth.errors import InputError
+from synth.errors import InputError, SeveralErrors
 from synth.service.errors import ServiceError, again, error_response, refusal_of
 from synth.service.settings import ServiceSettings, is_loopback
 
+MOST_TOLD = 20  # faults of a body that are told one by one
 SAFE = ("GET", "HEAD", "OPTIONS")
 PROBES = ("/healthz", "/readyz", "/metrics")  # whoever watches the service must see it when it is busy, too
-JSON_BODY, FORM_BODY, FILE_BODY = "application/json", "application/x-www-form-urlencoded", "multipart/form-data"
+JSON_BODY, FILE_BODY = "application/json", "multipart/form-data"
+TAKEN = f"{JSON_BODY}, or {FILE_BODY} where a file is brought"
 SESSION_COOKIES = ("clutchsynth_session", "__Host-clutchsynth_session")  # on loopback, and over TLS
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
@@ -188,8 +193,7 @@ class BodyCheck:
 
     def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
         self.app, self.settings = app, settings
-        small = settings.body_limit
-        self.most = {JSON_BODY: small, FORM_BODY: small, FILE_BODY: settings.upload_limit}
+        self.most = {JSON_BODY: settings.body_limit, FILE_BODY: settings.upload_limit}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on with a body that can be read."""
@@ -214,7 +218,7 @@ class BodyCheck:
         """Return how large a body of a kind may be; refuse one that says that it is larger."""
         most = self.most.get(media)
         if most is None:
-            raise ServiceError(415, f"the body is {media or 'of no stated kind'}; expected {', '.join(self.most)}")
+            raise ServiceError(415, f"the body is {media or 'of no stated kind'}; expected {TAKEN}")
         if length.isdigit() and int(length) > most:
             raise _too_large(most)
         return most
@@ -290,15 +294,16 @@ def _closing(error: ServiceError) -> ServiceError:
 
 
 def check_json(body: bytes, depth: int, keys: int) -> None:
-    """Refuse what is not JSON, nests too deeply, has too many keys, or texts that no database can keep.
+    """Refuse what is not JSON, nests too deeply, has too many keys, one twice, or what cannot be kept or computed with.
 
     Raises
     ------
     ServiceError
         With 400 where it is no JSON, and 422 where it is.
     """
+    odd: list[_Odd] = []
     try:
-        read = json.loads(body, parse_constant=_no_number)
+        read = json.loads(body, **_hooks(odd))
     except RecursionError:
         raise _bad_json(f"at most {depth} levels of brackets") from None
     except (ValueError, UnicodeDecodeError):
@@ -320,8 +325,10 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
         if nested >= depth and any(isinstance(value, (dict, list)) for value in level):
             raise _bad_json(f"at most {depth} levels of brackets")
         if not below:
-            return
+            break
         level = below
+    if odd:
+        raise _told(read)
 
 
 def _check_texts(texts: Iterable[str]) -> None:
@@ -334,5 +341,51 @@ def _bad_json(expected: str) -> ServiceError:
     return refusal_of(InputError("body", "JSON", expected))
 
 
-def _no_number(name: str) -> Any:
-    raise ValueError(name)
+@dataclass(frozen=True, eq=False)
+class _Odd:
+    """Stands in JSON that was read for what readers of JSON do not agree upon."""
+
+    text: str
+    right: str
+    is_json: bool = True
+
+
+def _hooks(odd: list[_Odd]) -> dict[str, Any]:
+    """Return how JSON is read so that each oddity is noted, and stands in its place."""
+
+    def noted(text: str, right: str, is_json: bool = True) -> _Odd:
+        odd.append(_Odd(text, right, is_json))
+        return odd[-1]
+
+    def number(text: str) -> Any:
+        value = float(text)
+        return value if math.isfinite(value) else noted(text, "a finite number")
+
+    def members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            names = [name for name, _ in pairs]
+            twice = next(name for name in names if names.count(name) > 1)
+            found[twice] = noted(f"{twice} more than once", "each key once")
+        return found
+
+    constant = partial(noted, right="a finite number", is_json=False)
+    return {"parse_constant": constant, "parse_float": number, "object_pairs_hook": members}
+
+
+def _told(read: Any) -> ServiceError:
+    """Return the refusal of what is odd in JSON: all that is still in its place."""
+    waiting: list[tuple[tuple[str | int, ...], Any]] = [((), read)]
+    faults: list[InputError] = []
+    is_json = True
+    while waiting:
+        path, value = waiting.pop()
+        if isinstance(value, _Odd):
+            field = ": ".join(map(str, path)) or "body"
+            faults.append(InputError(field, value.text, value.right, path))
+            is_json &= value.is_json
+        elif isinstance(value, (dict, list)):
+            entries = value.items() if isinstance(value, dict) else enumerate(value)
+            waiting += reversed([((*path, key), entry) for key, entry in entries])
+    refusal = refusal_of(SeveralErrors(faults[:MOST_TOLD]))
+    return refusal if is_json else ServiceError(400, refusal.message, "not_json", refusal.problems)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import logging
 import signal
 import socket
@@ -31,6 +32,7 @@ from synth.service.recording import LOG
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor, worker_command
 
+ADDRESS = "an address of this machine"
 BACKLOG = 128  # connections that the system holds until they are looked at
 
 
@@ -216,8 +218,9 @@ def listening(host: str, port: int) -> socket.socket:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         listener = socket.create_server((host, port), family=family, backlog=BACKLOG)
     except OSError as error:
-        where = f"{host}, port {port}"
-        raise InputError("--host", where, f"an address and a port that are free here ({error.strerror})") from error
+        taken = error.errno in (errno.EADDRINUSE, errno.EACCES)
+        field, value, right = ("--port", port, f"a port that is free at {host}") if taken else ("--host", host, ADDRESS)
+        raise InputError(field, value, f"{right} ({error.strerror})") from error
     # Else an answer waits 40 ms for the client to confirm its first packet. Connections inherit it.
     listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return listener

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import version
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -18,6 +18,11 @@ from synth.service.security import SESSION_COOKIES, session_cookie
 
 router = APIRouter(prefix=API, tags=["tokens"])
 LARGEST_NUMBER = 2**31 - 1  # of a key in the database
+COOKIE = {"Set-Cookie": {"description": "By which the browser is known from now on.", "schema": {"type": "string"}}}
+SIGNED_IN: dict[int | str, dict[str, Any]] = {
+    201: {"description": "The browser is signed in.", "headers": COOKIE},
+    409: {"description": "Nobody needs to sign in here: there are no tokens."},
+}
 
 
 class VersionAnswer(BaseModel):
@@ -77,7 +82,7 @@ class SessionAnswer(BaseModel):
     scopes: list[str]
 
 
-@router.get("/version")
+@router.get("/version", summary="Which versions these are")
 async def what_this_is() -> VersionAnswer:
     """Tell versions, of programs and of tables."""
     return VersionAnswer(
@@ -85,13 +90,13 @@ async def what_this_is() -> VersionAnswer:
     )
 
 
-@router.get("/tokens")
+@router.get("/tokens", summary="All tokens")
 async def list_tokens(principal: Administrator, context: Context) -> TokenList:
     """List all tokens, also those that are not valid any more."""
     return TokenList(tokens=[_entry(token) for token in await context.read(context.accounts.tokens)])
 
 
-@router.post("/tokens", status_code=201)
+@router.post("/tokens", status_code=201, summary="Make a token")
 async def make_token(asked: TokenRequest, principal: Administrator, context: Context) -> MadeToken:
     """Make a token, and its tenant where that is a new one."""
     accounts, settings = context.accounts, context.settings
@@ -103,7 +108,7 @@ async def make_token(asked: TokenRequest, principal: Administrator, context: Con
     return MadeToken(id=made.id, prefix=made.prefix, value=made.value)
 
 
-@router.delete("/tokens/{token}", status_code=204)
+@router.delete("/tokens/{token}", status_code=204, summary="Revoke a token")
 async def revoke_token(
     token: Annotated[int, Path(ge=1, le=LARGEST_NUMBER)], principal: Administrator, context: Context
 ) -> None:
@@ -112,15 +117,18 @@ async def revoke_token(
         raise not_found()
 
 
-@router.get("/session")
+@router.get("/session", summary="Who you are")
 async def who_am_i(principal: Anybody) -> SessionAnswer:
     """Tell who you are, and what you may do."""
     return SessionAnswer(tenant=principal.tenant_name, scopes=sorted(principal.scopes))
 
 
-@router.post("/session", status_code=201)
+@router.post("/session", status_code=201, responses=SIGNED_IN, summary="Sign a browser in")
 async def sign_in(request: Request, response: Response, principal: Anybody, context: Context) -> SessionAnswer:
-    """Let a browser keep who it is: show a token once, get a cookie."""
+    """Let a browser keep who it is: show a token once, get a cookie.
+
+    There is no body: the token is shown as in every other request, by `Authorization: Bearer cs_...`.
+    """
     if principal.token is None:
         raise ServiceError(409, "nobody needs to sign in here: there are no tokens")
     value = await in_thread(context.accounts.sign_in, principal.token, context.settings.session_hours)
@@ -137,7 +145,7 @@ async def sign_in(request: Request, response: Response, principal: Anybody, cont
     return SessionAnswer(tenant=principal.tenant_name, scopes=sorted(principal.scopes))
 
 
-@router.delete("/session", status_code=204)
+@router.delete("/session", status_code=204, summary="Sign a browser out")
 async def sign_out(request: Request, response: Response, context: Context) -> None:
     """Forget this browser."""
     cookie = session_cookie(request.scope, context.settings)

@@ -201,7 +201,7 @@ def chosen_design(front: ParetoFront, design: Any) -> Design:
     if not front.designs:
         raise InputError("front", "no designs", "a front with designs")
     if isinstance(design, bool) or design not in ranks:
-        raise InputError("design", design, f"a rank from 1 to {len(front.designs)}, or a Design", ("design",))
+        raise InputError("design", design, f"a rank from 1 to {len(front.designs)}, or one of the designs", ("design",))
     return ranks[design]
 
 

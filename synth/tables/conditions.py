@@ -362,7 +362,7 @@ class _Parser:
         if first.kind == "text":
             return self.membership()
         if first.kind == "number":
-            raise self.wrong("the column first, then the comparison: mu_dynamic > 0.1")
+            raise self.wrong("the column first, then the comparison and the value")
         if first.kind not in ("name", "path"):
             raise self.wrong("a column, or a text in quotes before 'in'")
         self.next += 1
@@ -457,9 +457,9 @@ def parse_condition(text: str) -> Condition:
     ['crowned', 'kind']
     """
     if not isinstance(text, str):
-        raise InputError("condition", text, "a text such as mu_dynamic > 0.1")
+        raise InputError("condition", text, "a text: a column, a comparison and a value")
     if not text.strip():
-        raise InputError("condition", text, "a column, a comparison and a value, for example mu_dynamic > 0.1")
+        raise InputError("condition", text, "a column, a comparison and a value")
     if len(text) > INPUT_LIMITS.condition:
         raise InputError("condition", text[:40], f"at most {INPUT_LIMITS.condition} characters")
     parser = _Parser(text)

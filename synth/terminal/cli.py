@@ -17,6 +17,7 @@ from synth.files import frame_csv
 from synth.interrupts import taken_alike
 from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
+from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import report
 from synth.terminal import batch_commands as batches
 from synth.terminal import choice_commands, report_commands, robust_commands, service_commands, worker_commands
@@ -71,12 +72,20 @@ def main() -> None:
         _run()
 
 
+# What sentences for everybody leave out: the command that does what is wanted.
+COMMANDS = {
+    ONE_FAMILY: " (clutchsynth run compares several)",
+    A_QUESTION: " (clutchsynth check reads it)",
+    A_DESIGN: " (clutchsynth run takes one)",
+}
+
+
 def _run() -> None:
     try:
         with taken_alike(), one_command():
             app()
     except InputError as error:
-        tell(" ".join(str(error).split()))
+        tell(" ".join(f"{error}{COMMANDS.get(error.expected, '')}".split()))
         sys.exit(BAD_INPUT)
     except BrokenPipeError:
         # Whoever read the output has gone (``| head``); there is nobody left to tell.

@@ -1,8 +1,10 @@
-"""The commands of the service: serve, token, database, and pruning of jobs."""
+"""The commands of the service: serve, token, tenant, database, and pruning of jobs."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,10 +17,15 @@ from synth.terminal.batch_commands import jobs_app
 from synth.terminal.session import INTERNAL, tell
 
 if TYPE_CHECKING:
-    from synth.jobs.accounts import TokenEntry
+    from synth.jobs.accounts import TenantLimits, TokenEntry
+    from synth.jobs.database import Database
     from synth.service.settings import ServiceSettings
 
 PACKAGES = ("fastapi", "uvicorn", "httptools", "jinja2", "python_multipart", "prometheus_client", "defusedxml")
+DATABASE = "--database"  # the field of what is wrong with a database
+LIMITS = ("open_jobs", "running", "seconds_limit", "rows")  # of a tenant, as they are kept
+NO_LIMIT, MOST = "none", "N|none"
+LARGEST_LIMIT = 2**53
 
 Config = Annotated[
     Path | None,
@@ -38,6 +45,7 @@ ServiceDatabase = Annotated[
 TokenName = Annotated[str, typer.Argument(help="Number or first letters of a token, as list shows.", metavar="TOKEN")]
 
 token_app = typer.Typer(help="Make, list and revoke tokens.", no_args_is_help=True, rich_markup_mode=None)
+tenant_app = typer.Typer(help="List tenants, and change their limits.", no_args_is_help=True, rich_markup_mode=None)
 database_app = typer.Typer(
     help="Check, back up and migrate a job database.", no_args_is_help=True, rich_markup_mode=None
 )
@@ -47,6 +55,7 @@ def register(app: typer.Typer) -> None:
     """Add the commands to the command line."""
     app.command(name="serve")(serve)
     app.add_typer(token_app, name="token")
+    app.add_typer(tenant_app, name="tenant")
     app.add_typer(database_app, name="database")
     jobs_app.command(name="prune")(prune)
 
@@ -70,12 +79,13 @@ def serve(
         raise InputError(f"the package {missing}", None, "the extra of the service: pip install 'clutchsynth[service]'")
     if no_workers and workers is not None:
         raise InputError("--no-workers", workers, "either --workers or --no-workers")
-    settings = _settings(config, data, database, host=host, port=port, workers=0 if no_workers else workers)
     from synth.service.serve import serve as run
 
-    run(settings, lambda sentence: print(sentence, flush=True))
+    with _settings(config, data, database, host, port, 0 if no_workers else workers) as settings:
+        run(settings, lambda sentence: print(sentence, flush=True))
 
 
+@contextmanager
 def _settings(
     config: Path | None,
     data: Path | None,
@@ -83,14 +93,23 @@ def _settings(
     host: str | None = None,
     port: int | None = None,
     workers: int | None = None,
-) -> ServiceSettings:
-    """Return the settings of the service, as file, variables and flags state them."""
+) -> Iterator[ServiceSettings]:
+    """Give the settings of the service, as file, variables and flags state them.
+
+    What is wrong with a database that nobody has named is told of the folder that holds it.
+    """
     from synth.service.settings import read_settings
 
     stated = {"data": data, "database": database, "host": host, "port": port, "workers": workers}
     if data is not None and database is None:
         stated["database"] = ""  # the folder says where it is
-    return read_settings(config, os.environ, stated)
+    settings = read_settings(config, os.environ, stated)
+    try:
+        yield settings
+    except InputError as fault:
+        if fault.field != DATABASE or settings.database:
+            raise
+        raise InputError("--data", fault.value, fault.expected, fault.path) from fault
 
 
 # ---- tokens ---------------------------------------------------------------------------------------------------------
@@ -114,11 +133,10 @@ def create_token(
     from synth.jobs.accounts import Accounts
     from synth.jobs.database import Database
 
-    settings = _settings(config, data, database)
-    wanted = settings.token_days if days is None else days
-    if wanted < 0:
+    if days is not None and days < 0:
         raise InputError("--days", days, "0 or more")
-    with Database(_place(settings)) as opened:
+    with _settings(config, data, database) as settings, Database(_place(settings)) as opened:
+        wanted = settings.token_days if days is None else days
         accounts = Accounts(opened)
         owner = accounts.tenant(tenant, settings.tenant_limits)
         asked = [scope.strip() for scope in scopes.split(",") if scope.strip()]
@@ -131,24 +149,19 @@ def create_token(
 def list_tokens(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """List the tokens, also those that are not valid any more."""
     from synth.jobs.accounts import Accounts
-    from synth.jobs.database import Database
 
-    with Database(_settings(config, data, database).database_url, create=False) as opened:
+    with _opened(config, data, database) as opened:
         found = Accounts(opened).tokens()
-    rows: list[tuple[str, ...]] = [("token", "begins", "tenant", "scopes", "created", "used", "expires", "name")]
-    rows += [_line(token) for token in found]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    heads = ("token", "begins", "tenant", "scopes", "created", "used", "expires", "name")
+    _print_table([heads, *map(_line, found)])
 
 
 @token_app.command(name="revoke")
 def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Revoke a token; whoever uses it is nobody from now on."""
     from synth.jobs.accounts import Accounts
-    from synth.jobs.database import Database
 
-    with Database(_settings(config, data, database).database_url, create=False) as opened:
+    with _opened(config, data, database) as opened:
         accounts = Accounts(opened)
         found = accounts.find(token)
         if not accounts.revoke(found.id):
@@ -179,11 +192,85 @@ def _end(token: TokenEntry) -> str:
     return "revoked" if token.revoked is not None else _day(token.expires)
 
 
+@contextmanager
+def _opened(config: Path | None, data: Path | None, database: str | None) -> Iterator[Database]:
+    """Give a database that must be there."""
+    from synth.jobs.database import Database
+
+    with _settings(config, data, database) as settings, Database(settings.database_url, create=False) as opened:
+        yield opened
+
+
+def _print_table(rows: Sequence[Sequence[str]]) -> None:
+    """Print rows, the first with the names of the columns, one below the other."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
 def _place(settings: ServiceSettings) -> str:
     """Return the address of a database that may be made."""
     if not settings.database:
         settings.data.mkdir(parents=True, exist_ok=True)
     return settings.database_url
+
+
+# ---- tenants --------------------------------------------------------------------------------------------------------
+
+
+@tenant_app.command(name="list")
+def list_tenants(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
+    """List the tenants, and what each may have at most."""
+    from synth.jobs.accounts import Accounts
+
+    with _opened(config, data, database) as opened:
+        found = Accounts(opened).tenants()
+    heads = ("tenant", *(name.replace("_", "-") for name in LIMITS), "created")
+    _print_table([heads, *((one.name, *_limits(one.limits), _day(one.created or None)) for one in found)])
+
+
+@tenant_app.command(name="limit")
+def limit_tenant(
+    tenant: Annotated[str, typer.Argument(help="Name of the tenant, as list shows.", metavar="TENANT")],
+    open_jobs: Annotated[str | None, typer.Option(help="Jobs that may be open at a time.", metavar=MOST)] = None,
+    running: Annotated[str | None, typer.Option(help="Jobs that are worked at at a time.", metavar=MOST)] = None,
+    seconds_limit: Annotated[str | None, typer.Option(help="Time limit of a job, in s.", metavar=MOST)] = None,
+    rows: Annotated[str | None, typer.Option(help="Rows of a batch.", metavar=MOST)] = None,
+    data: Data = None,
+    database: ServiceDatabase = None,
+    config: Config = None,
+) -> None:
+    """Change what a tenant may have at most, from the next request on; the rest stays as it is."""
+    from synth.jobs.accounts import Accounts
+
+    stated = {"open_jobs": open_jobs, "running": running, "seconds_limit": seconds_limit, "rows": rows}
+    wanted = {name: _most(name, text) for name, text in stated.items() if text is not None}
+    if not wanted:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in stated)
+        raise InputError("limits", None, f"at least one of {flags}")
+    with _opened(config, data, database) as opened:
+        found = Accounts(opened).limit(tenant, wanted)
+    told = zip((name.replace("_", "-") for name in LIMITS), _limits(found), strict=True)
+    print(f"{tenant}: {', '.join(f'{name} {most}' for name, most in told)}")
+
+
+def _most(name: str, text: str) -> float | None:
+    """Return a limit as it is stated: a number, or that there is none."""
+    if text == NO_LIMIT:
+        return None
+    whole = name != "seconds_limit"
+    try:
+        found = int(text) if whole else float(text)
+    except ValueError:
+        found = 0
+    if not 0 < found < LARGEST_LIMIT:
+        right = f"a {'whole ' if whole else ''}number above 0, or {NO_LIMIT}"
+        raise InputError(f"--{name.replace('_', '-')}", text, right)
+    return found
+
+
+def _limits(found: TenantLimits) -> list[str]:
+    return [NO_LIMIT if (most := getattr(found, name)) is None else f"{most:g}" for name in LIMITS]
 
 
 # ---- the database ---------------------------------------------------------------------------------------------------
@@ -195,7 +282,8 @@ def check_database(data: Data = None, database: ServiceDatabase = None, config: 
     from synth.jobs.database import HEAD
     from synth.jobs.maintenance import examine
 
-    found = examine(_settings(config, data, database).database_url)
+    with _settings(config, data, database) as settings:
+        found = examine(settings.database_url)
     for fault in found.faults:
         print(f"damaged: {fault}")
     if not found.current:
@@ -215,7 +303,8 @@ def back_up_database(
     """Copy a database into a file, while it is used."""
     from synth.jobs.maintenance import back_up
 
-    back_up(_settings(config, data, database).database_url, file)
+    with _settings(config, data, database) as settings:
+        back_up(settings.database_url, file)
     print(f"written to {file}")
 
 
@@ -224,7 +313,8 @@ def migrate_database(data: Data = None, database: ServiceDatabase = None, config
     """Bring the tables of a database to the form that this version uses."""
     from synth.jobs.maintenance import bring_up
 
-    before, after = bring_up(_place(_settings(config, data, database)))
+    with _settings(config, data, database) as settings:
+        before, after = bring_up(_place(settings))
     print(f"tables of version {after}, as before" if before == after else f"tables of version {after}")
 
 
@@ -232,9 +322,8 @@ def prune(data: Data = None, database: ServiceDatabase = None, config: Config = 
     """Remove jobs whose time is over, apart from pinned ones, and files that nobody has used."""
     from synth.jobs.store import Store
 
-    settings = _settings(config, data, database)
     count = 0
-    with Store(settings.database_url, create=False) as store:
+    with _settings(config, data, database) as settings, Store(settings.database_url, create=False) as store:
         while gone := store.prune(settings.prune_most):
             count += gone
     print("1 job removed" if count == 1 else f"{count} jobs removed")

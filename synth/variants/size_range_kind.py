@@ -13,7 +13,7 @@ from synth.jobs.kinds.asked import OF, WHERE, catalogs_of, checked_keys, of_file
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.models import Job
 from synth.jobs.store import Store
-from synth.question.spec_keys import shown_kind
+from synth.question.spec_keys import Described, shown_kind
 from synth.variants.size_range import check_size_range, size_range
 from synth.variants.variant_settings import VARIANTS
 
@@ -91,6 +91,7 @@ def _batch(job: Any, sources: Sources) -> Job:
             found = store.job(job)
         if found is not None and found.kind == BATCH:
             if found.state in LIVE:
-                raise InputError(OF, f"a batch that is {found.state}", "a batch that is done", (OF,))
+                open_batch = Described(f"a batch that is {found.state}")
+                raise InputError(f"{WHERE}: {OF}", open_batch, "a batch that is done", (OF,))
             return found
-    raise InputError(f"{WHERE}: {OF}", job, "the id of a batch", (OF,))
+    raise InputError(f"{WHERE}: {OF}", None if job is None else shown_kind(job), "the id of a batch", (OF,))

@@ -75,6 +75,10 @@ def test_studies_explanations_and_comparisons_are_jobs_that_are_done(client: Ser
     study = client.whatif(FAMILY, DUTY, {"load_torque": ["500 N*m", "600 N*m"]}, objectives=["mass"], points=1, fix=FIX)
     assert [step["status"] for step in study.result()["steps"]] == ["optimal", "optimal"]
     assert len(study.frame("whatif.csv")) == 2
+    with pytest.raises(
+        synth.InputError, match=r"name: got 'study.json'; expected a CSV file of the job: .*whatif\.csv"
+    ):
+        study.frame("study.json")
     study.save(tmp_path / "out", "whatif.csv", "study.json")
     assert sorted(path.name for path in (tmp_path / "out").iterdir() if path.name[0] != ".") == [
         "study.json",
@@ -85,7 +89,7 @@ def test_studies_explanations_and_comparisons_are_jobs_that_are_done(client: Ser
     drive = {"load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2"}
     disc = {"family": "disc_clutch", "parts": {"friction_pair": ["moulded_dry"]}}
     cone = {"family": "cone_clutch", "parts": {"friction_pair": ["moulded_dry"], "cone_layout": ["outer_spring"]}}
-    several = client.compare([disc, cone], drive, points=2, fix={"ramp_time": "0.3 s"})
+    several = client.compare([disc, cone], drive, ["mass"], 2, fix={"ramp_time": "0.3 s"})
     assert {family["family"] for family in several.result()["families"]} == {"disc_clutch", "cone_clutch"}
 
 
@@ -112,8 +116,15 @@ def test_what_is_wrong_is_said_as_synth_says_it(client: ServiceClient) -> None:
     with pytest.raises(synth.InputError, match="multi_plate_clutch"):
         client.synthesize("multi_plate_cluch", DUTY)
     with pytest.raises(ServiceRefusedError) as refused:
-        client.job("nothing").status()
+        client.job("nothing")
     assert (refused.value.status, refused.value.code) == (404, "not_found")
+    with pytest.raises(synth.InputError, match="a job of this service"):
+        client.job(5)  # type: ignore[arg-type]
+    with pytest.raises(synth.InputError) as several:
+        client.synthesize(FAMILY, {**DUTY, "load_torque": "much", "driver_speed": "fast"})
+    assert [fault.path[-1] for fault in several.value.every()] == ["load_torque", "driver_speed"]
+    with pytest.raises(synth.InputError, match="objectives: got an empty list; expected at least one of"):
+        client.synthesize(FAMILY, DUTY, [])
 
 
 def test_a_job_is_cancelled_resumed_and_removed(client: ServiceClient) -> None:

@@ -83,7 +83,6 @@ def test_a_job_is_made_worked_at_and_read_back(store: Store) -> None:
     )
     assert ended.created <= (ended.started or 0) <= (ended.ended or 0)
     assert store.records(job) == {"front.json": record}
-    assert store.record_list(job) == [("front.json", "application/json", record.digest, 10)]
     assert [event.kind for event in store.happenings(0, job=job)] == ["created", "started", DONE]
     assert store.happenings(0)[-1].data == {"state": DONE, "outcome": "optimal"}
     assert store.claim_next("me", CODE) is None

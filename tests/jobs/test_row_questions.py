@@ -129,7 +129,7 @@ def test_a_line_with_too_few_cells_is_a_fault(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("forse [kN]", "expected force (or 'forse [kN]: carry' in a mapping file"),
+        ("forse [kN]", "expected force (or 'forse [kN]: carry' in the mapping"),
         ("saftey_factor", "expected safety_factor"),
         ("load_torqe [N*m]", "expected load_torque"),
         ("familly", "expected family"),
@@ -185,7 +185,7 @@ def test_families_and_their_options_are_checked_row_by_row() -> None:
     assert (wrong.line, wrong.column, wrong.value) == (4, "family", "multi_plate")
     assert all(name in wrong.expected for name in families())
     assert fourth.faults[0].value is None
-    with pytest.raises(InputError, match=r"line 1, column family: is missing; expected such a column .*--family"):
+    with pytest.raises(InputError, match=r"line 1, column family: is missing; expected such a column, or one family"):
         questioner([base], None)
 
 

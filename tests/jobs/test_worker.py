@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import signal
@@ -21,12 +22,18 @@ import yaml
 
 from synth.jobs.batch import batch
 from synth.jobs.database import file_url
-from synth.jobs.engine_process import EngineCrashedError, EngineProcess, Engines, EngineTimeoutError
+from synth.jobs.engine_process import (
+    EngineCrashedError,
+    EngineFailedError,
+    EngineProcess,
+    Engines,
+    EngineTimeoutError,
+)
 from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, READ_TASK
 from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
 from synth.jobs.job_table import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.kinds.contract import NOTHING
-from synth.jobs.models import Job, WorkUnit
+from synth.jobs.models import Job, JobRecord, WorkUnit
 from synth.jobs.shelf import Shelf
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
@@ -63,8 +70,8 @@ def submit(store: Store, engines: Engines, kind: str, request: dict[str, Any], *
 
 
 @contextmanager
-def serving(store: Store, slots: int = 1, settings: JobSettings = JOBS) -> Iterator[Worker]:
-    worker = Worker(store, slots, settings=settings, spare=False)
+def serving(store: Store, slots: int = 1, settings: JobSettings = JOBS, **more: Any) -> Iterator[Worker]:
+    worker = Worker(store, slots, settings=settings, spare=False, **more)
     thread = threading.Thread(target=worker.run)
     thread.start()
     try:
@@ -113,9 +120,14 @@ def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_pat
 
 
 def test_a_refusal_that_only_the_work_sees_is_told_with_its_place(tmp_path: Path, engines: Engines) -> None:
-    with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store):
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store:
+        name = submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": [HOIST["requirements"]]})
         rows = [{**HOIST["requirements"], "load_torque": "much"}]
-        job = ended(store, submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": rows}))
+        with store.engine.begin() as connection:  # of long tables the first rows alone are checked before
+            packed = gzip.compress(json.dumps(rows).encode())
+            connection.execute(sa.update(JobRecord).where(JobRecord.job == name).values(content=packed))
+        with serving(store):
+            job = ended(store, name)
         assert job.state == FAILED
         assert job.error["code"] == "bad_input"
         (problem,) = job.error["problems"]
@@ -282,10 +294,10 @@ def test_a_warm_process_answers_and_a_late_one_is_replaced() -> None:
 def test_processes_that_nobody_needs_are_not_started() -> None:
     lazy = Engines(2, lazy=True)
     try:
-        assert not lazy._all
+        assert not len(lazy.pool)
         for _ in range(2):
             lazy.call(EXAMPLES_TASK, {}, 60.0)
-        assert len(lazy._all) == 1  # the first was free again
+        assert len(lazy.pool) == 1  # the first was free again
     finally:
         lazy.close()
 
@@ -307,6 +319,29 @@ def test_a_process_goes_with_the_one_that_has_started_it(tmp_path: Path) -> None
     process.kill()
     process.communicate()
     until(lambda: Path(f"/proc/{engine}").exists(), lambda there: not there, 20.0)
+
+
+def test_an_error_of_a_program_is_told_with_its_place_and_the_process_goes_on(engines: Engines) -> None:
+    before = {engine.pid for engine in engines.pool._all}
+    with pytest.raises(EngineFailedError) as caught:
+        engines.call(READ_TASK, {}, 60.0)
+    failure = caught.value.failure
+    assert failure.kind == "KeyError"
+    assert "engine_work.py" in failure.where[0]
+    assert {engine.pid for engine in engines.pool._all} == before
+
+
+def test_a_job_that_no_program_can_do_fails_without_telling_the_program(tmp_path: Path, engines: Engines) -> None:
+    said: list[str] = []
+    with Store(file_url(tmp_path / "jobs.sqlite")) as store:
+        job = submit(store, engines, "synthesis", QUICK)
+        with store.engine.begin() as connection:
+            connection.execute(sa.update(Job).where(Job.id == job).values(kind="verify"))
+        with serving(store, say=said.append):
+            found = ended(store, job)
+    assert found.state == FAILED
+    assert "KeyError" not in json.dumps(found.error)
+    assert any("KeyError" in line and "verify.py" in line for line in said)
 
 
 def test_a_process_that_was_ended_says_how() -> None:

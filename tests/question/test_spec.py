@@ -97,7 +97,7 @@ def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> No
         ("family: f\npoints: 0\n", ["points", "got 0", "1 or more"]),
         ("family: f\npoints: 2.5\n", ["points", "got 2.5", "whole number"]),
         ("family: f\npoints: 501\n", ["points", "got 501", "at most 500"]),
-        ("family: f\npoints: yes\n", ["points", "got True", "whole number"]),
+        ("family: f\npoints: yes\n", ["points", "got true", "whole number"]),
         ("family: f\ngap: 2\n", ["gap", "1e-6 to 0.5"]),
         ("family: f\ngrid: maybe\n", ["grid", "'maybe'", "true"]),
         ("family: f\nseed: -1\n", ["seed", "0 or more"]),

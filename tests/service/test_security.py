@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
-from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError, Failure
 from synth.service.errors import ServiceError
 from synth.service.recording import LOG
 from synth.service.security import SESSION_COOKIES, check_json
@@ -105,6 +105,7 @@ def added(service: Service, raised: BaseException) -> None:
         (InputError("--database", "jobs.sqlite", "a job database that is whole"), 503, "unavailable"),
         (EngineTimeoutError("check: more than 5 s"), 503, "unavailable"),
         (EngineCrashedError("the process ended with code 1"), 503, "unavailable"),
+        (EngineFailedError(Failure("KeyError", "secret", ("small.py:7 check",))), 500, "engine_failed"),
         (ServiceError(409, "it has ended", "ended"), 409, "ended"),
         (RuntimeError("the answer is secret"), 500, "internal"),
     ],
@@ -130,6 +131,18 @@ def test_an_error_tells_its_number_alone_and_the_log_where_it_was(
     assert line["request_id"] == answer.headers["x-request-id"]
     assert line["error"] == "RuntimeError"
     assert any("test_security" in place for place in line["where"])
+
+
+def test_an_error_of_what_computes_is_told_by_its_number_and_logged_with_its_place(
+    service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
+    added(service, EngineFailedError(Failure("KeyError", "the answer is secret", ("small.py:7 check",))))
+    with caplog.at_level(logging.INFO, LOG.name):
+        answer = service("GET", "/fail?spec=secret")
+    (line,) = [json.loads(record.message) for record in caplog.records]
+    assert "secret" not in answer.text + json.dumps(line)
+    assert (line["error"], line["where"]) == ("KeyError", ["small.py:7 check"])
+    assert line["request_id"] == answer.json()["error"]["request_id"]
 
 
 def test_a_database_that_is_away_is_waited_for(service: Service) -> None:
@@ -230,7 +243,7 @@ async def chunks(count: int, size: int) -> Any:
         yield b"x" * size
 
 
-@pytest.mark.parametrize("media", ["application/json", "application/x-www-form-urlencoded", "multipart/form-data"])
+@pytest.mark.parametrize("media", ["application/json", "multipart/form-data"])
 def test_a_body_is_counted_while_it_arrives(tmp_path: Path, media: str) -> None:
     with Service(tmp_path, body_limit=10_000, upload_limit=10_000) as service:
         read = 0
@@ -378,6 +391,65 @@ def texts(tree: Any) -> list[str]:
     return [tree] if isinstance(tree, str) else []
 
 
+@pytest.mark.parametrize(
+    ("body", "faults"),
+    [
+        ('{"a": NaN}', [(["a"], "a: got 'NaN'; expected a finite number")]),
+        (
+            '{"a": {"b": [1, -Infinity]}, "c": 1e999}',
+            [
+                (["a", "b", 1], "a: b: 1: got '-Infinity'; expected a finite number"),
+                (["c"], "c: got '1e999'; expected a finite number"),
+            ],
+        ),
+        ('{"a": 1, "b": 2, "a": 3}', [(["a"], "a: got 'a more than once'; expected each key once")]),
+        ('[{"a": {"b": 1, "b": 3}}]', [([0, "a", "b"], "0: a: b: got 'b more than once'; expected each key once")]),
+        ("NaN", [([], "body: got 'NaN'; expected a finite number")]),
+    ],
+)
+def test_what_readers_of_json_do_not_agree_upon_is_told_with_its_place(
+    service: Service, body: str, faults: list[tuple[list[Any], str]]
+) -> None:
+    answer = service("POST", "/api/v1/jobs", content=body, headers={"content-type": "application/json"})
+    refused = (400, "not_json") if "NaN" in body or "Infinity" in body else (422, "bad_input")
+    assert (answer.status_code, code_of(answer)) == refused
+    assert [(one["path"], one["message"]) for one in answer.json()["error"]["problems"]] == faults
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("jobs?foo=1", "parameter: got 'foo'; expected one of state, kind, family, q, parent, pinned, limit, cursor"),
+        ("jobs?state=bar", "state.0: got 'bar'; expected 'open', 'running', "),
+        ("jobs?kind=foo", "kind: got 'foo'; expected one of synthesis, compare, "),
+        ("jobs?family=xx", "family: got 'xx'; expected one of disc_clutch, wrap_spring"),
+        ("version?x=1", "parameter: got 'x'; expected an address without parameters"),
+        ("events?job=1", "parameter: got 'job'; expected one of jobs"),
+    ],
+)
+def test_what_a_list_cannot_be_asked_is_refused(tmp_path: Path, path: str, message: str) -> None:
+    names = {"families": [{"name": "disc_clutch"}, {"name": "wrap_spring"}]}
+    with Service(tmp_path, Answering(lambda task, payload: names)) as service:
+        answer = service("GET", f"/api/v1/{path}")
+        assert (answer.status_code, code_of(answer)) == (422, "bad_input")
+        assert answer.json()["error"]["message"].startswith(message)
+        assert service("GET", "/api/v1/jobs?kind=synthesis&family=disc_clutch&state=done").status_code == 200
+
+
+def test_bodies_of_another_kind_are_told_what_is_taken(service: Service) -> None:
+    form = service("POST", "/api/v1/jobs", data={"kind": "synthesis"})
+    assert (form.status_code, code_of(form)) == (415, "unsupported_media")
+    assert form.json()["error"]["message"].endswith(
+        "expected application/json, or multipart/form-data where a file is brought"
+    )
+    parts = service("POST", "/api/v1/jobs", files={"file": ("a.csv", b"a")})
+    assert (parts.status_code, code_of(parts)) == (415, "unsupported_media")
+    other = service("PUT", "/api/v1/version")
+    assert (other.status_code, other.json()["error"]["message"]) == (405, "this cannot be done here; expected GET")
+    nothing = service("POST", "/api/v1/jobs", content="null", headers={"content-type": "application/json"})
+    assert nothing.json()["error"]["message"] == "body: got 'null'; expected a JSON object"
+
+
 @settings(max_examples=repetitions(50, 5_000), deadline=None, derandomize=True)
 @given(tree=TREES, depth=st.integers(1, 4), most=st.integers(0, 6))
 def test_json_is_refused_for_its_form_alone(tree: Any, depth: int, most: int) -> None:
@@ -418,7 +490,7 @@ def test_a_log_line_tells_who_and_what_but_neither_content_nor_secret(
     lines = [json.loads(line) for line in told.split("\n")]
     assert token[:-1] not in told
     assert "private" not in told
-    assert [line["status"] for line in lines if line["event"] == "request"] == [200, 201, 401]
+    assert [line["status"] for line in lines if line["event"] == "request"] == [422, 201, 401]
     assert lines[0]["tenant"] == 1
     assert lines[0]["token"] == 1
     assert lines[0]["path"] == TOKENS

@@ -240,7 +240,12 @@ def test_a_port_that_is_taken_is_told(tmp_path: Path) -> None:
         port = taken.getsockname()[1]
         done = at_once("serve", "--data", tmp_path, "--port", port, "--no-workers", folder=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"clutchsynth: --host: got '127.0.0.1, port {port}'")
+    assert done.stderr.startswith(f"clutchsynth: --port: got {port}; expected a port that is free at 127.0.0.1 (")
+
+
+def test_an_address_of_elsewhere_is_told(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"--host: got '192\.0\.2\.1'; expected an address of this machine"):
+        listening("192.0.2.1", 0)
 
 
 def test_a_file_has_one_server_and_others_may_use_it(tmp_path: Path) -> None:
@@ -253,7 +258,7 @@ def test_a_file_has_one_server_and_others_may_use_it(tmp_path: Path) -> None:
             second = at_once("serve", "--data", tmp_path / place, "--port", "0", "--no-workers", folder=tmp_path)
             assert second.returncode == 2
             assert second.stderr.count("\n") == 1
-            assert re.fullmatch(r"clutchsynth: --database: got '.*'; expected a file that no other .*\n", second.stderr)
+            assert re.fullmatch(r"clutchsynth: --data: got '.*'; expected a file that no other .*\n", second.stderr)
         assert at_once("token", "create", "a", "--data", tmp_path / "data").returncode == 0
         assert at_once("database", "check", "--data", tmp_path / "data").returncode == 0
         assert httpx.get(f"{address}api/v1/session").status_code == 401

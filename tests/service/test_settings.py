@@ -50,7 +50,7 @@ def test_variables_that_stand_for_other_things_are_let_alone() -> None:
         ("prot = 1", r"service.toml: prot: got 1; expected one of the keys host, port, .*"),
         ('port = "8350"', r"service.toml: port: got '8350'; expected a whole number"),
         ("port = 1.5", r"service.toml: port: got 1.5; expected a whole number"),
-        ("port = true", r"service.toml: port: got True; expected a whole number"),
+        ("port = true", r"service.toml: port: got true; expected a whole number"),
         ("port = 70000", r"service.toml: port: got 70000; expected 0 to 65535"),
         ("body_timeout = nan", r"service.toml: body_timeout: got nan; expected 0.1 to 3600"),
         ("log = 1", r"service.toml: log: got 1; expected true or false"),

@@ -126,7 +126,7 @@ def test_values_of_a_requirement(values: Any, unit: str, numbers: Sequence[float
         ([5.0] * 1001, ["1001 steps", "at most 1000 steps"]),
         ("nan kN", ["numbers"]),
         ([], ["at least one value"]),
-        ([True], ["True"]),
+        ([True], ["true"]),
         ([float("inf")], ["inf"]),
         (["5 kN", None], ["missing"]),
         (5, ["values such as"]),

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.accounts import Accounts
+from synth.jobs.accounts import Accounts, TenantLimits
 from synth.jobs.database import file_url
 from synth.jobs.job_table import DONE, Ending, NewJob
 from synth.jobs.models import Job, moment
@@ -56,9 +56,9 @@ def test_a_token_is_made_listed_and_revoked(tmp_path: Path) -> None:
         (("token", "create", "a", "--scopes", "write"), "scopes: got 'write'; expected one or more of read"),
         (("token", "create", ""), "name: got ''; expected a name"),
         (("token", "create", "a", "--days", "-1"), "--days: got -1.0; expected 0 or more"),
-        (("token", "revoke", "7"), "--database: got"),
-        (("token", "list"), "--database: got"),
-        (("database", "check"), "--database: got"),
+        (("token", "revoke", "7"), "--data: got"),
+        (("token", "list"), "--data: got"),
+        (("database", "check"), "--data: got"),
         (("serve", "--workers", "2", "--no-workers"), "--no-workers: got 2; expected either"),
         (("serve", "--port", "70000"), "--port: got 70000; expected 0 to 65535"),
         (("serve", "--config", "nothing.toml"), "--config: got 'nothing.toml'; expected a file that can be read"),
@@ -70,6 +70,45 @@ def test_what_is_wrong_is_told_in_a_sentence(tmp_path: Path, words: tuple[str, .
     assert done.stdout == ""
     assert done.stderr.startswith(f"clutchsynth: {told}")
     assert done.stderr.count("\n") == 1
+
+
+def test_limits_of_a_tenant_are_shown_and_changed(tmp_path: Path) -> None:
+    place = ("--data", "data")
+    assert at_once("token", "create", "robot", "--tenant", "acme", *place, folder=tmp_path).returncode == 0
+    shown = at_once("tenant", "list", *place, folder=tmp_path).stdout.splitlines()
+    assert shown[0].split() == ["tenant", "open-jobs", "running", "seconds-limit", "rows", "created"]
+    assert shown[1].split()[:5] == ["local", "none", "none", "none", "none"]
+    assert shown[2].split()[:5] == ["acme", "20", "2", "600", "100000"]
+    done = at_once("tenant", "limit", "acme", "--running", "4", "--rows", "none", *place, folder=tmp_path)
+    assert done.stdout == "acme: open-jobs 20, running 4, seconds-limit 600, rows none\n"
+    with store_in(tmp_path) as database:
+        entry = Accounts(database).tenants()[1]
+    assert (entry.name, entry.limits) == ("acme", TenantLimits(open_jobs=20, running=4, seconds_limit=600.0))
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("local",), "limits: is missing; expected at least one of --open-jobs, --running, --seconds-limit, --rows"),
+        (("local", "--rows", "0"), "--rows: got '0'; expected a whole number above 0, or none"),
+        (("local", "--running", "1.5"), "--running: got '1.5'; expected a whole number above 0, or none"),
+        (("local", "--seconds-limit", "nan"), "--seconds-limit: got 'nan'; expected a number above 0, or none"),
+        (("acmee", "--rows", "5"), "tenant: got 'acmee'; expected one of local"),
+    ],
+)
+def test_what_is_no_limit_is_told_in_a_sentence(tmp_path: Path, words: tuple[str, ...], told: str) -> None:
+    assert at_once("database", "migrate", "--data", "data", folder=tmp_path).returncode == 0
+    done = at_once("tenant", "limit", *words, "--data", "data", folder=tmp_path)
+    assert done.returncode == 2
+    assert " ".join(done.stderr.split()).startswith(f"clutchsynth: {told}")
+
+
+def test_a_folder_without_a_database_is_told_by_the_flag_that_names_it(tmp_path: Path) -> None:
+    for words in (("token", "list"), ("tenant", "list"), ("jobs", "prune"), ("database", "check")):
+        done = at_once(*words, "--data", "nowhere", folder=tmp_path)
+        assert (done.returncode, done.stderr.split(": ")[1]) == (2, "--data"), done.stderr
+        named = at_once(*words, "--database", "sqlite:///nowhere.sqlite", folder=tmp_path)
+        assert (named.returncode, named.stderr.split(": ")[1]) == (2, "--database"), named.stderr
 
 
 def test_a_missing_extra_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

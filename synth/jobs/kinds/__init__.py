@@ -49,6 +49,8 @@ class Kind:
         Name of the main record.
     timed : bool
         Whether its requests take a ``time_limit``.
+    checked : bool
+        Whether the check of a spec tells all that is wrong with its requests.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Kind:
     bulk: bool = False
     record: str
     timed: bool = True
+    checked: bool = False
 
     def load(self) -> KindModule:
         """Return its module."""
@@ -73,12 +76,14 @@ KINDS: Mapping[str, Kind] = _kinds(
         module="synth.jobs.kinds.synthesis",
         title="Ranked Pareto designs for a requirement",
         record="front.json",
+        checked=True,
     ),
     Kind(
         name="compare",
         module="synth.jobs.kinds.comparison",
         title="Several families asked the same",
         record="comparison.json",
+        checked=True,
     ),
     Kind(
         name="whatif",
@@ -91,6 +96,7 @@ KINDS: Mapping[str, Kind] = _kinds(
         module="synth.jobs.kinds.explain",
         title="Why nothing is feasible, and what would make it so",
         record="explanation.json",
+        checked=True,
     ),
     Kind(
         name="prices",

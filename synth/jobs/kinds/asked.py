@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError, at
-from synth.jobs.kinds.contract import QUESTION, Record, Sources, Tell
+from synth.jobs.kinds.contract import QUESTION, TABLE, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
@@ -76,10 +76,9 @@ def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple
         return given, own
     with at(OF):
         records = records_of(sources, given.pop(OF))
-        question = _json_of(records, QUESTION)
-        before = question.get("request")
+        before = _json_of(records, QUESTION).get("request") if QUESTION in records else None
         if not isinstance(before, Mapping) or FAMILY not in before:
-            raise InputError(OF, question.get("kind"), "a job that asks a question of a family")
+            raise InputError(f"{WHERE}: {OF}", shown_job(records), "a job that asks a question of a family")
     return patched({key: value for key, value in before.items() if key in SPEC}, given), own
 
 
@@ -195,8 +194,17 @@ def records_of(sources: Sources, job: Any) -> Mapping[str, bytes]:
     """
     found = sources.records.get(job) if isinstance(job, str) else None
     if not found:
-        raise InputError(f"{WHERE}: {OF}", shown_kind(job), "the id of a job that has ended")
+        shown = None if job is None else shown_kind(job)
+        raise InputError(f"{WHERE}: {OF}", shown, "the id of a job that has ended")
     return found
+
+
+def shown_job(records: Mapping[str, bytes]) -> Described:
+    """Return what to show of an earlier job that is not of the kind that is wanted."""
+    if any(name.startswith(TABLE) for name in records):
+        return Described("a batch")
+    named = _json_of(records, QUESTION).get("kind") if QUESTION in records else None
+    return Described(f"a job of the kind {named}" if isinstance(named, str) else "a job of another kind")
 
 
 def _json_of(records: Mapping[str, bytes], name: str) -> dict[str, Any]:
@@ -205,7 +213,7 @@ def _json_of(records: Mapping[str, bytes], name: str) -> dict[str, Any]:
     except (KeyError, ValueError, RecursionError):
         content = None
     if not isinstance(content, dict):
-        raise InputError(f"{WHERE}: {OF}", None, f"a job that has a {name}")
+        raise InputError(f"{WHERE}: {OF}", Described("a job whose records are damaged"), "one that is as it was saved")
     return content
 
 
@@ -233,7 +241,7 @@ def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = Tru
     """
     names = fronts_in(records)
     if not names:
-        raise InputError(f"{WHERE}: {OF}", None, "a job that has found a front", (OF,))
+        raise InputError(f"{WHERE}: {OF}", shown_job(records), "a job that has found a front", (OF,))
     if "" in names and family is not None:
         raise InputError(f"{WHERE}: {FAMILY}", family, "no family: the job asks one alone", (FAMILY,))
     if "" not in names and family not in names:
@@ -243,9 +251,10 @@ def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = Tru
     with at(OF):
         content = _json_of(records, name)
         if content.get("format") != FRONT_FORMAT:
-            raise InputError(f"{name}: format", content.get("format"), f"format {FRONT_FORMAT}")
+            raise InputError(f"{WHERE}: {OF}: {name}: format", content.get("format"), f"format {FRONT_FORMAT}")
         if check and (fault := changed(content)):
-            raise InputError(name, None, f"a front as it was saved; {fault}")
+            changed_front = Described("a front that was changed")
+            raise InputError(f"{WHERE}: {OF}: {name}", changed_front, f"a front as it was saved; {fault}")
         return replace(front_of_record(content, Path(name)), folder=None)
 
 

@@ -27,7 +27,7 @@ from synth.jobs.row_table import EXCEL, RowTable, read_table
 from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import shown_kind
+from synth.question.spec_keys import Described, shown_kind
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")
@@ -35,10 +35,14 @@ KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "tim
 KEYS = (UPLOAD, ROWS, *KEPT)
 SUMMARY = "batch.json"
 FILES = ("designs.csv", "rows.csv", SUMMARY)
+STATED = "rows.json"  # what rows are kept as that stand in a request
+ROW = '{"load_torque": "600 N*m"}'
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
-    """Check a request: its table as a whole, and its settings; the rows are checked when it is planned.
+    """Check a request: its table as a whole, its settings, and rows until one can be asked.
+
+    All of them are checked when it is planned.
 
     Raises
     ------
@@ -49,12 +53,13 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     table = table_of(stated, sources)
     kept = {key: value for key, value in stated.items() if key in KEPT}
     with _job(kept, table, sources) as job:
+        job.refuse_hopeless(KIND_SETTINGS.checked_seconds)
         count = counted_lines(job.table)
-        name = f"{job.table.name}: {count} rows"
+        counted = f"{count} row{'' if count == 1 else 's'}"
         asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
         return Posed(
             request=asked,
-            title=name,
+            title=counted if table.name == STATED else f"{job.table.name}: {counted}",
             families=tuple(sorted(job.questioner.named)),
             bulk=True,
             tables=digests(kept.get("catalogs"), sources),
@@ -157,15 +162,31 @@ def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:
         given = "both upload and rows" if UPLOAD in stated else None
         raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
     if ROWS in stated:
-        rows = stated[ROWS]
-        if not isinstance(rows, list) or not rows or not all(isinstance(row, Mapping) for row in rows):
-            right = "a list with an object for each row, such as {'load_torque': '600 N*m'}"
-            raise InputError(f"{WHERE}: {ROWS}", shown_kind(rows), right, (ROWS,))
-        return Record.of("rows.json", json.dumps(rows, ensure_ascii=False))
+        return Record.of(STATED, json.dumps(_stated_rows(stated[ROWS]), ensure_ascii=False))
     found = sources.files.get(stated[UPLOAD]) if isinstance(stated[UPLOAD], str) else None
     if found is None:
         raise InputError(f"{WHERE}: {UPLOAD}", stated[UPLOAD], "the id of a file that was uploaded", (UPLOAD,))
     return Record.of(f"{Path(found.name).stem or 'rows'}{_ending(found.name)}", found.content)
+
+
+def _stated_rows(rows: Any) -> list[Any]:
+    """Return rows that stand in a request.
+
+    Raises
+    ------
+    InputError
+        They are no list, there is none, or one of them is none.
+    """
+    with at(ROWS):
+        if not isinstance(rows, list) or not rows:
+            raise InputError(f"{WHERE}: {ROWS}", shown_kind(rows), f"a list with an object for each row, such as {ROW}")
+        for k, row in enumerate(rows):
+            if not isinstance(row, Mapping):
+                raise InputError(f"{WHERE}: {ROWS}: entry {k + 1}", shown_kind(row), f"an object such as {ROW}", (k,))
+        if all(value in (None, "") for row in rows for value in row.values()):
+            right = f"names with values in them, such as {ROW}"
+            raise InputError(f"{WHERE}: {ROWS}", Described("objects without values"), right)
+    return rows
 
 
 def _ending(name: str) -> str:
@@ -210,16 +231,15 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
 
 def _family(stated: Any) -> str | None:
     """Return the family of rows that name none."""
-    with at("family"):
-        if stated is not None and not isinstance(stated, str):
-            raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family")
-        if stated is not None:
-            load(stated)
-        return stated
+    if stated is not None and not isinstance(stated, str):
+        raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family", ("family",))
+    if stated is not None:
+        load(stated)
+    return stated
 
 
 def _mapping(stated: Any) -> dict[str, str]:
-    right = "an object such as {'Lastmoment [Nm]': 'load_torque'} ('carry' for a column that is only carried along)"
+    right = 'an object such as {"Lastmoment [Nm]": "load_torque"} ("carry" for a column that is only carried along)'
     if stated is None:
         return {}
     if not isinstance(stated, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in stated.items()):

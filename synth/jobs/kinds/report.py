@@ -5,12 +5,13 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from synth.analysis.reporting import report as write_report
 from synth.analysis.reporting import report_comparison
-from synth.errors import InputError, at, whole_number
+from synth.errors import ExtraNeededError, InputError, at, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.kinds.asked import (
     FAMILY,
@@ -35,6 +36,7 @@ from synth.results.loading import load_front
 MAIN = "report.json"  # which files there are, and what else is to be told
 KEYS = (OF, FAMILY, "design", "full", "formats", "length", "about")
 FORMATS = ("html", "explorer", "pdf", "xlsx", "json")
+NEEDED = {"pdf": ("typst", "pdf"), "xlsx": ("xlsxwriter", "excel")}  # what makes a format: a package, and its extra
 LENGTHS = ("summary", "normal", "full")
 FULL = 5
 LOGO = "logo"  # of ``about`` names a file: no request does
@@ -120,6 +122,9 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     """
     given = checked_keys(request, KEYS)
     asked = ReportAsked.read(given)
+    for word in asked.formats:
+        if word in NEEDED and find_spec(NEEDED[word][0]) is None:
+            raise ExtraNeededError(word, NEEDED[word][1])
     with at(OF):
         records = records_of(sources, given.get(OF))
     if is_comparison(records) and FAMILY not in given:

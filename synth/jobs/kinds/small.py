@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
-from synth.errors import InputError, at, shortened
+from synth.errors import InputError, SeveralErrors, at
 from synth.jobs.kinds import comparison, synthesis
 from synth.jobs.kinds.asked import FAMILY, OF, SPEC, WHERE, catalogs_of, checked_keys, digests, settings_of, spec_of
 from synth.jobs.kinds.contract import NOTHING, Sources
@@ -31,7 +31,7 @@ from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.requirement_values import missing, value_of
 from synth.question.spec import spec_from_mapping
-from synth.question.spec_keys import FIELDS, asks_several
+from synth.question.spec_keys import FIELDS, asks_several, no_family
 from synth.question.uncertainty import read_remaining
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
@@ -205,6 +205,16 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
     return _Check(sources, settings).of(request)
 
 
+def all_faults(request: Mapping[str, Any], sources: Sources, first: InputError) -> InputError:
+    """Return a refusal that has, beside the fault that was found first, everything else that is wrong with a spec."""
+    if first.path[:1] == (FAMILY,):
+        return first  # of another family all else would be another fault
+    check = _Check(sources, KIND_SETTINGS)
+    check.of({key: value for key, value in request.items() if key in (*SPEC, OF)})
+    found = check.faults if any(fault.path == first.path for fault in check.faults) else [first, *check.faults]
+    return SeveralErrors(found) if len(found) > 1 else first
+
+
 class _Check:
     """One check: what is understood goes on, what is not is a fault and is left out."""
 
@@ -219,9 +229,8 @@ class _Check:
         spec = self._entries(request)
         family = spec.get(FAMILY)
         if family is None:
-            if isinstance(request, Mapping) and not any(fault.path[:1] == (FAMILY,) for fault in self.faults):
-                right = "the name of a family; clutchsynth families lists them"
-                self.faults.append(InputError(f"{WHERE}: {FAMILY}", None, right, (FAMILY,)))
+            if isinstance(request, Mapping) and not any(fault.path[:1] in ((FAMILY,), (OF,)) for fault in self.faults):
+                self.faults.append(no_family(WHERE))
         elif asks_several(family):
             if not self.faults:
                 self._caught(comparison.read, spec, self.sources)
@@ -229,7 +238,7 @@ class _Check:
             self._one_family(spec)
         return {
             "ready": not self.faults,
-            "problems": [told_fault(fault) for fault in self.faults],
+            "problems": [fault.told() for fault in self.faults],
             "read": self.read,
             "combinations": None if self.faults else self.combinations,
         }
@@ -381,11 +390,3 @@ def _left_out(spec: dict[str, Any], fault: InputError) -> bool:
         return False
     spec[key] = {word: value for word, value in entries.items() if word != name}
     return True
-
-
-def told_fault(fault: InputError) -> dict[str, Any]:
-    """Return a fault as JSON holds it."""
-    value = fault.value
-    if value is not None and not isinstance(value, bool):
-        value = shortened(value if isinstance(value, str) else repr(value))
-    return {"path": list(fault.path), "value": value, "expected": fault.expected, "message": str(fault)}

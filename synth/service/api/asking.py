@@ -10,11 +10,14 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import Depends, Path, Query, Request, Response
+from fastapi import params as fastapi_params
+from fastapi.dependencies.models import Dependant
+from fastapi.dependencies.utils import get_flat_params
 
 from synth.errors import InputError
 from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
-from synth.service.auth import Anybody
+from synth.service.auth import Anybody, principal_of
 from synth.service.context import Context
 from synth.service.errors import ServiceError, not_found
 from synth.service.security import header
@@ -51,6 +54,31 @@ async def own_job(job: JobId, principal: Anybody, context: Context) -> Job:
 
 
 OwnJob = Annotated[Job, Depends(own_job)]
+
+
+async def known_query(request: Request, context: Context) -> None:
+    """Refuse what an address asks that its route does not know: a filter that is misspelt would filter nothing.
+
+    Raises
+    ------
+    InputError
+        There is such a parameter.
+    ServiceError
+        There is one, and whoever asks may not ask here at all: that is told first.
+    """
+    dependant: Dependant = request.scope["route"].dependant
+    fields = get_flat_params(dependant)
+    known = [field.alias for field in fields if isinstance(field.field_info, fastapi_params.Query)]
+    unknown = [name for name in request.query_params if name not in known]
+    if unknown:
+        if _asks_who(dependant):
+            await principal_of(request, context)
+        right = f"one of {', '.join(known)}" if known else "an address without parameters"
+        raise InputError("parameter", unknown[0], right, (unknown[0],))
+
+
+def _asks_who(dependant: Dependant) -> bool:
+    return dependant.call is principal_of or any(map(_asks_who, dependant.dependencies))
 
 
 def refuse_live(job: Job) -> None:

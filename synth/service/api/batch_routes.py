@@ -18,9 +18,11 @@ from synth.service.api.uploads import FIELD, kind_of, plain_name
 from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, in_thread
 from synth.service.errors import ServiceError, again, not_found
+from synth.service.security import FILE_BODY
 
 router = APIRouter(prefix=API, tags=["batches"])
 HOUR = 3600.0  # s
+FORM = {"requestBody": {"content": {FILE_BODY: {"examples": {"rows": {"value": {FIELD: EXAMPLES["upload"]}}}}}}}
 BatchBody = Annotated[
     dict[str, Any],
     Body(
@@ -30,7 +32,7 @@ BatchBody = Annotated[
 ]
 
 
-@router.post("/uploads", status_code=201, summary="Bring a file with rows")
+@router.post("/uploads", status_code=201, summary="Bring a file with rows", openapi_extra=FORM)
 async def bring_file(
     principal: Submitter,
     context: Context,

@@ -37,6 +37,18 @@ async def remembered(context: ServiceContext, key: tuple[Any, ...], task: str, p
     return found
 
 
+async def must_be_family(context: ServiceContext, name: str) -> None:
+    """Refuse the name of a family that there is not.
+
+    Raises
+    ------
+    InputError
+    """
+    known = [family["name"] for family in (await remembered(context, (FAMILIES_TASK,), FAMILIES_TASK, {}))["families"]]
+    if name not in known:
+        raise InputError("family", name, f"one of {', '.join(known)}", ("family",))
+
+
 async def _answer(request: Request, context: ServiceContext, task: str, name: str) -> Response:
     found = await remembered(context, (task,), task, {})
     content = json.dumps({name: found[name]}, ensure_ascii=False, allow_nan=False).encode()

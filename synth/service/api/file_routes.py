@@ -12,7 +12,6 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from synth.errors import ExtraNeededError
 from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
 from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.contract import MEDIA, Record
@@ -24,7 +23,7 @@ from synth.service.api.presenting import job_place
 from synth.service.api.schemas import FileAnswer, FileList
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
-from synth.service.errors import ServiceError, not_found
+from synth.service.errors import not_found
 
 router = APIRouter(prefix=API, tags=["results"])
 CSV = ".csv"
@@ -42,7 +41,7 @@ ANY_FILE: dict[int | str, dict[str, Any]] = {
 
 @router.get("/jobs/{job}/files", summary="The files of a job")
 async def list_files(request: Request, found: OwnJob, principal: Reader, context: Context) -> FileList:
-    """List the files of a job: those that are kept, and those that are made when they are asked for."""
+    """List the files of a job that can be had here: those that are kept, and those that are made when asked for."""
     place = job_place(request, found.id)
     sizes: dict[str, int | None] = {}
     if found.kind == BATCH:
@@ -110,10 +109,7 @@ async def _rendered(
         "options": options,
         "sources": sources,
     }
-    try:
-        found: Record | None = await context.files.ask(RENDER_TASK, payload)
-    except ExtraNeededError as missing:
-        raise ServiceError(501, f"this server lacks what it needs: the extra {missing.extra}") from missing
+    found: Record | None = await context.files.ask(RENDER_TASK, payload)
     if found is None:
         raise not_found()
     return found

@@ -10,6 +10,8 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from synth.files import yaml_text
 from synth.jobs.engine_tasks import CHANGED_TASK
 from synth.jobs.job_table import LIVE
+from synth.jobs.kinds import KINDS
+from synth.jobs.kinds import kind as kind_named
 from synth.jobs.shelf import Shelf
 from synth.service.api.asking import (
     ENDED,
@@ -27,6 +29,7 @@ from synth.service.api.asking import (
     tag_of,
     tagged,
 )
+from synth.service.api.family_routes import must_be_family
 from synth.service.api.presenting import job_answer, job_bytes, job_place
 from synth.service.api.schemas import JobAnswer, JobChange, JobList, JobRequest
 from synth.service.api.submission import Wish, submit
@@ -87,8 +90,10 @@ async def list_jobs(
     principal: Reader,
     context: Context,
     state: Annotated[list[State] | None, Query(description="Only those in these states.")] = None,
-    kind: Word = None,
-    family: Word = None,
+    kind: Annotated[str | None, Query(json_schema_extra={"enum": list(KINDS)})] = None,
+    family: Annotated[
+        str | None, Query(max_length=LONGEST, pattern=WORD, description="Only those that ask it.")
+    ] = None,
     q: Annotated[
         str | None, Query(max_length=LONGEST, pattern=WORD, description="A text in the title, or an id.")
     ] = None,
@@ -98,6 +103,10 @@ async def list_jobs(
     cursor: Cursor = None,
 ) -> JobList:
     """List your jobs, the latest first."""
+    if kind is not None:
+        kind_named(kind)
+    if family is not None:
+        await must_be_family(context, family)
     states = tuple(state or ())
     most = entries(context, limit)
     scope = [principal.tenant, list(states), kind, family, q, parent, pinned]

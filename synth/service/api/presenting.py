@@ -11,6 +11,7 @@ from synth.jobs.models import Job
 from synth.service.api.schemas import JobAnswer, JobFault, JobLinks
 
 FAMILIES = "families"  # what is kept with a job of those that it asks
+STATED_ROWS = "stated_rows"  # how many a batch has whose rows are not planned yet
 
 
 def job_place(request: Request, job: str) -> str:
@@ -34,7 +35,7 @@ def job_answer(request: Request, job: Job) -> JobAnswer:
         priority=job.priority,
         parent=job.parent,
         pinned=job.pinned,
-        rows=job.rows,
+        rows=job.rows or int(job.content.get(STATED_ROWS, 0)),
         seconds_limit=job.seconds_limit,
         created=job.created,
         started=job.started,

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from synth.jobs.kinds import KINDS
 from synth.service.api.asking import LONGEST, WORD
+from synth.service.errors import Problem
 
 # Bodies to begin with. They name families, which the programs do not.
 EXAMPLES: dict[str, Any] = json.loads((files("synth.service.api") / "examples.json").read_text(encoding="utf-8"))
@@ -82,20 +83,11 @@ class ExampleList(BaseModel):
     examples: list[ExampleAnswer]
 
 
-class CheckProblem(BaseModel):
-    """One thing that is wrong with a spec."""
-
-    path: list[str | int]
-    value: Any = None
-    expected: str
-    message: str
-
-
 class CheckAnswer(BaseModel):
     """What is wrong with a spec, and how it is understood."""
 
     ready: bool
-    problems: list[CheckProblem]
+    problems: list[Problem]
     read: dict[str, str]
     combinations: int | None
 
@@ -142,7 +134,7 @@ class JobFault(BaseModel):
 
     code: str
     message: str
-    problems: list[CheckProblem] = []
+    problems: list[Problem] = []
 
 
 class JobAnswer(BaseModel):

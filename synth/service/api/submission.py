@@ -12,7 +12,7 @@ from synth.jobs.engine_tasks import READ_TASK
 from synth.jobs.job_table import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
 from synth.jobs.kinds import Kind, kind
 from synth.jobs.shelf import Shelf
-from synth.service.api.presenting import FAMILIES
+from synth.service.api.presenting import FAMILIES, STATED_ROWS
 from synth.service.context import ServiceContext, in_thread
 from synth.service.settings import ServiceSettings
 
@@ -74,7 +74,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
         tenant=principal.tenant,
         task=PLAN if chosen.name == BATCH else WHOLE_JOB,
         priority=own if wish.priority is None else min(own, wish.priority),
-        content={FAMILIES: read["families"]},
+        content={FAMILIES: read["families"], STATED_ROWS: read["rows"]},
         idempotency=key,
         body=body,
         parent=wish.parent,

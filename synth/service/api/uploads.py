@@ -16,6 +16,7 @@ WORKBOOK = "xl/workbook.xml"  # in every file of Excel
 MACROS = "vbaproject.bin"
 LONGEST_NAME = 100  # of a file, without its ending
 FIELD = "file"
+CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x1f]")  # in no text, whatever its encoding
 
 
 def kind_of(content: bytes, settings: ServiceSettings) -> str:
@@ -38,8 +39,12 @@ def kind_of(content: bytes, settings: ServiceSettings) -> str:
         return ".xlsx"
     try:
         text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise _neither() from None
+    except UnicodeDecodeError as error:
+        if CONTROLS.search(content) is not None:
+            raise _neither() from None
+        line = content.count(b"\n", 0, error.start) + 1
+        message = f"line {line} of the file is in another encoding; expected CSV in UTF-8, or an .xlsx workbook"
+        raise ServiceError(415, message) from None
     if "\0" in text or text.lstrip()[:1] in ("<", "{", "%"):  # pages, JSON, PDF
         raise _neither()
     if not text.strip():

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from synth.errors import ExtraNeededError, InputError
-from synth.jobs.kinds.files import UnknownFileError, files_of, render
-from tests.jobs.kinds.jobs import DISC, disc, pair
+from synth.jobs.kinds import kind
+from synth.jobs.kinds.files import UnknownFileError, files_of, files_to_have, render
+from tests.jobs.kinds.jobs import DISC, disc, earlier, pair
 from tests.terminal.entry import clutchsynth
 
 pytestmark = pytest.mark.slow
@@ -83,3 +84,9 @@ def test_an_extra_that_is_missing_is_told_apart(monkeypatch: pytest.MonkeyPatch)
         render("synthesis", disc(), "report.pdf")
     again = pickle.loads(pickle.dumps(caught.value))
     assert (str(again), again.extra, again.path) == (str(caught.value), "pdf", ("pdf",))
+    listed = files_to_have("synthesis", disc())
+    assert "report.html" in listed
+    assert "designs.xlsx" in listed
+    assert not [name for name in listed if name.endswith(".pdf")]
+    with pytest.raises(ExtraNeededError):
+        kind("report").load().read({"of": "front", "formats": ["html", "pdf"]}, earlier())

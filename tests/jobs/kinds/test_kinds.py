@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -11,8 +12,10 @@ from typing import Any
 import pytest
 
 from synth.errors import InputError
+from synth.jobs.engine_work import read
 from synth.jobs.kinds import KINDS, Sources, kind
 from synth.jobs.kinds.contract import mentioned
+from synth.jobs.kinds.small import check
 from synth.question.spec_patch import patched
 from synth.results.loading import front_of_record
 from synth.tables.catalogs import Catalogs
@@ -346,3 +349,85 @@ def test_a_front_that_was_changed_is_found_out() -> None:
     other = Sources(records={"front": {**disc(), "calculation.json": b"{}"}})
     found = json.loads(done("verify", {"of": "front"}, other)["verification.json"])
     assert [finding for finding in found["findings"] if "calculation.json" in finding]
+
+
+def test_a_table_of_which_no_row_can_be_asked_is_refused_with_the_faults_of_its_rows() -> None:
+    duty = DISC["requirements"]
+    rows: list[dict[str, Any]] = [{**duty, "load_torque": "many"}, {**duty, "driver_speed": "fast"}]
+    found = fault("batch", {"family": "disc_clutch", "rows": rows})
+    assert [one.path for one in found.every()] == [("rows", 2, "load_torque"), ("rows", 3, "driver_speed")]
+    assert "none of 2 rows can be asked" in str(found)
+    accepted = posed("batch", {"family": "disc_clutch", "rows": [*rows, duty]})
+    assert (accepted.rows, accepted.title) == (3, "3 rows")
+    assert posed("batch", {"family": "disc_clutch", "rows": [duty]}).title == "1 row"
+
+
+def test_everything_that_is_wrong_with_a_spec_is_told_when_it_is_asked() -> None:
+    wrong = {**DISC, "points": 0, "limits": {"mass": "<= 3 s"}, "requirements": {"load_torque": "much"}}
+    payload = {"kind": "synthesis", "request": wrong, "sources": Sources()}
+    with pytest.raises(InputError) as caught:
+        read(payload, lambda state: None)
+    again = pickle.loads(pickle.dumps(caught.value))
+    told = [fault.told() for fault in again.every()]
+    assert told == check(wrong)["problems"]
+    assert len(told) > 3
+    assert str(again) == told[0]["message"]
+    with pytest.raises(InputError) as caught:
+        read({**payload, "request": {**DISC, "family": "any", "points": 0}}, lambda state: None)
+    assert [fault.path for fault in caught.value.every()] == [("family",)]
+    assert fault("batch", {"family": "x", "rows": [{"load_torque": "50 N*m"}]}).path == ("family",)
+
+
+# ---- words ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name", ["prices", "near_equals", "rate", "verify", "report", "synthesis", "explain", "whatif"]
+)
+def test_an_earlier_job_that_has_not_what_is_wanted_is_not_told_as_missing(name: str) -> None:
+    sources = Sources(records={"table": {"table.json": b"[]"}, "priced": {"question.json": b'{"kind": "prices"}'}})
+    request = {"of": "table", **({"vary": {"load_torque": span(2)}} if name == "whatif" else {})}
+    found = fault(name, request, sources)
+    assert (found.path, str(found.value)) == (("of",), "a batch")
+    assert str(found).startswith("request: of: got a batch; expected a job that ")
+    assert "got a job of the kind prices" in str(fault(name, {**request, "of": "priced"}, sources))
+    assert "question.json" not in str(found)
+
+
+@pytest.mark.parametrize(
+    ("rows", "path", "told"),
+    [
+        ([], ("rows",), "request: rows: got an empty list"),
+        ({}, ("rows",), "request: rows: got an empty mapping"),
+        ([{"load_torque": "50 N*m"}, 1], ("rows", 1), "request: rows: entry 2: got 1; expected an object such as"),
+        (
+            [{}, {"a": ""}],
+            ("rows",),
+            "request: rows: got objects without values; expected names with values in them",
+        ),
+    ],
+)
+def test_rows_that_are_none_are_told_as_what_they_are(rows: Any, path: tuple[Any, ...], told: str) -> None:
+    found = fault("batch", {"family": "disc_clutch", "rows": rows})
+    assert found.path == path
+    assert str(found).startswith(told)
+    assert "'" not in str(found)  # examples are JSON
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"objectives": []}, "objectives: got an empty list; expected at least one of "),
+        ({"limits": {"mass": "<= "}}, "limits: mass: got '<= '; expected a comparison, for example '<= 260 kg'"),
+        ({"limits": {"mass": "<="}}, "limits: mass: got '<='; expected a comparison, for example '<= 260 kg'"),
+        ({"points": True}, "request: points: got true; expected a whole number"),
+        ({"family": None}, "request: family: is missing; expected the name of a family: "),
+        ({"family": "any"}, "one family; to ask several is a comparison"),
+        ({"options": {"practice": 3}}, "one of its words, as the family declares them"),
+        ({"limits": {"colour": "<= 3"}}, "a quantity of disc_clutch; its description lists them"),
+    ],
+)
+def test_what_is_there_is_told_as_it_is_in_words_without_commands(change: dict[str, Any], told: str) -> None:
+    found = str(fault("synthesis", {**DISC, **change}))
+    assert told in found
+    assert "clutchsynth" not in found

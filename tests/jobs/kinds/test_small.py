@@ -142,7 +142,7 @@ def test_a_question_of_several_families_is_checked_as_well() -> None:
 
 def test_a_check_may_be_of_an_earlier_job() -> None:
     assert check({"of": "front"}, earlier())["ready"]
-    assert places({"of": "front"}) == [["of"], ["family"]]
+    assert places({"of": "front"}) == [["of"]]
     assert places({"of": "front", "requirements": {"load_torque": "x"}}, earlier()) == [["requirements", "load_torque"]]
 
 

@@ -110,11 +110,21 @@ def test_what_is_no_table_is_refused(client: Client, content: bytes, status: int
     assert time.monotonic() - begun < 3
 
 
+def test_a_table_in_another_encoding_is_told_as_one(client: Client) -> None:
+    answer = bring(client, "a,b\n1,2\nL\xe4nge,3\n".encode("cp1252"))
+    assert (answer.status_code, code_of(answer)) == (415, "unsupported_media")
+    assert answer.json()["error"]["message"].startswith(
+        "line 3 of the file is in another encoding; expected CSV in UTF-8"
+    )
+
+
 def test_bodies_of_uploads_are_bounded(works: Service, client: Client) -> None:
     large = bring(client, b"a" * (works.settings.upload_limit + 1))
     assert (large.status_code, code_of(large)) == (413, "too_large")
     assert client.post("uploads", {"file": "rows.csv"}).status_code in (415, 422)
     assert client.post("uploads", files={"other": ("a.csv", b"a\n1\n")}).status_code == 422
+    no_file = client.post("uploads", data={"file": "rows"}, files={"other": ("a.csv", b"a\n1\n")}).json()["error"]
+    assert no_file["message"] == "file: got 'rows'; expected a file with its content"
 
 
 def test_files_go_when_there_are_too_many(works: Service, client: Client, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -42,7 +42,7 @@ def test_a_question_becomes_a_job_and_a_front(database: str, engines: Engines, t
         assert found.status_code == 200
         assert len(found.json()["designs"]) == 3
         assert client.get(f"jobs?family={FAMILY}&state=done").json()["jobs"][0]["id"] == job["id"]
-        assert client.get("jobs?family=multi_plate").json()["jobs"] == []
+        assert client.get("jobs?family=disc_clutch").json()["jobs"] == []
         table = client.post("batches", BATCH, headers={"Idempotency-Key": "two"}).json()["id"]
         assert client.ended(table)["summary"]["status"] == {"bad_input": 1, "optimal": 2}
         for key in ({"Idempotency-Key": "two"}, {}):

@@ -52,7 +52,8 @@ def test_every_route_is_described(described: dict[str, Any]) -> None:
         assert operation.get("description"), where
         codes = set(operation["responses"])
         assert codes & {"200", "201", "202", "204"}, where
-        assert {"400", "401", "403", "404", "422", "429", "503"} <= codes, where
+        assert {"400", "401", "403", "404", "405", "421", "422", "429", "500", "503"} <= codes, where
+        assert not re.search(r" [A-Z]", operation["summary"]), where  # words for people, not names of functions
         assert operation["operationId"], where
         body = operation.get("requestBody")
         if body is not None and "application/json" in body["content"]:
@@ -79,6 +80,28 @@ def test_every_example_of_a_body_is_taken(client: Client, described: dict[str, A
             assert 200 <= answer.status_code < 300, (method, path, answer.text)
             taken += 1
     assert taken >= 7
+    (form,) = described["paths"][f"{API}/uploads"]["post"]["requestBody"]["content"]["multipart/form-data"][
+        "examples"
+    ].values()
+    brought = client.post("uploads", files={name: ("rows.csv", text) for name, text in form["value"].items()})
+    assert brought.status_code == 201
+    checked = client.post("batches/check", {"family": FAMILY, "upload": brought.json()["id"]}).json()
+    assert (checked["rows"], checked["bad"]) == (2, 0)
+
+
+def test_the_description_says_where_and_what_is_said_twice(described: dict[str, Any]) -> None:
+    assert described["servers"][0]["url"] == "/"
+    keyed = {
+        (method, path.removeprefix(API))
+        for method, path, operation in operations(described)
+        if any(one["name"].lower() == "idempotency-key" for one in operation.get("parameters", ()))
+    }
+    assert keyed == {("POST", "/jobs"), ("POST", "/batches")}
+    assert all(f"`{method} {path}`" in described["info"]["description"] for method, path in keyed)
+    signing_in = described["paths"][f"{API}/session"]["post"]
+    assert "Authorization" in signing_in["description"]
+    assert "requestBody" not in signing_in
+    assert "Set-Cookie" in signing_in["responses"]["201"]["headers"]
 
 
 # ---- tenants --------------------------------------------------------------------------------------------------------

@@ -133,7 +133,8 @@ def test_what_needs_an_extra_says_so(
     monkeypatch.setattr(engines, "call", lacking)
     answer = client.get(f"jobs/{front}/files/report.pdf")
     assert (answer.status_code, code_of(answer)) == (501, "not_installed")
-    assert "pdf" in answer.json()["error"]["message"]
+    assert "pip install 'clutchsynth[pdf]'" in answer.json()["error"]["message"]
+    assert "--pdf" not in answer.text
 
 
 def test_the_same_spec_by_command_line_gives_the_same_bytes(client: Client, front: str, tmp_path: Path) -> None:

@@ -76,7 +76,7 @@ def test_a_small_file_that_would_unpack_to_much_is_refused_at_once(
         seconds = time.monotonic() - begun
     assert (answer.status_code, code_of(answer)) == (422, "bad_input"), answer.text
     assert seconds < 2.0  # 1 where the machine is not shared
-    (process,) = own_engine._all
+    (process,) = own_engine.pool._all
     assert most_memory(process.pid) < MEMORY
 
 
@@ -85,7 +85,7 @@ def test_a_file_that_is_as_large_as_may_be_is_read_in_bounds(own_engine: Engines
     with Service(tmp_path, own_engine) as service:
         answer = bring(Client(service), nested_book(8_000_000))
     assert (answer.status_code, code_of(answer)) == (422, "bad_input"), answer.text
-    for process in own_engine._all:
+    for process in own_engine.pool._all:
         assert most_memory(process.pid) < 2 * MEMORY
 
 

@@ -25,7 +25,7 @@ const flow = (value) => (typeof value === "string" ? (isPlain(value) ? value : J
 /** Return a command that asks for a study. */
 export function curlText(body) {
   const said = JSON.stringify(body, null, 2).replaceAll("'", "'\\''");
-  return `curl -s ${location.origin}/api/v1/jobs \\\n  -H "Authorization: Bearer $TOKEN" \\\n  --json '${said}'`;
+  return `curl -s ${location.origin}/api/v1/jobs \\\n  -H "Authorization: Bearer $TOKEN" \\\n  -H "Content-Type: application/json" -d '${said}'`;
 }
 
 const ARGUMENTS = ["objectives", "parts", "limits", "fix", "weights", "points", "gap", "grid", "seed", "time_limit", "robust"];
