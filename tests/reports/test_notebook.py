@@ -1,4 +1,4 @@
-"""A notebook that is run and exported, as people hand it on: the front explores itself there, and goes by static HTML."""
+"""A notebook that is run and exported, as people hand it on: the front explores itself there."""
 
 from __future__ import annotations
 

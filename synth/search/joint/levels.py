@@ -208,8 +208,10 @@ class LevelProof:
         best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.room
         apart = np.flatnonzero(self.search.told_apart()).tolist()
         told: list[Level] = []
-        for open_of in [tree.corners for tree in self.trees] or [lambda _: None]:
-            corners = {k: open_of(k) if self.unproven[k] else np.empty((0, 2)) for k in apart}
+        nothing_known: list[LevelTree | None] = [None]
+        for tree in self.trees or nothing_known:
+            corners: dict[int, np.ndarray | None] = dict.fromkeys(apart, np.empty((0, 2)))
+            corners |= {k: None if tree is None else tree.corners(k) for k in apart if self.unproven[k]}
             told += levels_told(self.cutoffs, best, corners)
         proven = {float(level.within[CAPPED]): level for level in told if not len(level.corners)}
         still_open = [level for level in told if len(level.corners)]
