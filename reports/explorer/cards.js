@@ -89,8 +89,6 @@ export function frontCard(x) {
     );
   x.count = h("p", { class: "count", role: "status" });
   x.filters = h("div", { class: "filters" });
-  const slot = h("div", { class: "what-if", hidden: !x.options.whatIf });
-  x.options.whatIf?.(slot, x.handle);
   return h(
     "section",
     { class: "card front", "aria-labelledby": `${x.id}-front` },
@@ -111,7 +109,7 @@ export function frontCard(x) {
     x.scatter.node,
     x.legend.node,
     x.filters,
-    slot,
+    x.strip,
   );
 }
 

@@ -185,3 +185,19 @@ export function modelOf(record) {
     knee: record.designs.findIndex((d) => d.note.includes("knee")),
   };
 }
+
+/**
+ * Return the model of a record without designs, with the columns of another one: so that there are axes to draw on.
+ * @param {object} record
+ * @param {ReturnType<typeof modelOf>} like
+ * @returns {ReturnType<typeof modelOf>}
+ */
+export function emptyModel(record, like) {
+  const byKey = new Map(like.columns.map((c) => [c.key, { ...c, values: [], varies: false }]));
+  const of = (columns) => columns.map((c) => byKey.get(c.key));
+  const [objectives, axes, groupable] = [of(like.objectives), of(like.axes), of(like.groupable)];
+  const none = { sizes: [], derived: [], words: [], same: [], names: [], count: 0, knee: -1 };
+  const columns = [...byKey.values()];
+  const column = (key) => byKey.get(key);
+  return { record, columns, column, objectives, axes, groupable, groupBy: like.groupBy, ...none };
+}

@@ -105,6 +105,7 @@ export function scatterView(x) {
     );
     svg.setAttribute("viewBox", `0 0 ${wide} ${high}`);
     svg.setAttribute("height", String(high));
+    svg.setAttribute("role", model.count ? "listbox" : "img");
     svg.setAttribute(
       "aria-label",
       `Front, ${across.label} across and ${up.label} up, ${model.count} designs. ` +
