@@ -83,7 +83,12 @@ export class Explorer {
     this.onPrint = () => this.openForPrint();
     window.addEventListener("beforeprint", this.onPrint);
     this.handle = {
-      update: (record) => this.show(record, this.text()),
+      update: (record) => {
+        const kept = this.text();
+        this.show(record, this.lasting());
+        this.kept = kept;
+        this.tell();
+      },
       compareWith: (record) => this.compareWith(record),
       select: (rank) => this.select(this.model.record.designs.findIndex((d) => d.rank === rank)),
       selected: () => this.model.record.designs[this.state.selected] ?? null,
@@ -99,6 +104,13 @@ export class Explorer {
   /** Return the text of the state; of a record without designs that of the one before. */
   text() {
     return this.model.count ? stateText(this) : this.kept;
+  }
+
+  /** Return the text of the state with what another record might choose otherwise: axes and colours. */
+  lasting() {
+    const told = new URLSearchParams(this.text());
+    for (const name of ["x", "y", "by"]) if (!told.has(name)) told.set(name, this.state[name]);
+    return told.toString();
   }
 
   /** Show a record, with what can be kept of a state. */

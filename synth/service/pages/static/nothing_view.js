@@ -80,8 +80,8 @@ function tell(ways, job, found, how) {
   const apply = (way) => {
     if (!maySubmit() || !Object.keys(way.patch ?? {}).length) return null;
     const own = how.apply?.(way.patch);
-    if (own) return h("button", { type: "button", class: "primary", onclick: own }, "Apply");
-    return h("a", { class: "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
+    if (own) return h("button", { type: "button", onclick: own }, "Apply");
+    return h("a", { class: how.apply ? "button" : "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
   };
   ways.replaceChildren(h(how.heading, {}, "Ways out"), conflict,
     found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, withUnits(way.sentence)), proven(way)), apply(way))))
