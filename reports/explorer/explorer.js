@@ -1,6 +1,6 @@
 // The explorer: one state, draw() for what changes, mark() for what is pointed at, which never makes or removes a node.
 
-import { chips, frontCard, heading, parallelCard, tableCard } from "./cards.js";
+import { chips, familiesCard, frontCard, heading, parallelCard, tableCard } from "./cards.js";
 import { certificateBanner, nothingCard } from "./certificate.js";
 import { MOST_PINS, compareView } from "./compare.js";
 import { h } from "./dom.js";
@@ -155,10 +155,11 @@ export class Explorer {
     this.scatter = this.parallel = this.table = this.tip = this.legend = null;
     const head = options.heading === false ? [] : [heading(this)];
     const parts = [...head, chips(this), certificateBanner(model.record)];
+    const families = model.record.families ? [familiesCard(this)] : [];
     this.fields = null;
     if (!model.count && !this.other) {
       const strip = this.strip && h("section", { class: "card" }, this.strip);
-      this.root.replaceChildren(...parts, strip || "", nothingCard(this));
+      this.root.replaceChildren(...parts, strip || "", nothingCard(this), ...families);
       return;
     }
     const several = model.count > 1 || this.ghosts.length > 1;
@@ -182,7 +183,7 @@ export class Explorer {
       left.push(parallelCard(this));
     }
     this.table = tableView(this);
-    left.push(tableCard(this));
+    left.push(tableCard(this), ...families);
     this.views = [this.scatter, this.parallel, this.table].filter(Boolean);
     this.root.replaceChildren(
       ...parts,

@@ -33,12 +33,11 @@ async function explored(element, job, explorer) {
   if (!files.some((file) => file.name === RECORD)) return false;
   let drawn;
   try {
-    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`)]);
+    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`), styled(explorer.replace(/\.js$/, ".css"))]);
   } catch {
     return false;
   }
   const [{ mount }, record] = drawn;
-  document.head.append(h("link", { rel: "stylesheet", href: explorer.replace(/\.js$/, ".css") }));
   const slot = h("div", { class: "explored" });
   element.replaceChildren(slot);
   const told = { explorer: "", moved: movedOf(location.hash.slice(1)) };
@@ -65,6 +64,11 @@ async function explored(element, job, explorer) {
   });
   return true;
 }
+
+/** Load a style sheet; what is drawn before it is there has the wrong size. */
+const styled = (href) => new Promise((done) => {
+  document.head.append(h("link", { rel: "stylesheet", href, onload: done, onerror: done }));
+});
 
 /** Return what the text of an address says of values that were moved. */
 const movedOf = (text) => new URLSearchParams(text).getAll("if").map((entry) => `if=${encodeURIComponent(entry)}`).join("&");

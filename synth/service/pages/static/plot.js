@@ -5,7 +5,7 @@ import { amount, h, s, unitText, words } from "./dom.js";
 const WIDE = 720, HIGH = 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = 5;
 
 /** Return round numbers that cover a range. */
-function ticks(low, high) {
+export function ticks(low, high) {
   const rough = (high - low) / TICKS, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough);
   const found = [];
@@ -13,7 +13,7 @@ function ticks(low, high) {
   return found;
 }
 
-function span(values) {
+export function span(values) {
   const low = Math.min(...values), high = Math.max(...values);
   const room = high > low ? 0.07 * (high - low) : Math.abs(low) * 0.1 || 1;
   return [low - room, high + room];

@@ -30,7 +30,7 @@ export function marksOf(study) {
     if (ends) seen.add(Boolean(found.before));
     const what = words(found.change).replaceAll("->", "→");
     const text = ends ? `It ${label}: ${found.before ? "beyond" : "below"} nothing meets all limits` : `From ${here} on the ${study.objectives[found.objective] === "max" ? "largest" : "smallest"} ${words(found.objective)} has ${what}`;
-    marks.push({ value: found.value, ends, label, text: found.proven ? text : `${text} (not proven)` });
+    marks.push({ value: found.value, objective: ends ? "" : found.objective, ends, label, text: found.proven ? text : `${text} (not proven)` });
   }
   const steps = study.steps.map((step) => [step.values[0], Boolean(step.front?.designs.length)]);
   steps.sort((a, b) => a[0] - b[0]);
