@@ -172,7 +172,7 @@ export function familiesCard(x) {
     h("header", null, h("h2", { id: `${x.id}-families` }, "Families"), h("p", { class: "note" }, "what became of each")),
     h(
       "table",
-      { class: "values" },
+      null,
       h("tbody", null, [...x.model.record.families].sort((a, b) => rank(a) - rank(b)).map(row)),
     ),
   );

@@ -51,7 +51,7 @@ function columnsOf(record) {
   });
   if (record.families) {
     const titles = new Map(record.families.map((family) => [family.name, family.title]));
-    made.push({ ...words("", FAMILY, (d) => titles.get(d.family) ?? d.family), key: FAMILY });
+    made.unshift({ ...words("", FAMILY, (d) => titles.get(d.family) ?? d.family), key: FAMILY });
   }
   const all = (group) => [...new Set(designs.flatMap((d) => Object.keys(d[group])))];
   for (const slot of all("parts")) made.push(words("part", slot, (d) => record.parts[d.parts[slot]]?.name ?? ""));

@@ -77,7 +77,7 @@ function heading() {
   const buttons = maySubmit() ? [
     live ? h("button", { type: "button", class: "danger", onclick: () => act("POST", "/cancel") }, "Cancel") : null,
     RESUMABLE.includes(job.state) ? h("button", { type: "button", class: "primary", onclick: () => act("POST", "/resume") }, "Resume") : null,
-    ["synthesis", "explain"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
+    ["synthesis", "explain", "compare"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
     h("button", { type: "button", "aria-pressed": String(job.pinned), title: "Pinned jobs are kept for good", onclick: () => act("PATCH", "", { pinned: !job.pinned }) }, job.pinned ? "Kept for good" : "Keep for good"),
     live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
   ] : [];

@@ -75,14 +75,14 @@ async function whatIfView(job) {
     breaks.length ? card("Where something changes", folded("Where something changes", [
       { title: words(along.label), unit: along.unit, cell: (one) => one.value },
       { title: "for", words: true, cell: (one) => (one.kind === "feasible" ? "all" : `${study.objectives[one.objective] === "max" ? "largest" : "least"} ${words(one.objective)}`) },
-      { title: "what changes there", words: true, cell: (one) => arrows(one.change) },
+      { title: "what changes there", long: true, cell: (one) => arrows(one.change) },
       { title: "proven", words: true, cell: (one) => (one.proven ? "yes" : "no") },
     ], breaks)) : null,
     card("Values", tableView("Values", [
       ...study.varied.map((one, k) => ({ title: words(one.label), words: typeof study.steps[0]?.values[k] !== "number", cell: (step) => stated(step)[k] })),
       { title: "stands", cell: (step) => badge(...(STANDS[step.status] ?? ["", "○", words(step.status)])) },
       ...objectives.map((objective, k) => ({ title: `${objective.sense === "max" ? "largest" : "least"} ${words(objective.name)}`, unit: objective.unit, cell: (step) => best.get(step)[k] })),
-      { title: "why there is none", words: true, cell: (step) => h("span", { class: "note" }, step.front?.designs.length ? "" : words(step.reason)) },
+      { title: "why there is none", long: true, cell: (step) => h("span", { class: "note" }, step.front?.designs.length ? "" : words(step.reason)) },
     ].filter((one) => one.title !== "why there is none" || study.steps.some((step) => step.reason && !step.front?.designs.length)), study.steps)),
   ];
 }
@@ -109,7 +109,7 @@ async function pricesView(job) {
         { title: `${words(name)}: ${step} more`, right: true, cell: (line) => change(line[name]?.up) },
         { title: `${words(name)}: ${step} less`, right: true, cell: (line) => (line[name]?.down === "" || line[name]?.down === undefined ? change("") : change(String(-Number(line[name].down)))) },
       ]),
-      { title: "remark", words: true, cell: (line) => h("span", { class: "note" }, remark(line)) },
+      { title: "remark", long: true, cell: (line) => h("span", { class: "note" }, remark(line)) },
     ], order);
   };
   return [
