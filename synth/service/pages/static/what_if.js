@@ -11,6 +11,7 @@ import { LIVE, stageText } from "./words.js";
 
 const RECORD = "explorer.json";
 const LONG = 10; // s that a search has taken, from which on none starts by itself
+const GRACE = 1500; // ms that a short search is left to itself when it is no longer wanted
 const MOST = 4; // sliders
 const KEY = 200; // letters of a key that tells a question from others
 
@@ -139,7 +140,16 @@ class Strip {
     this.live = null;
     if (!live) return;
     live.stop();
-    ask("POST", `/jobs/${live.id}/cancel`).catch(() => {}); // it has ended already
+    this.give(live.id);
+  }
+
+  /** Cancel a job that nobody waits for: a short one not before its end is due, as a process that is ended costs more. */
+  give(id) {
+    setTimeout(async () => {
+      const job = await get(`/jobs/${id}`).catch(() => null);
+      const wanted = [this.live?.id, this.shown?.id].includes(id);
+      if (job && LIVE.includes(job.state) && !wanted) ask("POST", `/jobs/${id}/cancel`).catch(() => {}); // it has just ended
+    }, 1000 * this.took < GRACE ? GRACE : 0);
   }
 
   body() {
@@ -165,7 +175,7 @@ class Strip {
     this.say(`Searching anew with ${what} …`);
     try {
       const job = await asked(this.body());
-      if (own !== this.number) return LIVE.includes(job.state) ? void ask("POST", `/jobs/${job.id}/cancel`).catch(() => {}) : undefined;
+      if (own !== this.number) return this.give(job.id);
       const ended = await this.follow(job, (stage) => own === this.number && this.say(`Searching anew with ${what}: ${stage.toLowerCase()} …`));
       if (own !== this.number) return undefined;
       const record = ended.state === "done" || ended.summary?.designs ? await get(`/jobs/${ended.id}/files/${RECORD}`) : null;
