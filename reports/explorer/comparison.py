@@ -9,7 +9,6 @@ from typing import Any
 from reports.about import About
 from reports.explorer.record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 from reports.front_report import NOT_COVERED
-from reports.numbers import unit_text
 from reports.sheet.design_sheet import program_name
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.calculation import Calculation
@@ -83,9 +82,7 @@ class _Compared:
         """Return what families are called: by their titles, and by more where two have the same."""
         told = {str(x["family"]): str(x["title"]) for x in self.content["families"]}
         often = list(told.values())
-        return {
-            name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in told.items()
-        }
+        return {name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in told.items()}
 
     def _gather(self, family: str) -> None:
         """Take up the quantities and limits of a family; what is measured otherwise than elsewhere stands apart."""

@@ -82,12 +82,14 @@ class RecordOf:
         self.rules = {x.name: x for x in calculation.limits}
 
     def quantity(self, name: str) -> dict[str, Any]:
+        """Return what is told of a quantity beside its values."""
         q = self.calculation.quantities.get(name)
         unit = self.frame.units[name]
         told = {"name": name, "label": label(name), "unit": unit_text(unit), "kind": self.frame.kinds.get(name, "")}
         return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
 
     def limit(self, name: str) -> dict[str, Any]:
+        """Return what is told of a limit beside its sides."""
         rule = self.rules.get(name)
         return {
             "name": name,
@@ -140,6 +142,7 @@ class RecordOf:
     # -- how far it is proven ------------------------------------------------------------------
 
     def certificate(self) -> dict[str, Any]:
+        """Return how far the front is proven, and what is no part of the proof."""
         c, front = self.front.certificate, self.front
         level, head = front_state(front)
         word = WORDS.get(c.kind, "Not proven")
@@ -201,8 +204,7 @@ class RecordOf:
             share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _compared(label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign}
-                | {"by": share}
+                {"label": _compared(label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share}
             )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {

@@ -269,10 +269,10 @@ def _compared(source: Path) -> tuple[dict[str, Any], dict[str, str], dict[str, P
         places = {str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"]}
         fronts = {family: load_front(source / place) for family, place in places.items()}
         listed = [_listed(x, fronts) for x in content["designs"]]
-        return {**content, "designs": listed}, places, fronts
     except (KeyError, TypeError) as error:
         where = f"comparison {source / COMPARISON}"
         raise InputError(where, str(error), f"{right}; this one is not complete") from error
+    return {**content, "designs": listed}, places, fronts
 
 
 def _listed(told: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:

@@ -20,7 +20,8 @@ from tests.terminal.entry import in_process
 pytestmark = [pytest.mark.slow, needs_chromium]
 WAIT = 60_000.0  # ms
 HOLDS = "load_torque~540"
-FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": ["core 1.8", "core 2"], "outer_plate": ["core 1.8", "core 2"]}
+CORES = ["core 1.8", "core 2"]
+FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": CORES, "outer_plate": CORES}
 ASKED = {**FRONT, "parts": FEW}
 COMPARED = {
     "family": ["disc_clutch", {"family": FAMILY, "parts": {"friction_pair": ["paper_wet"], "inner_plate": ["core 2"]}}],
@@ -175,7 +176,9 @@ def test_whoever_may_only_look_has_no_slider(site: Site) -> None:
             answer = route.fetch()
             route.fulfill(response=answer, body=answer.text().replace('may-submit="yes"', 'may-submit="no"'))
 
-        page.route("**/jobs/*", lambda route: answered(route) if "/api/" not in route.request.url else route.continue_())
+        page.route(
+            "**/jobs/*", lambda route: answered(route) if "/api/" not in route.request.url else route.continue_()
+        )
 
     with site.page(f"/jobs/{site.front}", as_reader) as page:
         page.wait_for_selector(".explorer .scatter")
