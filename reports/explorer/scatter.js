@@ -239,7 +239,8 @@ export function scatterView(x) {
     if (chosen !== selected || !points[selected]?.hasAttribute("aria-selected")) {
       points[chosen]?.removeAttribute("aria-selected");
       points[selected]?.setAttribute("aria-selected", "true");
-      svg.setAttribute("aria-activedescendant", points[selected] ? points[selected].id : "");
+      if (points[selected]) svg.setAttribute("aria-activedescendant", points[selected].id);
+      else svg.removeAttribute("aria-activedescendant");
       chosen = selected;
     }
   }

@@ -20,8 +20,7 @@ from tests.terminal.entry import in_process
 pytestmark = [pytest.mark.slow, needs_chromium]
 WAIT = 60_000.0  # ms
 HOLDS = "load_torque~540"
-CORES = ["core 1.8", "core 2"]
-FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": CORES, "outer_plate": CORES}
+FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": ["core 1.8"], "outer_plate": ["core 1.8", "core 2"]}
 ASKED = {**FRONT, "parts": FEW}
 COMPARED = {
     "family": ["disc_clutch", {"family": FAMILY, "parts": {"friction_pair": ["paper_wet"], "inner_plate": ["core 2"]}}],

@@ -32,7 +32,9 @@ const withUnits = (text) => text.replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, 
 /**
  * @typedef {object} Ways
  * @property {string} heading tag of the heading
- * @property {boolean} [begin] whether they are looked for without being asked
+ * @property {boolean} [begin] whether they are looked for without being asked, behind what others wait for
+ * @property {(job: object) => void} [asked] is told the job that looks for them
+ * @property {() => void} [told] is told when they are shown
  * @property {(patch: object) => (() => void) | null} [apply] what is done for a change in place of a new study
  */
 
@@ -44,13 +46,16 @@ const withUnits = (text) => text.replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, 
  */
 export async function seek(ways, job, how = { heading: "h2" }) {
   const known = (await get(`/jobs?kind=explain&parent=${job.id}&limit=1`)).jobs[0];
-  if (known) return follow(ways, job, known, how);
+  if (known && !(how.begin && known.state === "cancelled")) return follow(ways, job, known, how);
   const fault = h("p", { class: "fault", role: "alert" });
   const begin = async () => {
     try {
       const { points, gap, objectives, weights, grid, ...request } = await get(`/jobs/${job.id}/request`);
       const title = `Ways out: ${job.title}`.slice(0, 200);
-      follow(ways, job, await post("/jobs", { kind: "explain", request: { ...request, ...(grid === undefined ? {} : { grid }) }, title, parent: job.id }, { "Idempotency-Key": `ways-out-${job.id}` }), how);
+      const body = { kind: "explain", request: { ...request, ...(grid === undefined ? {} : { grid }) }, title, parent: job.id, ...(how.begin ? { priority: 0 } : {}) };
+      const explaining = known ? await post(`/jobs/${known.id}/resume`) : await post("/jobs", body, { "Idempotency-Key": `ways-out-${job.id}` });
+      how.asked?.(explaining);
+      follow(ways, job, explaining, how);
     } catch (error) {
       fault.textContent = sentence(error.message);
     }
@@ -63,6 +68,7 @@ export async function seek(ways, job, how = { heading: "h2" }) {
 function follow(ways, job, explaining, how) {
   const stage = h("p", { role: "status" }, stageText(explaining.progress));
   const show = async (found) => {
+    how.told?.();
     if (found.state === "done") tell(ways, job, await get(`/jobs/${found.id}/result`), how);
     else ways.replaceChildren(h(how.heading, {}, "Ways out"), h("p", {}, outcomeText(found)), h("p", {}, h("a", { href: `/jobs/${found.id}` }, "Look at it")));
   };

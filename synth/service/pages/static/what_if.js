@@ -12,6 +12,7 @@ import { LIVE, stageText } from "./words.js";
 const RECORD = "explorer.json";
 const LONG = 10; // s that a search has taken, from which on none starts by itself
 const GRACE = 1500; // ms that a short search is left to itself when it is no longer wanted
+const CALM = 1000; // ms that a value is looked at, before more than its front is looked for
 const MOST = 4; // sliders
 const KEY = 200; // letters of a key that tells a question from others
 
@@ -138,6 +139,8 @@ class Strip {
   cancel() {
     const { live } = this;
     this.live = null;
+    if (this.explaining) ask("POST", `/jobs/${this.explaining}/cancel`).catch(() => {}); // it has just ended
+    this.explaining = null;
     if (!live) return;
     live.stop();
     this.give(live.id);
@@ -222,7 +225,8 @@ class Strip {
     this.buttons();
     if (record.designs.length) this.say(h("b", {}, `With ${what}`), ` against the front as asked: ${difference(this.page.record, record)}`);
     else this.say(h("b", {}, `With ${what} nothing meets all limits.`), " ", this.edge());
-    this.fill();
+    const own = this.number;
+    if (record.designs.length) setTimeout(() => own === this.number && this.fill(), CALM);
     return undefined;
   }
 
@@ -241,7 +245,13 @@ class Strip {
       const room = values && values.filter(([knob]) => !this.sliders.some((slider) => slider.knob === knob)).length + this.sliders.length <= MOST;
       return room ? () => this.take(values) : null;
     };
-    seek(place, job, { heading: "h3", begin: true, apply }).catch((error) => place.replaceChildren(h("p", { class: "fault" }, sentence(error.message))));
+    const how = { heading: "h3", begin: true, apply, asked: (explaining) => { this.explaining = explaining.id; }, told: () => { this.explaining = null; this.fill(); } };
+    const own = this.number;
+    place.replaceChildren(h("h3", {}, "Looking for ways out"));
+    const begin = () => {
+      if (own === this.number) seek(place, job, how).catch((error) => place.replaceChildren(h("p", { class: "fault" }, sentence(error.message))));
+    };
+    setTimeout(begin, CALM);
   }
 
   take(values) {
