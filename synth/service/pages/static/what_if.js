@@ -14,7 +14,6 @@ const LONG = 10; // s that a search has taken, from which on none starts by itse
 const GRACE = 1500; // ms that a short search is left to itself when it is no longer wanted
 const CALM = 1000; // ms that a value is looked at, before more than its front is looked for
 const MOST = 4; // sliders
-const KEY = 200; // letters of a key that tells a question from others
 
 /**
  * Fill the strip.
@@ -273,7 +272,7 @@ class Strip {
       this.earlier ??= (await get(`/jobs?kind=whatif&parent=${this.page.job.id}&limit=50`)).jobs;
       for (const slider of this.sliders) {
         if (this.fills.has(slider.knob)) continue;
-        const known = this.earlier.filter((job) => ["open", "running", "done"].includes(job.state) && job.title === fillTitle(slider.knob, this.page.job));
+        const known = this.earlier.filter((job) => ["open", "running", "done"].includes(job.state) && job.title.startsWith(fillTitle(slider.knob)));
         if (known.length) await this.filled(slider.knob, known[0]);
         else slider.ticks();
       }
@@ -288,7 +287,7 @@ class Strip {
       if (this.fills.has(knob)) continue;
       this.fills.set(knob, null);
       const { job } = this.page;
-      const body = { kind: "whatif", request: { of: job.id, vary: filling(knob), breaks: true }, title: fillTitle(knob, job), parent: job.id, priority: 0 };
+      const body = { kind: "whatif", request: { of: job.id, vary: filling(knob), breaks: true }, title: `${fillTitle(knob)}${job.title}`.slice(0, 200), parent: job.id, priority: 0 };
       try {
         await this.filled(knob, await asked(body));
       } catch {
@@ -311,18 +310,27 @@ class Strip {
   }
 }
 
-const fillTitle = (knob, job) => `What if: ${knob.label} ${shown(knob, knob.values.find((value) => value !== null))} to ${shown(knob, knob.values.findLast((value) => value !== null))}, ${job.title}`.slice(0, 200);
+/** Return how the title of a study begins that fills a track: by this it is known again. */
+const fillTitle = (knob) => `What if: ${knob.label} ${shown(knob, knob.values.find((value) => value !== null))} to ${shown(knob, knob.values.findLast((value) => value !== null))}, `;
+
+/** Return a short word for a text: the same for the same text. */
+function digest(text) {
+  let [a, b] = [0xdeadbeef, 0x41c6ce57];
+  for (let k = 0; k < text.length; k += 1) {
+    a = Math.imul(a ^ text.charCodeAt(k), 2654435761);
+    b = Math.imul(b ^ text.charCodeAt(k), 1597334677);
+  }
+  return [a ^ (b >>> 15), b ^ (a >>> 13)].map((part) => (part >>> 0).toString(36)).join("");
+}
 
 /** Ask for a job, or take the one that was made of the same question; one that was cancelled goes on. */
 async function asked(body) {
-  const key = encodeURIComponent(JSON.stringify([body.kind, body.request])).replaceAll("%22", "'");
-  const headers = key.length <= KEY ? { "Idempotency-Key": key } : {};
   let job;
   try {
-    job = await post("/jobs", body, headers);
+    job = await post("/jobs", body, { "Idempotency-Key": `what-if-${body.parent}-${digest(JSON.stringify(body))}` });
   } catch (error) {
     if (error.status !== 409) throw error;
-    return post("/jobs", body); // the key has gone to another wording of the question
+    return post("/jobs", body); // two questions with the same word: as good as never
   }
   if (["open", "running", "done"].includes(job.state)) return job;
   return ask("POST", `/jobs/${job.id}/resume`).catch(() => post("/jobs", body));

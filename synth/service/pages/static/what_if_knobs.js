@@ -4,6 +4,7 @@ import { amount, unitText, words } from "./dom.js";
 
 const NUMBER = /^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*([^\d\s].*?)?\s*$/i;
 const LIMIT = /^\s*(<=|>=)\s*(.+)$/;
+const OFFSET = /deg[CF]/; // units that no factor turns into others
 const STEPS = 60; // of a track, about
 const SPAN = [0.5, 2]; // of the value that was asked
 const AROUND = [0.6, 1.1]; // of the least and the largest value on the front, where no limit was asked
@@ -45,8 +46,8 @@ export function knobsOf(request, rows, read, record) {
     const stated = request.requirements?.[row.name];
     const asked = quantity(stated ?? row.default, row.unit);
     if (!asked || asked.number === 0) continue;
-    const scale = asked.unit === row.unit ? 1 : asked.number / quantity(read[row.name] ?? "", row.unit)?.number;
-    const bounds = Number.isFinite(scale) ? [row.lower * scale, row.upper * scale] : [-Infinity, Infinity];
+    const scale = asked.unit === row.unit ? 1 : OFFSET.test(asked.unit + row.unit) ? NaN : asked.number / quantity(read[row.name] ?? "", row.unit)?.number;
+    const bounds = Number.isFinite(scale) ? [(row.lower ?? -Infinity) * scale, (row.upper ?? Infinity) * scale] : [-Infinity, Infinity];
     const group = stated === undefined ? "Assumptions" : "Requirements";
     found.push(knob({ ...asked, bounds, group, key: row.name, vary: row.name, sign: "", label: words(row.name), text: row.text }));
   }
