@@ -2,11 +2,12 @@
 
 import { amount, h, s, unitText, words } from "./dom.js";
 
-const WIDE = 720, HIGH = 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = 5;
+const SMALL = innerWidth < 620; // letters keep their size on a phone
+const WIDE = SMALL ? 360 : 720, HIGH = SMALL ? 300 : 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = SMALL ? 4 : 5;
 
 /** Return round numbers that cover a range. */
-export function ticks(low, high) {
-  const rough = (high - low) / TICKS, power = 10 ** Math.floor(Math.log10(rough));
+export function ticks(low, high, most = TICKS) {
+  const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough);
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
