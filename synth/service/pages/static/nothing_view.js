@@ -57,6 +57,7 @@ export async function seek(ways, job, how = { heading: "h2" }) {
       how.asked?.(explaining);
       follow(ways, job, explaining, how);
     } catch (error) {
+      how.told?.();
       fault.textContent = sentence(error.message);
     }
   };

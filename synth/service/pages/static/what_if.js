@@ -138,8 +138,6 @@ class Strip {
   cancel() {
     const { live } = this;
     this.live = null;
-    if (this.explaining) ask("POST", `/jobs/${this.explaining}/cancel`).catch(() => {}); // it has just ended
-    this.explaining = null;
     if (!live) return;
     live.stop();
     this.give(live.id);
@@ -148,9 +146,7 @@ class Strip {
   /** Cancel a job that nobody waits for: a short one not before its end is due, as a process that is ended costs more. */
   give(id) {
     setTimeout(async () => {
-      const job = await get(`/jobs/${id}`).catch(() => null);
-      const wanted = [this.live?.id, this.shown?.id].includes(id);
-      if (job && LIVE.includes(job.state) && !wanted) ask("POST", `/jobs/${id}/cancel`).catch(() => {}); // it has just ended
+      if (![this.live?.id, this.shown?.id].includes(id)) await stopped(id);
     }, 1000 * this.took < GRACE ? GRACE : 0);
   }
 
@@ -244,11 +240,23 @@ class Strip {
       const room = values && values.filter(([knob]) => !this.sliders.some((slider) => slider.knob === knob)).length + this.sliders.length <= MOST;
       return room ? () => this.take(values) : null;
     };
-    const how = { heading: "h3", begin: true, apply, asked: (explaining) => { this.explaining = explaining.id; }, told: () => { this.explaining = null; this.fill(); } };
     const own = this.number;
+    const latest = () => this.explaining?.own === own;
+    const told = () => {
+      if (!latest()) return;
+      this.explaining = null;
+      this.fill();
+    };
+    const how = { heading: "h3", begin: true, apply, asked: (job) => { if (latest()) this.explaining.id = job.id; }, told };
     place.replaceChildren(h("h3", {}, "Looking for ways out"));
     const begin = () => {
-      if (own === this.number) seek(place, job, how).catch((error) => place.replaceChildren(h("p", { class: "fault" }, sentence(error.message))));
+      if (own !== this.number) return;
+      for (const id of [this.explaining?.id, this.filling].filter(Boolean)) stopped(id); // one process stays free for the next value
+      this.explaining = { own, id: "" };
+      seek(place, job, how).catch((error) => {
+        told();
+        place.replaceChildren(h("p", { class: "fault" }, sentence(error.message)));
+      });
     };
     setTimeout(begin, CALM);
   }
@@ -281,9 +289,10 @@ class Strip {
     }
   }
 
-  /** Ask for a study of every slider that was moved, once. */
+  /** Ask for a study of every slider that was moved, once; ways out go first. */
   async fill() {
     for (const { knob } of this.sliders.filter((slider) => slider.value !== slider.knob.base)) {
+      if (this.explaining) return;
       if (this.fills.has(knob)) continue;
       this.fills.set(knob, null);
       const { job } = this.page;
@@ -300,12 +309,15 @@ class Strip {
     this.fills.set(knob, null);
     const slider = () => this.sliders.find((one) => one.knob === knob);
     slider()?.note("looking along the track …");
+    this.filling = job.id;
     const ended = await new Promise((done) => {
       if (!LIVE.includes(job.state)) done(job);
       else listen([job.id], (kind, news) => ((kind === "end" || (kind === "snapshot" && !LIVE.includes(news.state))) ? done(news) : undefined));
     });
+    this.filling = "";
     const study = ended.state === "done" ? await get(`/jobs/${job.id}/result`) : null;
-    this.fills.set(knob, study && marksOf(study));
+    if (study) this.fills.set(knob, marksOf(study));
+    else this.fills.delete(knob); // it is asked again
     slider()?.ticks();
   }
 }
@@ -321,6 +333,12 @@ function digest(text) {
     b = Math.imul(b ^ text.charCodeAt(k), 1597334677);
   }
   return [a ^ (b >>> 15), b ^ (a >>> 13)].map((part) => (part >>> 0).toString(36)).join("");
+}
+
+/** Cancel a job, if it has not ended. */
+async function stopped(id) {
+  const job = await get(`/jobs/${id}`).catch(() => null);
+  if (job && LIVE.includes(job.state)) await ask("POST", `/jobs/${id}/cancel`).catch(() => {}); // it has ended just now
 }
 
 /** Ask for a job, or take the one that was made of the same question; one that was cancelled goes on. */
