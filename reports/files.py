@@ -10,6 +10,7 @@ from typing import Any
 
 from reports.about import About
 from reports.comparison_report import comparison_report
+from reports.explorer.comparison import comparison_record
 from reports.explorer.page import explorer_page
 from reports.explorer.record import explorer_record
 from reports.front_report import FrontReportRequest, front_report
@@ -103,12 +104,18 @@ def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], 
     Parameters
     ----------
     asked : mapping
-        ``content`` of comparison.json, ``fronts`` and ``links`` by family, ``formats``, ``about``, ``about_folder``,
-        ``fonts``.
+        ``content`` of comparison.json, ``fronts``, ``calculations`` and ``links`` by family, ``formats``, ``about``,
+        ``about_folder``, ``fonts``.
     """
     about = About.of(asked.get("about"), asked.get("about_folder"))
-    document = comparison_report(asked["content"], asked["fronts"], asked["links"], about)
-    return documents({"report": document}, asked["formats"], asked["fonts"])
+    content, fronts, links = asked["content"], asked["fronts"], asked["links"]
+    document = comparison_report(content, fronts, links, about)
+    files, notes = documents({"report": document}, asked["formats"], asked["fonts"])
+    if "explorer" in asked["formats"]:
+        beside = {family: file for family, file in links.items() if "explorer" not in file}
+        record = comparison_record(content, fronts, asked["calculations"], about=about, links=beside)
+        files["explorer.html"] = explorer_page(record)
+    return files, notes
 
 
 def documents(

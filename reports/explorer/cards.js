@@ -1,6 +1,6 @@
 // The cards that the explorer is laid out in, and its head.
 
-import { h } from "./dom.js";
+import { h, localAddress } from "./dom.js";
 import { saveTable } from "./files.js";
 import { amount } from "./numbers.js";
 
@@ -89,8 +89,6 @@ export function frontCard(x) {
     );
   x.count = h("p", { class: "count", role: "status" });
   x.filters = h("div", { class: "filters" });
-  const slot = h("div", { class: "what-if", hidden: !x.options.whatIf });
-  x.options.whatIf?.(slot, x.handle);
   return h(
     "section",
     { class: "card front", "aria-labelledby": `${x.id}-front` },
@@ -111,7 +109,7 @@ export function frontCard(x) {
     x.scatter.node,
     x.legend.node,
     x.filters,
-    slot,
+    x.strip,
   );
 }
 
@@ -149,5 +147,33 @@ export function tableCard(x) {
       h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), x.table.chooser),
     ),
     x.table.node,
+  );
+}
+
+const TONES = { listed: "good", beaten: "", infeasible: "bad", stopped: "open" };
+
+/** Return the card of the families that were asked the same. */
+export function familiesCard(x) {
+  const row = (family) => {
+    const file = localAddress(family.file);
+    return h(
+      "tr",
+      null,
+      h("th", { scope: "row" }, file ? h("a", { href: file }, family.title) : family.title),
+      h("td", null, h("span", { class: `badge ${TONES[family.outcome] ?? ""}` }, family.outcome)),
+      h("td", { class: "words" }, family.why),
+    );
+  };
+  const order = Object.keys(TONES);
+  const rank = (family) => (order.includes(family.outcome) ? order.indexOf(family.outcome) : order.length);
+  return h(
+    "section",
+    { class: "card outcomes", "aria-labelledby": `${x.id}-families` },
+    h("header", null, h("h2", { id: `${x.id}-families` }, "Families"), h("p", { class: "note" }, "what became of each")),
+    h(
+      "table",
+      null,
+      h("tbody", null, [...x.model.record.families].sort((a, b) => rank(a) - rank(b)).map(row)),
+    ),
   );
 }

@@ -1,11 +1,11 @@
 // The explorer: one state, draw() for what changes, mark() for what is pointed at, which never makes or removes a node.
 
-import { chips, frontCard, heading, parallelCard, tableCard } from "./cards.js";
+import { chips, familiesCard, frontCard, heading, parallelCard, tableCard } from "./cards.js";
 import { certificateBanner, nothingCard } from "./certificate.js";
 import { MOST_PINS, compareView } from "./compare.js";
 import { h } from "./dom.js";
 import { legendView } from "./legend.js";
-import { grouping, modelOf } from "./model.js";
+import { emptyModel, grouping, modelOf } from "./model.js";
 import { amount } from "./numbers.js";
 import { panelView } from "./panel.js";
 import { parallelView } from "./parallel.js";
@@ -28,7 +28,8 @@ let mounted = 0;
  * What whoever mounts the explorer may say; all of it may be left out.
  * @typedef {object} Options
  * @property {(design: object) => Download[]} [downloads] what the panel offers beside DESIGN.yaml
- * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter
+ * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter, once: it stays the
+ *   same element whatever is shown
  * @property {(slot: HTMLElement, handle: Handle) => void} [ways] fills the place for ways out where nothing is feasible
  * @property {(slot: HTMLElement, handle: Handle) => void} [actions] fills the corner beside the title
  * @property {string} [state] text of an earlier state, as `onState` told it
@@ -41,7 +42,8 @@ let mounted = 0;
  * What a page holds in its hands.
  * @typedef {object} Handle
  * @property {(record: object) => void} update shows another record; axes, colours and the chosen parts stay
- * @property {(record: object | null) => void} compareWith draws the designs of another record as outlines
+ * @property {(record: object | null) => void} compareWith draws the designs of another record as outlines; where the
+ *   record that is shown has no design, on the axes of the other
  * @property {(rank: number) => void} select
  * @property {() => object | null} selected the design that is shown
  * @property {() => string} state
@@ -58,6 +60,7 @@ let mounted = 0;
 export function mount(element, record, options = {}) {
   const explorer = new Explorer(element, options);
   explorer.show(record, options.state ?? "");
+  options.whatIf?.(explorer.strip, explorer.handle);
   return explorer.handle;
 }
 
@@ -71,17 +74,25 @@ export class Explorer {
     this.id = `explorer-${mounted}`;
     this.options = options;
     this.ghosts = [];
+    this.other = null; // the model of what is drawn as outlines
+    this.kept = ""; // the state of the last record with designs
+    this.strip = options.whatIf ? h("div", { class: "what-if" }) : null;
     this.root = h("div", { class: "explorer" });
     this.views = [];
     element.replaceChildren(this.root);
     this.onPrint = () => this.openForPrint();
     window.addEventListener("beforeprint", this.onPrint);
     this.handle = {
-      update: (record) => this.show(record, stateText(this)),
+      update: (record) => {
+        const kept = this.text();
+        this.show(record, this.lasting());
+        this.kept = kept;
+        this.tell();
+      },
       compareWith: (record) => this.compareWith(record),
       select: (rank) => this.select(this.model.record.designs.findIndex((d) => d.rank === rank)),
       selected: () => this.model.record.designs[this.state.selected] ?? null,
-      state: () => stateText(this),
+      state: () => this.text(),
       destroy: () => {
         this.watch?.disconnect();
         window.removeEventListener("beforeprint", this.onPrint);
@@ -90,11 +101,24 @@ export class Explorer {
     };
   }
 
+  /** Return the text of the state; of a record without designs that of the one before. */
+  text() {
+    return this.model.count ? stateText(this) : this.kept;
+  }
+
+  /** Return the text of the state with what another record might choose otherwise: axes and colours. */
+  lasting() {
+    const told = new URLSearchParams(this.text());
+    for (const name of ["x", "y", "by"]) if (!told.has(name)) told.set(name, this.state[name]);
+    return told.toString();
+  }
+
   /** Show a record, with what can be kept of a state. */
   show(record, text) {
     this.watch?.disconnect();
     const before = this.model && this.model.record.designs[this.state.selected];
-    this.model = modelOf(record);
+    this.kept = text;
+    this.model = record.designs.length || !this.other ? modelOf(record) : emptyModel(record, this.other);
     this.state = readState(this.model, text);
     if (before) {
       const made = (d) => JSON.stringify([d.parts, d.choices]);
@@ -103,7 +127,9 @@ export class Explorer {
       if (same) this.state.selected = record.designs.indexOf(same);
     }
     this.cache = null;
+    const typing = this.strip?.contains(document.activeElement) ? document.activeElement : null;
     this.build();
+    typing?.focus({ preventScroll: true });
     this.draw();
     if (!this.views.length) return;
     let wide = this.root.clientWidth;
@@ -127,27 +153,40 @@ export class Explorer {
     const { model, options } = this;
     this.views = [];
     this.scatter = this.parallel = this.table = this.tip = this.legend = null;
-    const parts = [options.heading === false ? null : heading(this), chips(this), certificateBanner(model.record)];
-    if (!model.count) {
-      this.root.replaceChildren(...parts.filter(Boolean), nothingCard(this));
+    const head = options.heading === false ? [] : [heading(this)];
+    const parts = [...head, chips(this), certificateBanner(model.record)];
+    const families = model.record.families ? [familiesCard(this)] : [];
+    this.fields = null;
+    if (!model.count && !this.other) {
+      const strip = this.strip && h("section", { class: "card" }, this.strip);
+      this.root.replaceChildren(...parts, strip || "", nothingCard(this), ...families);
       return;
     }
-    this.panel = panelView(this);
-    this.compare = compareView(this);
-    const several = model.count > 1;
+    const several = model.count > 1 || this.ghosts.length > 1;
     const left = [];
     if (several) {
       this.tip = tipView(this);
       this.scatter = scatterView(this);
-      this.parallel = parallelView(this);
       this.legend = legendView(this);
-      left.push(frontCard(this), parallelCard(this));
+      left.push(frontCard(this));
+    } else if (this.strip) left.push(h("section", { class: "card front" }, this.strip));
+    if (!model.count) {
+      this.views = [this.scatter].filter(Boolean);
+      const columns = h("div", { class: "columns" }, h("div", { class: "left" }, left), nothingCard(this));
+      this.root.replaceChildren(...parts, columns);
+      return;
+    }
+    this.panel = panelView(this);
+    this.compare = compareView(this);
+    if (model.count > 1) {
+      this.parallel = parallelView(this);
+      left.push(parallelCard(this));
     }
     this.table = tableView(this);
-    left.push(tableCard(this));
+    left.push(tableCard(this), ...families);
     this.views = [this.scatter, this.parallel, this.table].filter(Boolean);
     this.root.replaceChildren(
-      ...parts.filter(Boolean),
+      ...parts,
       h("div", { class: several ? "columns" : "columns single" }, h("div", { class: "left" }, left), this.panel.node),
       this.compare.node,
       ...(this.tip ? [this.tip.node] : []),
@@ -172,11 +211,11 @@ export class Explorer {
 
   /** Draw all anew: another record, axis or colour. */
   draw() {
-    if (!this.model.count) return this.tell();
     this.tip?.draw();
     this.legend?.draw();
     for (const view of this.views) view.draw();
     this.refilter();
+    if (!this.model.count) return this.tell();
     this.panel.draw();
     this.compare.draw();
     return this.tell();
@@ -187,7 +226,7 @@ export class Explorer {
     if (!this.scatter) return;
     const { model, state } = this;
     const kept = model.record.designs.filter((_, i) => this.shown(i)).length;
-    this.count.textContent = kept === model.count ? `${model.count} designs` : `${kept} of ${model.count} designs`;
+    this.count.textContent = !model.count ? "no design" : kept === model.count ? `${model.count} designs` : `${kept} of ${model.count} designs`;
     const drop = (words, run) =>
       h(
         "button",
@@ -229,6 +268,7 @@ export class Explorer {
         }),
       );
     this.filters.replaceChildren(...chips);
+    if (!this.fields) return;
     const typing = this.fields.contains(document.activeElement) && this.fields.open;
     if (!typing) this.fields.replaceChildren(this.fields.firstChild, this.parallel.fields());
   }
@@ -296,15 +336,18 @@ export class Explorer {
 
   compareWith(record) {
     const other = record && modelOf(record);
+    const few = this.model.count < 2;
+    this.other = other;
     this.ghosts = other
       ? record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]])))
       : [];
+    if (few) this.show(this.model.record, this.text()); // with a scatter, or without one
     this.scatter?.draw();
     this.legend?.draw();
   }
 
   tell() {
-    this.options.onState?.(stateText(this));
+    this.options.onState?.(this.text());
     this.options.onSelect?.(this.handle.selected());
   }
 }

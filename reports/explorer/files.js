@@ -23,7 +23,8 @@ function value(told, indent) {
 export function designText(record, i) {
   const d = record.designs[i];
   const parts = Object.fromEntries(Object.entries(d.parts).map(([slot, key]) => [slot, record.parts[key].name]));
-  return value({ ...record.spec, values: d.spec, parts }, "").slice(1);
+  const spec = record.families?.find((family) => family.name === d.family)?.spec ?? record.spec;
+  return value({ ...spec, values: d.spec, parts }, "").slice(1);
 }
 
 function cell(told) {

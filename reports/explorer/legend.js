@@ -17,7 +17,7 @@ export function legendView(x) {
     buttons = group.names.map((name, k) =>
       h("button", { type: "button", "aria-pressed": "true", onclick: () => x.toggle(k) }, glyph(k, group.rest), name),
     );
-    const title = column && h("span", { class: "soft" }, column.label);
+    const title = column && buttons.length > 0 && h("span", { class: "soft" }, column.label);
     const ghost =
       x.ghosts.length > 0 &&
       h(

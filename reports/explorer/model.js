@@ -2,6 +2,7 @@
 
 import { number } from "./numbers.js";
 
+const FAMILY = "family"; // column of what compares several
 const MOST_GROUPS = 6; // with a colour and a shape each; the rest is told as others
 
 /**
@@ -48,11 +49,13 @@ function columnsOf(record) {
     kind: "word",
     values: designs.map(value),
   });
-  const first = designs[0] ?? { choices: {}, parts: {} };
-  for (const slot of Object.keys(first.parts)) {
-    made.push(words("part", slot, (d) => record.parts[d.parts[slot]]?.name ?? ""));
+  if (record.families) {
+    const titles = new Map(record.families.map((family) => [family.name, family.title]));
+    made.unshift({ ...words("", FAMILY, (d) => titles.get(d.family) ?? d.family), key: FAMILY });
   }
-  for (const name of Object.keys(first.choices)) made.push(words("choice", name, (d) => d.choices[name] ?? ""));
+  const all = (group) => [...new Set(designs.flatMap((d) => Object.keys(d[group])))];
+  for (const slot of all("parts")) made.push(words("part", slot, (d) => record.parts[d.parts[slot]]?.name ?? ""));
+  for (const name of all("choices")) made.push(words("choice", name, (d) => d.choices[name] ?? ""));
   for (const column of made) column.varies = distinct(column.values) > 1;
   return made;
 }
@@ -180,8 +183,24 @@ export function modelOf(record) {
     words,
     same: columns.filter((c) => !c.varies && c.kind !== "objective" && c.values[0] !== null && count > 1),
     groupable: candidates,
-    groupBy: scored[0]?.[1].key ?? "",
+    groupBy: byKey.get(FAMILY)?.varies ? FAMILY : (scored[0]?.[1].key ?? ""),
     names: namesOf(record, objectives),
     knee: record.designs.findIndex((d) => d.note.includes("knee")),
   };
+}
+
+/**
+ * Return the model of a record without designs, with the columns of another one: so that there are axes to draw on.
+ * @param {object} record
+ * @param {ReturnType<typeof modelOf>} like
+ * @returns {ReturnType<typeof modelOf>}
+ */
+export function emptyModel(record, like) {
+  const byKey = new Map(like.columns.map((c) => [c.key, { ...c, values: [], varies: false }]));
+  const of = (columns) => columns.map((c) => byKey.get(c.key));
+  const [objectives, axes, groupable] = [of(like.objectives), of(like.axes), of(like.groupable)];
+  const none = { sizes: [], derived: [], words: [], same: [], names: [], count: 0, knee: -1 };
+  const columns = [...byKey.values()];
+  const column = (key) => byKey.get(key);
+  return { record, columns, column, objectives, axes, groupable, groupBy: like.groupBy, ...none };
 }

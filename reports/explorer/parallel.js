@@ -40,7 +40,9 @@ export function parallelView(x) {
     const { model, state } = x;
     const most = flat ? MOST_AXES : Math.min(MOST_AXES, Math.max(4, Math.floor(wide / 105)));
     const word = model.column(state.by);
-    const chosen = [...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...model.sizes])];
+    const whole = (c) => !model.record.families || c.values.every((v) => v !== null); // not of one family alone
+    const sizes = model.sizes.filter(whole);
+    const chosen = [...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...sizes])];
     const first = chosen.filter((c) => c.values.some((v) => v !== null));
     const room = most - (word && word.kind === "word" ? 1 : 0);
     const rest = model.derived.filter((c) => !first.includes(c) && c.values.every((v) => v !== null));

@@ -49,7 +49,7 @@ def explorer_record(
     drawings : mapping
         Rank -> SVG of ours; it is shown as a picture, in which nothing runs.
     """
-    told = _Told(front, calculation, About.of(about))
+    told = RecordOf(front, calculation, About.of(about))
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
@@ -69,7 +69,9 @@ def explorer_record(
     }
 
 
-class _Told:
+class RecordOf:
+    """What is told of one front: each method returns a part of the record."""
+
     def __init__(self, front: ParetoFront, calculation: Calculation, about: About) -> None:
         self.front, self.calculation, self.about = front, calculation, about
         self.frame = front.frame
@@ -80,16 +82,18 @@ class _Told:
         self.rules = {x.name: x for x in calculation.limits}
 
     def quantity(self, name: str) -> dict[str, Any]:
+        """Return what is told of a quantity beside its values."""
         q = self.calculation.quantities.get(name)
         unit = self.frame.units[name]
-        told = {"name": name, "label": _label(name), "unit": unit_text(unit), "kind": self.frame.kinds.get(name, "")}
+        told = {"name": name, "label": label(name), "unit": unit_text(unit), "kind": self.frame.kinds.get(name, "")}
         return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
 
     def limit(self, name: str) -> dict[str, Any]:
+        """Return what is told of a limit beside its sides."""
         rule = self.rules.get(name)
         return {
             "name": name,
-            "label": _compared(_label(name)),
+            "label": _compared(label(name)),
             "unit": unit_text(self.frame.limit_units[name]),
             "sign": SIGN_OF[self.frame.limit_senses[name]],
             "text": rule.text if rule is not None else "",
@@ -103,16 +107,16 @@ class _Told:
         quantities = [q for q in self.calculation.quantities.values() if q.kind == "requirement"]
         rows = [
             {
-                "label": _label(q.name),
+                "label": label(q.name),
                 "text": q.text,
-                "value": _number(self.frame.requirement_values[q.name], q.unit),
+                "value": number(self.frame.requirement_values[q.name], q.unit),
                 "unit": unit_text(q.unit),
             }
             for q in quantities
             if q.name in self.frame.requirement_values and (q.name in self.frame.requirements) == stated
         ]
         options = [
-            {"label": _label(name), "text": "", "words": word}
+            {"label": label(name), "text": "", "words": word}
             for name, word in self.calculation.options.items()
             if (name in self.frame.options) == stated
         ]
@@ -125,7 +129,7 @@ class _Told:
             told = self.front.settings.get(key)
             for name, value in told.items() if isinstance(told, Mapping) else ():
                 if key != "robust" or name not in HOW_RATED:
-                    rows.append({"label": _label(str(name)), "text": "", "words": words + _in_words(value)})
+                    rows.append({"label": label(str(name)), "text": "", "words": words + _in_words(value)})
         return rows
 
     def spec(self) -> dict[str, Any]:
@@ -138,6 +142,7 @@ class _Told:
     # -- how far it is proven ------------------------------------------------------------------
 
     def certificate(self) -> dict[str, Any]:
+        """Return how far the front is proven, and what is no part of the proof."""
         c, front = self.front.certificate, self.front
         level, head = front_state(front)
         word = WORDS.get(c.kind, "Not proven")
@@ -149,7 +154,7 @@ class _Told:
         amounts = c.amounts()
         sentence = (details[0].partition(": ")[2] or details[0]).replace(amounts, "")
         if amounts:
-            details.append(f"Smaller differences than these do not count: {_label(amounts.strip(' ()'))}.")
+            details.append(f"Smaller differences than these do not count: {label(amounts.strip(' ()'))}.")
         return {
             "level": level,
             "word": word,
@@ -170,7 +175,7 @@ class _Told:
         statistics = self.front.statistics
         offered, used = statistics.get("rows_offered") or {}, statistics.get("rows_used") or {}
         return [
-            f"{_label(slot)}: {count} rows of tables offered, {used.get(slot, count)} of them fit the task"
+            f"{label(slot)}: {count} rows of tables offered, {used.get(slot, count)} of them fit the task"
             for slot, count in offered.items()
         ]
 
@@ -183,7 +188,7 @@ class _Told:
         unchecked = sorted({text for d in self.front.designs for text in d.not_checked})
         told += [f"Not checked: {text}" for text in unchecked[:6]]
         if self.frame.not_asked:
-            told.append("Not asked: " + ", ".join(map(_label, self.frame.not_asked)) + ".")
+            told.append("Not asked: " + ", ".join(map(label, self.frame.not_asked)) + ".")
         return told
 
     def nothing(self) -> dict[str, Any] | None:
@@ -194,19 +199,18 @@ class _Told:
         conflicts = []
         for miss in told.conflicts or ():
             unit = str(miss.unit or "-")
-            sides = [_number(x, unit) if isinstance(x, float) else None for x in (miss.value, miss.limit_value)]
+            sides = [number(x, unit) if isinstance(x, float) else None for x in (miss.value, miss.limit_value)]
             name = str(miss.limit)
             share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _compared(_label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign}
-                | {"by": share}
+                {"label": _compared(label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share}
             )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {
             "message": str(told.message or ""),
             "conflicts": conflicts,
-            "nearest": [[_label(name), str(value)] for name, value in nearest.items()],
+            "nearest": [[label(name), str(value)] for name, value in nearest.items()],
         }
 
     # -- designs -------------------------------------------------------------------------------
@@ -239,12 +243,12 @@ class _Told:
             "status": d.status.value,
             "gap": d.gap,
             "note": d.note,
-            "why": _label(reason[:1].upper() + reason[1:] + "."),
-            "v": [_number(d.values.get(name, math.nan), self.frame.units[name]) for name in self.names],
+            "why": label(reason[:1].upper() + reason[1:] + "."),
+            "v": [number(d.values.get(name, math.nan), self.frame.units[name]) for name in self.names],
             "choices": dict(d.choices),
             "parts": {slot: f"{row['table']}/{row}" for slot, row in d.parts.items()},
             "used": [_rounded(d.utilisation.get(name)) for name in limits],
-            "sides": [[_number(x, self.frame.limit_units[name]) for x in d.limits[name]] for name in limits],
+            "sides": [[number(x, self.frame.limit_units[name]) for x in d.limits[name]] for name in limits],
             "spec": d.to_spec()["values"],
             "at_limit": [n for n in limits if self._binds(d, n)],
         }
@@ -255,7 +259,7 @@ class _Told:
             "alternatives": list(d.alternatives),
             "violated": list(d.violated),
             "off_grid": dict(d.off_grid),
-            "next": [[_label(name), str(row)] for name, row in d.next_rows.items()],
+            "next": [[label(name), str(row)] for name, row in d.next_rows.items()],
             "robust": self._robust(d),
             "files": [list(pair) for pair in files.items()],
             "drawing": drawings.get(d.rank or 0, ""),
@@ -272,7 +276,7 @@ class _Told:
         rows = [(n, [_rounded(d.elasticity.get(o, {}).get(n)) for o in self.frame.objectives]) for n in names]
         sized = [(max((abs(x) for x in row if x is not None), default=0.0), name, row) for name, row in rows]
         sized = sorted((x for x in sized if x[0] > LEAST_SLOPE), key=lambda x: (-x[0], x[1]))
-        return [[_label(name), row] for _, name, row in sized[:SLOPES]]
+        return [[label(name), row] for _, name, row in sized[:SLOPES]]
 
     def _robust(self, d: Design) -> dict[str, Any]:
         rating = d.robust
@@ -290,7 +294,8 @@ def _matters(price: Mapping[str, Any]) -> bool:
     return price.get("status") != "no influence"
 
 
-def _label(name: str) -> str:
+def label(name: str) -> str:
+    """Return a name as words."""
     return name.replace("_", " ")
 
 
@@ -298,7 +303,8 @@ def _of(q: NamedQuantity | None, field: str) -> str:
     return "" if q is None else str(getattr(q, field) or "")
 
 
-def _number(si: float, unit: str) -> float | None:
+def number(si: float, unit: str) -> float | None:
+    """Return a number in a unit, with as many digits as the record has."""
     return _rounded(finite_from_si(si, unit, None))
 
 

@@ -7,13 +7,15 @@ import { axisOf } from "./scales.js";
 
 const REACH = 30; // pixels from a point within which it is meant
 const STARTS = 5; // pixels after which a press is a brush
+const LISTED = { role: "listbox", tabindex: "0", "aria-orientation": "horizontal" };
+const DRAWN = { role: "img", tabindex: null, "aria-orientation": null }; // where there is nothing to go to
 
 /**
  * Make the scatter.
  * @param {import("./explorer.js").Explorer} x
  */
 export function scatterView(x) {
-  const svg = s("svg", { class: "scatter", tabindex: 0, role: "listbox", "aria-orientation": "horizontal" });
+  const svg = s("svg", { class: "scatter" });
   const box = h("div", { class: "chart" }, svg);
   let place = [];
   let points = [];
@@ -105,10 +107,16 @@ export function scatterView(x) {
     );
     svg.setAttribute("viewBox", `0 0 ${wide} ${high}`);
     svg.setAttribute("height", String(high));
+    for (const [name, value] of Object.entries(model.count ? LISTED : DRAWN)) {
+      if (value === null) svg.removeAttribute(name);
+      else svg.setAttribute(name, value);
+    }
     svg.setAttribute(
       "aria-label",
-      `Front, ${across.label} across and ${up.label} up, ${model.count} designs. ` +
-        "Arrow keys go from design to design, space takes a design for comparison. The table below says the same.",
+      model.count
+        ? `Front, ${across.label} across and ${up.label} up, ${model.count} designs. ` +
+            "Arrow keys go from design to design, space takes a design for comparison. The table below says the same."
+        : `The front as asked, ${across.label} across and ${up.label} up; nothing meets all limits of what is shown now`,
     );
     filter();
     mark();
@@ -231,7 +239,8 @@ export function scatterView(x) {
     if (chosen !== selected || !points[selected]?.hasAttribute("aria-selected")) {
       points[chosen]?.removeAttribute("aria-selected");
       points[selected]?.setAttribute("aria-selected", "true");
-      svg.setAttribute("aria-activedescendant", points[selected] ? points[selected].id : "");
+      if (points[selected]) svg.setAttribute("aria-activedescendant", points[selected].id);
+      else svg.removeAttribute("aria-activedescendant");
       chosen = selected;
     }
   }

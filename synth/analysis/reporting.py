@@ -115,6 +115,26 @@ def explored(front: ParetoFront, *, about: Any = None, problem: Any = None, cata
     return found
 
 
+def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
+    """Return what the explorer shows of the common front of several families, as JSON holds it.
+
+    Raises
+    ------
+    InputError
+        The comparison cannot be read, or reports are not installed.
+    """
+    record = report_named("explorer_comparison")
+    if record is None:
+        raise InputError("explore", None, NO_REPORTS)
+    content, _, fronts = _compared(source)
+    found: dict[str, Any] = record(content, fronts, _calculations(fronts), about=about)
+    return found
+
+
+def _calculations(fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
+    return {family: calculation(front) for family, front in fronts.items()}
+
+
 @dataclass(frozen=True)
 class ReportOptions:
     """How a report is written; fields as for :func:`report`."""
@@ -219,15 +239,8 @@ def report_comparison(
     InputError
         As for :func:`report`, or the comparison cannot be read; then nothing is written.
     """
-    right = "a comparison.json as clutchsynth has written it"
-    content = read_json(source / COMPARISON, "comparison", right)
-    try:
-        places = {str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"]}
-        fronts = {family: load_front(source / place) for family, place in places.items()}
-        listed = [_listed(x, fronts) for x in content["designs"]]
-    except (KeyError, TypeError) as error:
-        where = f"comparison {source / COMPARISON}"
-        raise InputError(where, str(error), f"{right}; this one is not complete") from error
+    content, places, fronts = _compared(source)
+    listed = content["designs"]
     how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = _chosen_of_all(listed, design)
     files: dict[str, str | bytes] = {}
@@ -237,14 +250,29 @@ def report_comparison(
         made, told = _of_front(fronts[family], ranks, full, how)
         files |= {f"{place}/{name}": file for name, file in made.items()}
         notes += [note for note in told if note not in notes]
-        links |= {family: f"{place}/{next(name for name in made if name.startswith('report.'))}"}
+        links |= {family: f"{place}/{next(name for name in made if name.startswith(('report.', 'explorer.')))}"}
     make = report_named("comparison")
     assert make is not None
-    asked = {"content": {**content, "designs": listed}, "fronts": fronts, "links": links}
+    asked: dict[str, Any] = {"content": content, "fronts": fronts, "links": links}
+    asked["calculations"] = _calculations(fronts) if "explorer" in how.formats else {}
     own, told = make({**asked, **how.asked()})
     notes += [note for note in told if note not in notes]
     save_files(folder, {**own, **files})
     return folder, [*own, *files], notes, bool(listed)
+
+
+def _compared(source: Path) -> tuple[dict[str, Any], dict[str, str], dict[str, ParetoFront]]:
+    """Return a comparison, whose designs have their rank in their family as well, folders and fronts by family."""
+    right = "a comparison.json as clutchsynth has written it"
+    content = read_json(source / COMPARISON, "comparison", right)
+    try:
+        places = {str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"]}
+        fronts = {family: load_front(source / place) for family, place in places.items()}
+        listed = [_listed(x, fronts) for x in content["designs"]]
+    except (KeyError, TypeError) as error:
+        where = f"comparison {source / COMPARISON}"
+        raise InputError(where, str(error), f"{right}; this one is not complete") from error
+    return {**content, "designs": listed}, places, fronts
 
 
 def _listed(told: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:

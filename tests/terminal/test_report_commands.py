@@ -263,8 +263,9 @@ def test_ranks_of_a_comparison_are_those_of_the_common_front(tmp_path):
     assert at_once("run", tmp_path / "spec.yaml", "-o", tmp_path / "any", "-q").returncode == 0
     told = json.loads((tmp_path / "any" / "comparison.json").read_text())
     last = told["designs"][-1]
-    done = at_once("report", tmp_path / "any", "-o", tmp_path / "out", "--design", f"knee,{last['rank']}")
+    done = at_once("report", tmp_path / "any", "-o", tmp_path / "out", "--explorer", "--design", f"knee,{last['rank']}")
     assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "explorer.html").is_file()
     page = Page((tmp_path / "out" / "report.html").read_text())
     files = [link.split("#")[0] for link in page.links if not link.startswith("#")]
     assert files

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from synth.analysis.reporting import explored
+from synth.analysis.reporting import explored, explored_comparison
 from synth.errors import ExtraNeededError
 from synth.jobs.kinds import kind as kind_named
 from synth.jobs.kinds.asked import checked_keys, front_in, is_comparison
@@ -55,7 +55,7 @@ def files_of(kind: str, records: Mapping[str, bytes]) -> dict[str, int | None]:
         front = front_in(records)
         found |= {name: None for name in _front_files(front) if name not in found}
     elif is_comparison(records):
-        found |= {name: None for name in REPORTS}
+        found |= {name: None for name in (*_explorer_files("explorer_comparison"), *REPORTS)}
     return {**found, BUNDLE: None} if records else found
 
 
@@ -102,6 +102,11 @@ def render(
         return Record.of(name, records[name])
     if name == BUNDLE:
         return Record.of(name, _bundle(records))
+    if name == EXPLORED:
+        return Record.of(name, _explored(records))
+    if name == EXPLORER:
+        files, _ = reported(records, ReportAsked.read({**given, "formats": ["explorer"]}), sources)
+        return Record.of(name, files[name])
     if is_comparison(records):
         return Record.of(name, _report(records, name, given, sources))
     front = front_in(records)
@@ -110,11 +115,6 @@ def render(
         return Record.of(name, derived[name])
     if name == PLOT:
         return Record.of(name, _drawn(front))
-    if name == EXPLORED:
-        return Record.of(name, _explored(records))
-    if name == EXPLORER:
-        files, _ = reported(records, ReportAsked.read({**given, "formats": ["explorer"]}), sources)
-        return Record.of(name, files[name])
     sheet = re.fullmatch(r"design_(\d+)(_sheet|_live)\.[a-z]+", name)
     if sheet is not None:
         given["design"] = int(sheet.group(1))
@@ -133,11 +133,12 @@ def _derived(front: ParetoFront) -> dict[str, str]:
 
 
 def _explored(records: Mapping[str, bytes]) -> str:
-    """Return what the explorer shows of a front."""
+    """Return what the explorer shows of a front, or of a comparison."""
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
         folder = Path(place, "front")
         unpack(records, folder)
-        return json.dumps(explored(load_front(folder)), ensure_ascii=False, allow_nan=False)
+        record = explored_comparison(folder) if is_comparison(records) else explored(load_front(folder))
+        return json.dumps(record, ensure_ascii=False, allow_nan=False)
 
 
 def _drawn(front: ParetoFront) -> str:
@@ -153,8 +154,13 @@ def _front_files(front: ParetoFront) -> list[str]:
     derived = _derived(front)
     stems = [name.removesuffix(".yaml") for name in derived if name.startswith("design_")]
     drawn = [PLOT] if front.designs and report("plot") is not None else []
-    drawn += [EXPLORER, EXPLORED] if report("explorer_record") is not None else []
+    drawn += _explorer_files("explorer_record")
     return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
+
+
+def _explorer_files(needed: str) -> list[str]:
+    """Return the names of the files that explore, where the reports that are installed can make them."""
+    return [EXPLORER, EXPLORED] if report(needed) is not None else []
 
 
 def _bundle(records: Mapping[str, bytes]) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import pickle
 import zipfile
 from pathlib import Path
@@ -66,6 +67,10 @@ def test_an_archive_holds_what_the_folder_would_and_is_the_same_each_time() -> N
 def test_a_comparison_has_files_too() -> None:
     assert render("compare", pair(), "designs.csv").content.startswith(b"rank,")
     assert render("compare", pair(), "report.html").content.startswith(b"<!")
+    assert render("compare", pair(), "explorer.html").content.startswith(b"<!")
+    told = json.loads(render("compare", pair(), "explorer.json").content)
+    listed = json.loads(pair()["comparison.json"])["designs"]
+    assert [(d["rank"], d["family"]) for d in told["designs"]] == [(d["rank"], d["family"]) for d in listed]
 
 
 @pytest.mark.parametrize(

@@ -78,7 +78,7 @@ export function hintOf(row) {
   if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "follows from others";
   if (row.section === "limit") return "not asked";
   if (row.section === "part") return "all that fit";
-  return row.section === "needed" ? "" : "free";
+  return ["needed", "duty"].includes(row.section) ? "" : "free";
 }
 
 /** Return the choices of an option as one group. */

@@ -1,8 +1,9 @@
 // A front: drawn by the explorer where the server has it, else as certificate, points and table.
 
-import { API, get } from "./api.js";
+import { API, get, maySubmit } from "./api.js";
 import { amount, h, unitText, words } from "./dom.js";
 import { plotOf } from "./plot.js";
+import { whatIf } from "./what_if.js";
 import { count } from "./words.js";
 
 const RECORD = "explorer.json"; // what the explorer draws, as the server renders it
@@ -32,22 +33,45 @@ async function explored(element, job, explorer) {
   if (!files.some((file) => file.name === RECORD)) return false;
   let drawn;
   try {
-    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`)]);
+    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`), styled(explorer.replace(/\.js$/, ".css"))]);
   } catch {
     return false;
   }
   const [{ mount }, record] = drawn;
-  document.head.append(h("link", { rel: "stylesheet", href: explorer.replace(/\.js$/, ".css") }));
   const slot = h("div", { class: "explored" });
   element.replaceChildren(slot);
+  const told = { explorer: "", moved: movedOf(location.hash.slice(1)) };
+  const tell = () => {
+    const text = [told.explorer, told.moved].filter(Boolean).join("&");
+    history.replaceState(null, "", text ? `#${text}` : location.pathname);
+  };
+  const page = { job, record, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other) => { shown = other; } };
+  const endings = [...new Set(files.map((file) => /^design_\d+(.+)$/.exec(file.name)?.[1]).filter(Boolean))];
+  const digits = files.map((file) => /^design_(\d+)/.exec(file.name)?.[1].length).find(Boolean) ?? 2;
+  let shown = job, strip = null;
   mount(slot, record, {
     heading: false,
-    state: location.hash.slice(1),
-    onState: (text) => history.replaceState(null, "", text ? `#${text}` : location.pathname),
-    downloads: (design) => files.filter((file) => file.name.startsWith(`design_${String(design.rank).padStart(2, "0")}`)).map((file) => ({ label: file.name, href: file.href, download: file.name })),
+    state: page.state,
+    onState: (text) => { told.explorer = text; tell(); },
+    downloads: (design) => endings.map((ending) => {
+      const name = `design_${String(design.rank).padStart(digits, "0")}${ending}`;
+      return { label: name, href: `${API}/jobs/${shown.id}/files/${name}`, download: name };
+    }),
+    ...(maySubmit() && job.kind === "synthesis" ? {
+      whatIf: (place, handle) => whatIf(place, handle, page).then((made) => { strip = made; }, () => place.setAttribute("hidden", "")),
+      ways: (place) => strip?.ways(place),
+    } : {}),
   });
   return true;
 }
+
+/** Load a style sheet; what is drawn before it is there has the wrong size. */
+const styled = (href) => new Promise((done) => {
+  document.head.append(h("link", { rel: "stylesheet", href, onload: done, onerror: done }));
+});
+
+/** Return what the text of an address says of values that were moved. */
+const movedOf = (text) => new URLSearchParams(text).getAll("if").map((entry) => `if=${encodeURIComponent(entry)}`).join("&");
 
 function certificate(job, record) {
   const told = record.certificate ?? {};

@@ -5,6 +5,7 @@ import { batchView } from "./batch_view.js";
 import { duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
 import { filesCard } from "./files_card.js";
+import { hasView, kindView } from "./kind_views.js";
 import { nothingView } from "./nothing_view.js";
 import { sizesView } from "./sizes_card.js";
 import { watchView } from "./watch_view.js";
@@ -77,16 +78,19 @@ function heading() {
   const buttons = maySubmit() ? [
     live ? h("button", { type: "button", class: "danger", onclick: () => act("POST", "/cancel") }, "Cancel") : null,
     RESUMABLE.includes(job.state) ? h("button", { type: "button", class: "primary", onclick: () => act("POST", "/resume") }, "Resume") : null,
-    ["synthesis", "explain"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
+    ["synthesis", "explain", "compare"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
     h("button", { type: "button", "aria-pressed": String(job.pinned), title: "Pinned jobs are kept for good", onclick: () => act("PATCH", "", { pinned: !job.pinned }) }, job.pinned ? "Kept for good" : "Keep for good"),
     live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
   ] : [];
   head.replaceChildren(
-    h("div", { class: "heading" }, h("h1", {}, job.title), h("div", { class: "row" }, buttons)),
+    h("div", { class: "heading" }, h("h1", {}, titled(job)), h("div", { class: "row" }, buttons)),
     h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took),
       job.parent ? h("a", { href: `/jobs/${job.parent}` }, "what it follows from") : null));
   document.title = `${live ? "… " : ""}${job.title} · clutchsynth`;
 }
+
+/** Return the title of a job; those that the service makes of a kind begin with a small letter. */
+const titled = ({ kind, title }) => (kind === "synthesis" || kind === "batch" ? title : title[0].toUpperCase() + title.slice(1));
 
 async function act(method, path, body) {
   fault.textContent = "";
@@ -139,8 +143,9 @@ async function ended() {
     if (job.kind === "batch") batchView(slot, job);
     else if (job.kind === "explain") await nothingView(slot, job, job);
     else if (job.kind === "synthesis" && job.summary?.outcome === "infeasible") await nothingView(slot, job, null);
-    else if (job.kind === "synthesis" && job.summary?.designs) await frontView(slot, job, place.dataset.explorer);
+    else if (job.kind === "compare" || (job.kind === "synthesis" && job.summary?.designs)) await frontView(slot, job, place.dataset.explorer);
     else if (job.kind === "size_range" && job.summary?.variants) await sizesView(slot, job);
+    else if (hasView(job)) await kindView(slot, job);
     else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
     await filesCard(below, job);
   } catch (error) {

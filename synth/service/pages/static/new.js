@@ -1,6 +1,7 @@
 // The form of a study: what a family declares, checked by the service while somebody types.
 
 import { Refusal, faultCard, get, maySubmit, post, sentence } from "./api.js";
+import { ANY, choiceOf, together } from "./compare_form.js";
 import { h, say, unitText, words } from "./dom.js";
 import { Field, choices, hintOf, stated, typed } from "./fields.js";
 import { sideView } from "./new_side.js";
@@ -11,9 +12,11 @@ const address = new URLSearchParams(location.search);
 const SIZES = ["variable", "count"];
 
 // What is asked: the spec as stated, apart from what fields hold. `rest` has no field and is passed on.
-const study = { family: "", title: "", parent: null, options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
-let families = [], examples = [], declared = null, fields = [], told = { ready: false, problems: [], read: {}, combinations: null };
+const study = { family: "", several: null, own: [], title: "", parent: null, options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
+// Where several families are compared, `several` holds their names, `own` the entries that say more than a name.
+let families = [], examples = [], declared = null, choice = null, fields = [], told = { ready: false, problems: [], read: {}, combinations: null };
 
+const declarations = new Map();
 const side = sideView({ start, spec: () => body(), fieldAt });
 const form = h("form", { id: "study", novalidate: true, onsubmit: (event) => { event.preventDefault(); start(); } });
 
@@ -24,6 +27,7 @@ async function begin() {
     const from = address.get("from"), example = examples.find((one) => one.name === address.get("example"));
     if (from) await fromJob(from);
     else if (example) take(example.spec);
+    else if (address.get("family") === ANY) take({ family: ANY });
     else study.family = families.some((family) => family.name === address.get("family")) ? address.get("family") : examples[0]?.family ?? families[0].name;
     await redraw();
   } catch (error) {
@@ -44,16 +48,26 @@ async function fromJob(id) {
 /** Take a spec as what is asked. */
 function take(spec) {
   const { family, options = {}, requirements = {}, objectives = null, fix = {}, parts = {}, limits = {}, points, ...rest } = spec;
-  Object.assign(study, { family, options: { ...options }, objectives: objectives === null ? null : structuredClone(objectives), rest, points: String(points ?? 20) });
+  const entries = Array.isArray(family) ? family : [];
+  const several = family === ANY ? families.map((one) => one.name) : entries.length ? entries.map((entry) => entry.family ?? entry) : null;
+  Object.assign(study, { several: several && new Set(several), own: entries.filter((entry) => typeof entry !== "string") });
+  Object.assign(study, { family: several ? ANY : family, options: { ...options }, objectives: objectives === null ? null : structuredClone(objectives), rest, points: String(points ?? 20) });
   study.values = { requirements: { ...requirements }, fix: { ...fix }, parts: { ...parts } };
   study.rest = Object.keys(limits).length ? { limits, ...rest } : rest;
 }
 
 async function redraw() {
   const chosen = Object.entries(study.options).map(([name, value]) => `${name}:${value}`).join(",");
-  declared = await get(`/families/${study.family}${chosen ? `?options=${encodeURIComponent(chosen)}` : ""}`);
+  if (study.several) declared = await declaredBySeveral();
+  else declared = await get(`/families/${study.family}${chosen ? `?options=${encodeURIComponent(chosen)}` : ""}`);
   draw();
   await check();
+}
+
+async function declaredBySeveral() {
+  const missing = families.filter(({ name }) => study.several.has(name) && !declarations.has(name));
+  for (const { name } of missing) declarations.set(name, await get(`/families/${name}`)); // one after the other: they share what answers forms
+  return together(families.filter(({ name }) => study.several.has(name)), declarations);
 }
 
 const of = (...sections) => declared.rows.filter((row) => sections.includes(row.section));
@@ -67,12 +81,13 @@ function draw() {
   const objectives = of("objective");
   form.append(
     familyCard(),
-    card("The duty", "needed", asked("needed").map((row) => field(row, "requirements"))),
+    study.several ? card("The duty", "what you know of it; who needs more says so", asked("duty").map((row) => field(row, "requirements")))
+      : card("The duty", "needed", asked("needed").map((row) => field(row, "requirements"))),
     folded("limits", "Limits you may set", "empty is not asked", asked("limit").map((row) => field(row, "requirements")), true),
     objectiveCard(objectives),
-    folded("construction", "Construction", `${of("option").length} choices`, of("option").map((row) => choices(row, study.options[row.name] ?? row.default, (name) => choose(row, name)))),
+    ...(study.several ? [] : [folded("construction", "Construction", `${of("option").length} choices`, of("option").map((row) => choices(row, study.options[row.name] ?? row.default, (name) => choose(row, name)))),
     folded("parts", "Parts", "designations with commas between them, or a condition on columns", of("part").map((row) => field({ ...row, unit: "" }, "parts"))),
-    folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix"))),
+    folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix")))]),
     folded("assumptions", "Assumptions", `${asked("assumption").length} values, each with a default and its source`, asked("assumption").map((row) => field(row, "requirements")), false, true),
     h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } })));
   for (const id of open) form.querySelector(`#${id}`)?.setAttribute("open", "");
@@ -95,18 +110,23 @@ function folded(id, title, hint, children, open = false, find = false) {
 
 function familyCard() {
   const own = examples.filter((example) => example.family === study.family);
+  choice = study.several && choiceOf(families, study.several, () => { collect(); redraw().catch(show); });
   return h("section", { class: "card" }, h("h2", { id: "family" }, "Family"),
-    h("div", { class: "families", role: "radiogroup", "aria-labelledby": "family" }, families.map((family) =>
-      h("label", {}, h("input", { type: "radio", name: "family", value: family.name, checked: family.name === study.family, onchange: () => turn(family.name) }), family.title))),
+    h("div", { class: "families", role: "radiogroup", "aria-labelledby": "family" }, [{ name: ANY, title: "Compare several" }, ...families].map((family) =>
+      h("label", {}, h("input", { type: "radio", name: "family", value: family.name, checked: family.name === study.family, onchange: () => turn(family.name) }), family.title))), choice?.element,
     own.length ? h("p", { class: "row starts" }, h("span", { class: "note" }, "Start from"), own.map((example) =>
       h("button", { type: "button", class: "small", title: example.description, onclick: () => { take(example.spec); redraw(); } }, words(example.name)))) : null);
 }
 
 function turn(family) {
-  take({ family });
+  const known = study.values.requirements, limits = new Set(study.several || family === ANY ? Object.keys(known) : []);
+  take({ family, requirements: Object.fromEntries(Object.entries(known).filter(([name]) => limits.has(name) && understood(family, name))) });
   study.parent = null;
   redraw().then(() => form.querySelector(`input[value="${family}"]`)?.focus()).catch(show);
 }
+
+/** Tell whether a requirement means the same in other families: then it is taken over. */
+const understood = (family, name) => families.some((one) => (family === ANY || one.name === family) && one.understands.includes(name));
 
 function choose(row, name) {
   collect();
@@ -149,16 +169,20 @@ const partsOf = (text) => (/[<>=]| in /.test(text) ? text : text.split(",").map(
 
 function spec() {
   collect();
-  const found = { family: study.family };
+  const all = study.several && study.several.size === families.length && !study.own.length;
+  const found = { family: !study.several || all ? study.family : [...study.several].map((name) => study.own.find((entry) => entry.family === name) ?? name) };
   if (Object.keys(study.options).length) found.options = study.options;
   for (const [section, values] of Object.entries(study.values)) if (Object.keys(values).length || section === "requirements") found[section] = values;
-  found.objectives = study.objectives;
+  if (!study.several || count() > 0) found.objectives = study.objectives;
   found.points = /^\d+$/.test(study.points.trim()) ? Number(study.points) : study.points;
   return { ...found, ...study.rest };
 }
 
+/** Return how many objectives are chosen. */
+const count = () => (study.objectives === null ? 0 : Array.isArray(study.objectives) ? study.objectives.length : Object.keys(study.objectives).length);
+
 function body() {
-  const own = { kind: "synthesis", request: spec() };
+  const own = { kind: study.several ? "compare" : "synthesis", request: spec() };
   if (study.title.trim()) own.title = study.title.trim();
   if (study.parent) own.parent = study.parent;
   return own;
@@ -192,8 +216,9 @@ function tell(answer) {
   const points = left.find((problem) => problem.path[0] === "points");
   document.getElementById("points-fault").textContent = points?.message ?? "";
   document.getElementById("points").setAttribute("aria-invalid", String(Boolean(points)));
-  const objectives = Array.isArray(study.objectives) ? study.objectives.length : Object.keys(study.objectives).length;
-  document.getElementById("objective-note").textContent = ["Choose at least one.", "One optimum.", "A front of the best compromises."][objectives] ?? `A front in ${objectives} dimensions; this can take minutes.`;
+  const chosen = count(), objectives = study.several ? Math.max(1, chosen) : chosen;
+  choice?.show(declarations, Object.keys(study.values.requirements));
+  document.getElementById("objective-note").textContent = study.several && !chosen ? "None chosen: those that all have in common." : ["Choose at least one.", "One optimum.", "A front of the best compromises."][chosen] ?? `A front in ${chosen} dimensions; this can take minutes.`;
   side.show(answer, at, left, { objectives, stated: Object.keys(study.values.requirements).length, slots: of("part").map((row) => words(row.name)) });
 }
 

@@ -15,7 +15,7 @@ export async function nothingView(element, job, explaining) {
   element.replaceChildren(why, ways);
   if (explaining) {
     why.remove();
-    return tell(ways, job, await get(`/jobs/${job.id}/result`));
+    return tell(ways, job, await get(`/jobs/${job.id}/result`), { heading: "h2" });
   }
   const record = await get(`/jobs/${job.id}/result`);
   const told = record.explanation ?? {};
@@ -29,44 +29,69 @@ export async function nothingView(element, job, explaining) {
 
 const withUnits = (text) => text.replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`).replaceAll("_", " ");
 
-/** Find the explanation of a job, or ask for it; it is asked once. */
-async function seek(ways, job) {
+/**
+ * @typedef {object} Ways
+ * @property {string} heading tag of the heading
+ * @property {boolean} [begin] whether they are looked for without being asked, behind what others wait for
+ * @property {(job: object) => void} [asked] is told the job that looks for them
+ * @property {() => void} [told] is told when they are shown
+ * @property {(patch: object) => (() => void) | null} [apply] what is done for a change in place of a new study
+ */
+
+/**
+ * Find the explanation of a job, or ask for it; it is asked once.
+ * @param {HTMLElement} ways
+ * @param {object} job
+ * @param {Ways} [how]
+ */
+export async function seek(ways, job, how = { heading: "h2" }) {
   const known = (await get(`/jobs?kind=explain&parent=${job.id}&limit=1`)).jobs[0];
-  if (known) return follow(ways, job, known);
+  if (known && !(how.begin && known.state === "cancelled")) return follow(ways, job, known, how);
   const fault = h("p", { class: "fault", role: "alert" });
   const begin = async () => {
     try {
       const { points, gap, objectives, weights, grid, ...request } = await get(`/jobs/${job.id}/request`);
       const title = `Ways out: ${job.title}`.slice(0, 200);
-      follow(ways, job, await post("/jobs", { kind: "explain", request: { ...request, ...(grid === undefined ? {} : { grid }) }, title, parent: job.id }, { "Idempotency-Key": `ways-out-${job.id}` }));
+      const body = { kind: "explain", request: { ...request, ...(grid === undefined ? {} : { grid }) }, title, parent: job.id, ...(how.begin ? { priority: 0 } : {}) };
+      const explaining = known ? await post(`/jobs/${known.id}/resume`) : await post("/jobs", body, { "Idempotency-Key": `ways-out-${job.id}` });
+      how.asked?.(explaining);
+      follow(ways, job, explaining, how);
     } catch (error) {
+      how.told?.();
       fault.textContent = sentence(error.message);
     }
   };
-  ways.replaceChildren(h("h2", {}, "What would help?"), h("p", {}, "The smallest changes that make it feasible can be searched; that takes some seconds to minutes."),
+  ways.replaceChildren(h(how.heading, {}, "What would help?"), h("p", {}, "The smallest changes that make it feasible can be searched; that takes some seconds to minutes."),
     maySubmit() ? h("p", {}, h("button", { type: "button", class: "primary", onclick: begin }, "Find ways out")) : null, fault);
+  if (how.begin && maySubmit()) await begin();
 }
 
-function follow(ways, job, explaining) {
+function follow(ways, job, explaining, how) {
   const stage = h("p", { role: "status" }, stageText(explaining.progress));
   const show = async (found) => {
-    if (found.state === "done") tell(ways, job, await get(`/jobs/${found.id}/result`));
-    else ways.replaceChildren(h("h2", {}, "Ways out"), h("p", {}, outcomeText(found)), h("p", {}, h("a", { href: `/jobs/${found.id}` }, "Look at it")));
+    how.told?.();
+    if (found.state === "done") tell(ways, job, await get(`/jobs/${found.id}/result`), how);
+    else ways.replaceChildren(h(how.heading, {}, "Ways out"), h("p", {}, outcomeText(found)), h("p", {}, h("a", { href: `/jobs/${found.id}` }, "Look at it")));
   };
   if (!LIVE.includes(explaining.state)) return show(explaining);
-  ways.replaceChildren(h("h2", {}, "Looking for ways out"), h("progress", { "aria-label": "Ways out are searched" }), stage);
+  ways.replaceChildren(h(how.heading, {}, "Looking for ways out"), h("progress", { "aria-label": "Ways out are searched" }), stage);
   return listen([explaining.id], async (kind, told) => {
     if (kind === "progress") stage.textContent = stageText(told);
     if (kind === "end") show(await get(`/jobs/${explaining.id}`));
   });
 }
 
-function tell(ways, job, found) {
+function tell(ways, job, found, how) {
   const proven = (way) => h("span", { class: `badge ${way.proven ? "good" : ""}` }, way.proven ? "proven" : "not proven to be the least");
   const conflict = found.conflict.length ? h("p", {}, `Together these cannot hold: ${found.conflict.join(", ").replaceAll("_", " ")}${found.minimal ? "; each alone could" : ""}.`) : h("p", {}, sentence(found.message));
-  ways.replaceChildren(h("h2", {}, "Ways out"), conflict,
-    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, withUnits(way.sentence)), proven(way)),
-      maySubmit() && Object.keys(way.patch ?? {}).length ? h("a", { class: "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply") : null)))
+  const apply = (way) => {
+    if (!maySubmit() || !Object.keys(way.patch ?? {}).length) return null;
+    const own = how.apply?.(way.patch);
+    if (own) return h("button", { type: "button", onclick: own }, "Apply");
+    return h("a", { class: how.apply ? "button" : "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
+  };
+  ways.replaceChildren(h(how.heading, {}, "Ways out"), conflict,
+    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, withUnits(way.sentence)), proven(way)), apply(way))))
       : h("p", {}, found.feasible ? "All limits can hold together." : "No single change was found that helps."),
-    found.interrupted ? h("p", { class: "note" }, `Interrupted: ${found.interrupted}`) : h("span"));
+    found.interrupted ? h("p", { class: "note" }, `Interrupted: ${found.interrupted}`) : "");
 }

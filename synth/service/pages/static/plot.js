@@ -2,19 +2,19 @@
 
 import { amount, h, s, unitText, words } from "./dom.js";
 
-const NARROW = matchMedia("(max-width: 620px)").matches; // letters of a drawing shrink with it
-const WIDE = NARROW ? 360 : 720, HIGH = NARROW ? 270 : 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = NARROW ? 3 : 5;
+const SMALL = innerWidth < 620; // letters keep their size on a phone
+const WIDE = SMALL ? 360 : 720, HIGH = SMALL ? 300 : 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = SMALL ? 4 : 5;
 
 /** Return round numbers that cover a range. */
-function ticks(low, high) {
-  const rough = (high - low) / TICKS, power = 10 ** Math.floor(Math.log10(rough));
+export function ticks(low, high, most = TICKS) {
+  const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough);
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
   return found;
 }
 
-function span(values) {
+export function span(values) {
   const low = Math.min(...values), high = Math.max(...values);
   const room = high > low ? 0.07 * (high - low) : Math.abs(low) * 0.1 || 1;
   return [low - room, high + room];

@@ -2,10 +2,10 @@
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { cellsOf, headingOf, sheet } from "./csv.js";
-import { amount, h, s, unitText, words } from "./dom.js";
+import { curveOf } from "./curve.js";
+import { amount, h, unitText, words } from "./dom.js";
 import { LIVE, badge, count, outcomeText, rowBadge } from "./words.js";
 
-const WIDE = matchMedia("(max-width: 620px)").matches ? 360 : 720, HIGH = 250, LEFT = 78, RIGHT = 22, TOP = 28, BOTTOM = 46;
 const MOST_LISTED = 5;
 
 /** Return what a batch offers where it has designs: its standard sizes. */
@@ -48,15 +48,17 @@ const sizesText = (job) => (job.summary?.variants ? `${count(job.summary.variant
 
 const file = (job, name) => get(`/jobs/${job.id}/files/${name}${name.endsWith(".csv") ? "?raw=1" : ""}`);
 
-async function curveOf(job) {
+async function excessOf(job) {
   const [header, ...rows] = cellsOf(await file(job, "curve.csv"));
-  const points = rows.map(([variants, excess]) => ({ variants: Number(variants), excess: Number(excess) }));
-  return curve(points, headingOf(header[1]).unit, job.summary.variants, job.summary.objective);
+  const points = rows.map(([sizes, excess]) => [Number(sizes), excess === "" ? null : Number(excess)]);
+  const up = { name: `total excess of ${words(job.summary.objective)}`, unit: headingOf(header[1]).unit, note: "over the number of sizes: what more would save, and fewer cost" };
+  const chosen = { value: job.summary.variants, ends: false, text: "chosen" };
+  return points.length > 1 ? curveOf({ name: "number of sizes", unit: "" }, up, [{ points }], { zero: true, marks: [chosen] }) : null;
 }
 
 /** Show which sizes were chosen, what they cost, and which row each serves. */
 export async function sizesView(element, job) {
-  const [record, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), curveOf(job)]);
+  const [record, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), excessOf(job)]);
   const batch = job.parent;
   const told = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "family" ? words(text) : name === "status" ? rowBadge(text) : null);
   const one = new Set(cellsOf(variants).slice(1).map((cells) => cells[1])).size < 2; // family
@@ -66,7 +68,7 @@ export async function sizesView(element, job) {
     h("section", { class: "card stack certificate proven" }, h("h2", {}, `${count(record.variants, "size")} for ${count(cellsOf(assignment).length - 1, "row")}`),
       h("p", {}, `Total excess of ${words(record.objective)} over each row's own best: ${amount(record.total_excess)} ${unit}, ${record.gap > 0 ? `proven to within ${amount(100 * record.gap)} %` : "proven"}. The fewest that serve all rows: ${record.fewest}${record.fewest_proven ? "" : ", not proven to be the fewest"}.`),
       left.length ? h("p", { class: "fault" }, `${count(left.length, "row")} ${left.length === 1 ? "is" : "are"} not served; see below.`) : null),
-    h("section", { class: "card" }, drawn),
+    drawn ? h("section", { class: "card" }, drawn) : h("div"),
     h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(lines(variants), { label: "The sizes", cell: told })),
     h("section", { class: "card stack" }, h("h2", {}, "Which row gets which"), sheet(lines(assignment), { label: "Which row gets which", cell: told })),
     ...(left.length ? [h("section", { class: "card stack" }, h("h2", {}, "Not served"), sheet(lines(unserved), { label: "Not served", cell: told }))] : []));
@@ -77,24 +79,4 @@ function without(lines, name) {
   const k = lines[0].indexOf(name);
   if (k < 0) return lines;
   return lines.map((line) => line.filter((_, own) => own !== k));
-}
-
-/** Draw what fewer sizes cost: the total excess over their number. */
-function curve(points, unit, chosen, objective) {
-  if (points.length < 2) return h("div");
-  const most = Math.max(...points.map((point) => point.excess)) || 1, [low, high] = [points[0].variants, points.at(-1).variants];
-  const step = 10 ** Math.floor(Math.log10(most)), tick = [0.2, 0.5, 1, 2].map((k) => k * step).find((own) => most / own <= 5) ?? 2 * step;
-  const x = (variants) => LEFT + ((variants - low) / (high - low || 1)) * (WIDE - LEFT - RIGHT), y = (excess) => HIGH - BOTTOM - (excess / most) * (HIGH - TOP - BOTTOM);
-  const every = Math.max(1, Math.ceil((high - low) / (WIDE / 60)));
-  const lines = [...Array(Math.floor(most / tick) + 1).keys()].map((k) => k * tick);
-  const label = `Total excess of ${words(objective)} over the number of sizes`;
-  const told = (point) => `${count(point.variants, "size")}: ${amount(point.excess)} ${unitText(unit)}${point.variants === chosen ? ", chosen" : ""}`.trim();
-  return h("figure", {}, h("figcaption", { class: "note" }, `${label}${unitText(unit) ? `, in ${unitText(unit)}` : ""}. What more sizes would save, and fewer cost.`),
-    s("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, class: "plot", role: "img", "aria-label": `${label}. ${points.map(told).join("; ")}` },
-      lines.map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, amount(Number(value.toPrecision(6))))]),
-      points.filter((point) => (point.variants - low) % every === 0).map((point) => s("text", { x: x(point.variants), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, point.variants)),
-      s("text", { class: "axis", x: (LEFT + WIDE - RIGHT) / 2, y: HIGH - 8, "text-anchor": "middle" }, "number of sizes"),
-      s("polyline", { class: "curve", points: points.map((point) => `${x(point.variants)},${y(point.excess)}`).join(" ") }),
-      points.map((point) => s("circle", { class: point.variants === chosen ? "point named" : "point", cx: x(point.variants), cy: y(point.excess), r: point.variants === chosen ? 7 : 4 }, s("title", {}, told(point)))),
-      points.filter((point) => point.variants === chosen).map((point) => s("text", { class: "name", x: x(point.variants) + (x(point.variants) > 0.8 * WIDE ? -11 : 11), y: y(point.excess) - 9, "text-anchor": x(point.variants) > 0.8 * WIDE ? "end" : "start" }, "chosen"))));
 }

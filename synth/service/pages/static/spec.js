@@ -33,11 +33,18 @@ const ARGUMENTS = ["objectives", "parts", "limits", "fix", "weights", "points", 
 /** Return a program that finds the designs: at one's own machine, or by the service where the spec needs what it keeps. */
 export function pythonText(body) {
   const { family, options = {}, requirements = {}, ...more } = body.request;
+  if (body.kind === "compare") return comparingText(body.request);
   if (!Object.keys(more).every((name) => ARGUMENTS.includes(name))) return askingText(body);
   const chosen = Object.entries(options);
   const problem = chosen.length ? `synth.load(${[python(family), ...chosen.map(([name, value]) => `${name}=${python(value)}`)].join(", ")})` : python(family);
   const said = [problem, python(requirements, "    "), ...Object.entries(more).map(([name, value]) => `${name}=${python(value, "    ")}`)];
   return `import synth\n\nfront = synth.synthesize(\n${said.map((line) => `    ${line},\n`).join("")})\nfront.save("out/")`;
+}
+
+function comparingText({ family, requirements = {}, ...more }) {
+  if (!Object.keys(more).every((name) => [...ARGUMENTS, "options"].includes(name))) return askingText({ kind: "compare", request: { family, requirements, ...more } });
+  const said = [python(family), python(requirements, "    "), ...Object.entries(more).map(([name, value]) => `${name}=${python(value, "    ")}`)];
+  return `import synth\n\nfound = synth.compare(\n${said.map((line) => `    ${line},\n`).join("")})\nfound.save("out/")`;
 }
 
 function askingText(body) {

@@ -42,6 +42,9 @@ export function outcomeText(job) {
   if (job.state === "cancelled") return "Cancelled";
   const found = facts.designs ? count(facts.designs, "design") : "";
   if (job.state === "stopped") return found ? `Stopped at a limit, ${found} kept` : "Stopped at a limit of time or memory";
+  if (["rate", "near_equals"].includes(job.kind) && facts.sentence) return facts.sentence[0].toUpperCase() + facts.sentence.slice(1);
+  if (job.kind === "verify" && job.outcome) return words(job.outcome[0].toUpperCase() + job.outcome.slice(1));
+  if (job.kind === "whatif" && facts.steps) return `Designs at ${facts.feasible_steps} of ${count(facts.steps, "value")}`;
   if (job.outcome === "infeasible") return job.kind === "explain" ? count(facts.ways ?? 0, "way out", "ways out") : "Nothing is feasible";
   if (job.outcome === "not_solved") return "No answer within the time";
   if (job.kind === "size_range" && facts.variants) return `${count(facts.variants, "size")} for all rows that can be served`;
@@ -56,7 +59,7 @@ const BADGES = {
 
 /** Return the state of a job as a badge: a word and a mark, not a colour alone. */
 export function badge(job) {
-  const [text, kind, mark] = job.state === "done" && job.outcome === "infeasible" && job.kind !== "explain" ? ["Not feasible", "warn", "!"]
+  const [text, kind, mark] = job.state === "done" && job.outcome === "infeasible" && ["synthesis", "compare", "whatif"].includes(job.kind) ? ["Not feasible", "warn", "!"]
     : BADGES[job.state] ?? [words(job.state), "", "○"];
   return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
 }

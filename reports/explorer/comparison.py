@@ -1,0 +1,221 @@
+"""What the explorer shows of several families that were asked the same: their common front, as one record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from reports.about import About
+from reports.explorer.record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
+from reports.front_report import NOT_COVERED
+from reports.sheet.design_sheet import program_name
+from synth.results import Certificate, Design, ParetoFront
+from synth.results.calculation import Calculation
+
+TITLE = "Comparison of families"
+
+
+def comparison_record(
+    content: Mapping[str, Any],
+    fronts: Mapping[str, ParetoFront],
+    calculations: Mapping[str, Calculation],
+    *,
+    about: Any = None,
+    links: Mapping[str, str] | None = None,
+) -> dict[str, Any]:
+    """Return what the explorer shows of a comparison, as JSON knows it.
+
+    Parameters
+    ----------
+    content : mapping
+        Of comparison.json; its designs have the rank in their family as ``own_rank``.
+    fronts : mapping
+        Family -> its own front, of those that were searched.
+    calculations : mapping
+        Family -> what tells the meaning of its quantities and limits.
+    about : About or mapping, optional
+    links : mapping, optional
+        Family -> file of its report beside the page.
+    """
+    told = _Compared(content, fronts, calculations, About.of(about), links or {})
+    return {
+        "format": EXPLORER_FORMAT,
+        "program": program_name(next(iter(fronts.values()), None)),
+        "title": told.about.title or TITLE,
+        "family": TITLE,
+        "facts": [list(fact) for fact in told.about.facts()],
+        "objectives": dict(content["objectives"]),
+        "asked": told.asked(),
+        "assumed": told.assumed(),
+        "certificate": told.certificate(),
+        "nothing": None if content["designs"] else told.nothing(),
+        "families": told.families(),
+        "quantities": list(told.quantities.values()),
+        "limits": list(told.limits.values()),
+        "parts": {key: part for one in told.records.values() for key, part in one.parts().items()},
+        "spec": {},
+        "designs": [told.design(x) for x in content["designs"]],
+    }
+
+
+class _Compared:
+    def __init__(
+        self,
+        content: Mapping[str, Any],
+        fronts: Mapping[str, ParetoFront],
+        calculations: Mapping[str, Calculation],
+        about: About,
+        links: Mapping[str, str],
+    ) -> None:
+        self.content, self.fronts, self.about, self.links = content, fronts, about, links
+        self.records = {family: RecordOf(fronts[family], calculations[family], about) for family in calculations}
+        self.titles = self._titles()
+        self.quantities: dict[str, dict[str, Any]] = {}
+        self.units: dict[str, str] = {}
+        self.limits: dict[tuple[str, str, str], dict[str, Any]] = {}
+        listed = dict.fromkeys(x["family"] for x in content["designs"])
+        for family in listed or self.records:
+            self._gather(family)
+
+    def _titles(self) -> dict[str, str]:
+        """Return what families are called: by their titles, and by more where two have the same."""
+        told = {str(x["family"]): str(x["title"]) for x in self.content["families"]}
+        often = list(told.values())
+        return {name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in told.items()}
+
+    def _gather(self, family: str) -> None:
+        """Take up the quantities and limits of a family; what is measured otherwise than elsewhere stands apart."""
+        record = self.records[family]
+        for name in [*self.content["objectives"], *record.names]:
+            key = self._key(family, name)
+            if key not in self.quantities:
+                apart = {} if key == name else {"name": key, "label": f"{label(name)} ({self.titles[family]})"}
+                self.quantities[key] = record.quantity(name) | apart
+                self.units[key] = record.frame.units[name]
+        for name in record.frame.limit_units:
+            limit = record.limit(name)
+            self.limits.setdefault((limit["name"], limit["unit"], limit["sign"]), limit)
+
+    def _key(self, family: str, name: str) -> str:
+        own = self.records[family].frame.units[name]
+        same = name in self.content["objectives"] or self.units.get(name, own) == own
+        return name if same else f"{name}:{family}"
+
+    # -- what was asked ------------------------------------------------------------------------
+
+    def asked(self) -> list[dict[str, Any]]:
+        """Return what was asked of all, and of single families."""
+        return self._merged({f: [*r.asked(stated=True), *r.restrictions()] for f, r in self.records.items()})
+
+    def assumed(self) -> list[dict[str, Any]]:
+        """Return what stands at its default."""
+        return self._merged({family: record.asked(stated=False) for family, record in self.records.items()})
+
+    def _merged(self, rows: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[dict[str, Any]]:
+        """Return rows once that are the same in all families that have them, the others with their family."""
+        values: dict[str, list[Any]] = {}
+        for own in rows.values():
+            for row in own:
+                values.setdefault(row["label"], []).append({**row, "text": ""})
+        found: dict[str, dict[str, Any]] = {}
+        for family, own in rows.items():
+            for row in own:
+                alike = all(other == values[row["label"]][0] for other in values[row["label"]])
+                name = row["label"] if alike else f"{row['label']} ({self.titles[family]})"
+                found.setdefault(name, {**row, "label": name})
+        return list(found.values())
+
+    # -- how far it is proven ------------------------------------------------------------------
+
+    def certificate(self) -> dict[str, Any]:
+        content = self.content
+        c = Certificate(**content["certificate"])
+        proven, some = c.kind == "global", bool(content["designs"])
+        word = WORDS.get(c.kind, "Not proven")
+        if not some:
+            word = "Not feasible, proven" if proven else "No design found, not proven"
+        elif content["interrupted"]:
+            word = "Stopped"
+        amounts = c.amounts()
+        told = str(content["sentence"])
+        sentence = (told.partition(": ")[2] or told).replace(amounts, "") + "."
+        details = [f"Stopped: {content['interrupted']}."] if content["interrupted"] else []
+        if amounts:
+            details.append(f"Smaller differences than these do not count: {label(amounts.strip(' ()'))}.")
+        return {
+            "level": "bad" if not some else "good" if proven and not content["interrupted"] else "open",
+            "word": word,
+            "sentence": sentence[:1].upper() + sentence[1:],
+            "head": word,
+            "gap": c.gap,
+            "details": details,
+            "combinations": c.combinations,
+            "excluded": c.excluded_by_bound,
+            "solved": c.solved,
+            "unresolved": c.unresolved,
+            "offered": [
+                f"{self.titles[family]}: {front.certificate.combinations} combinations"
+                for family, front in self.fronts.items()
+            ],
+            "not_part": self._not_part(),
+        }
+
+    def _not_part(self) -> list[str]:
+        outside = ["Objectives are measured as each family defines them."]
+        refused = [self.titles[x["family"]] for x in self.content["families"] if x["folder"] is None]
+        if refused:
+            outside.append(f"Families that were not searched: {', '.join(refused)}.")
+        return list(dict.fromkeys([NOT_COVERED, *outside]))
+
+    def nothing(self) -> dict[str, Any]:
+        """Return that there is no design; why not, each family tells."""
+        sentence = str(self.content["sentence"])
+        message = f"{sentence[:1].upper()}{sentence[1:]}."
+        return {"message": message, "conflicts": [], "nearest": []}
+
+    def families(self) -> list[dict[str, Any]]:
+        """Return what became of each family."""
+        return [
+            {
+                "name": str(x["family"]),
+                "title": self.titles[x["family"]],
+                "outcome": str(x["outcome"]),
+                "why": label(str(x["why"])),
+                "file": self.links.get(x["family"], ""),
+                "spec": self.records[x["family"]].spec() if x["family"] in self.records and x["listed"] else {},
+            }
+            for x in self.content["families"]
+        ]
+
+    # -- designs -------------------------------------------------------------------------------
+
+    def design(self, told: Mapping[str, Any]) -> dict[str, Any]:
+        """Return one design, with its rank among those of all families."""
+        family, title = told["family"], self.titles[told["family"]]
+        record, own = self.records[family], self._own(told)
+        found = record.design(own, (), {}, {})
+        used = dict(zip(self._limits_of(family), found["used"], strict=True))
+        sides = dict(zip(self._limits_of(family), found["sides"], strict=True))
+        names = {self._key(family, name): name for name in [*self.content["objectives"], *record.names]}
+        proven = self.content["certificate"]["kind"] == "global"
+        return found | {
+            "rank": told["rank"],
+            "score": told["score"],
+            "status": found["status"] if proven else "feasible",
+            "gap": self.content["certificate"]["gap"] if proven else None,
+            "note": str(told["note"] or ""),
+            "why": f"{title}: design {own.rank} of the front of this family alone.",
+            "family": family,
+            "v": [number(own.values.get(names.get(key, ""), math.nan), unit) for key, unit in self.units.items()],
+            "used": [used.get(key) for key in self.limits],
+            "sides": [sides.get(key, [None, None]) for key in self.limits],
+        }
+
+    def _own(self, told: Mapping[str, Any]) -> Design:
+        return next(d for d in self.fronts[told["family"]].designs if d.rank == told["own_rank"])
+
+    def _limits_of(self, family: str) -> list[tuple[str, str, str]]:
+        record = self.records[family]
+        told = [record.limit(name) for name in record.frame.limit_units]
+        return [(limit["name"], limit["unit"], limit["sign"]) for limit in told]

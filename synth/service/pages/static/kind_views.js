@@ -1,0 +1,208 @@
+// What kinds of jobs have found that are no front: each as curve, table or sentence.
+
+import { API, get, sentence } from "./api.js";
+import { tableOf, tableView } from "./csv_rows.js";
+import { curveOf } from "./curve.js";
+import { amount, duration, h, s, unitText, words } from "./dom.js";
+import { marksOf } from "./what_if_track.js";
+import { count, outcomeText } from "./words.js";
+
+const SHOWN = 12; // rows of a table before the rest is unfolded
+const USED = 90; // pixels of a bar that is used in full
+
+const VIEWS = { whatif: whatIfView, prices: pricesView, near_equals: nearView, rate: rateView, verify: verifyView, report: reportView };
+
+/** Tell whether there is a view for a job. */
+export const hasView = (job) => job.kind in VIEWS && Boolean(job.summary);
+
+/** Show what a job has found. */
+export async function kindView(element, job) {
+  element.replaceChildren(...(await VIEWS[job.kind](job)).filter(Boolean));
+}
+
+const card = (title, ...children) => h("section", { class: "card stack" }, title ? h("h2", {}, title) : null, children);
+const badge = (kind, mark, text) => h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
+const percent = (value, digits = 3) => `${amount(Number((100 * value).toPrecision(digits)))} %`;
+const signed = (value) => (value > 0 ? `+${amount(Number(value.toPrecision(3)))}` : value < 0 ? `−${amount(Number((-value).toPrecision(3)))}` : "0");
+const arrows = (text) => words(text).replaceAll("->", "→");
+const verdict = (kind, mark, word, text, ...more) => h("section", { class: `card verdict ${kind}` }, h("p", {}, badge(kind, mark, word), " ", h("b", {}, text)), more);
+
+/** Return a table of which the first rows stand open. */
+function folded(label, columns, rows, kind) {
+  if (rows.length <= SHOWN + 3) return tableView(label, columns, rows, kind);
+  return [tableView(label, columns, rows.slice(0, SHOWN), kind), h("details", { class: "more" }, h("summary", {}, `${rows.length - SHOWN} more`), tableView(`${label}, the rest`, columns, rows.slice(SHOWN), kind))];
+}
+
+// ---- what if ----------------------------------------------------------------------------------------------------------
+
+const STANDS = { optimal: ["good", "✓", "proven"], feasible: ["", "✓", "not proven"], infeasible: ["warn", "!", "nothing fits"], not_solved: ["", "–", "no answer in time"] };
+
+async function whatIfView(job) {
+  const [study, table] = await Promise.all([get(`/jobs/${job.id}/result`), tableOf(job.id, "whatif.csv")]);
+  const along = study.varied[study.along ?? 0], others = study.varied.filter((one) => one !== along);
+  const place = study.varied.indexOf(along);
+  const column = (name) => table.columns.find((one) => one.name === name)?.key ?? name;
+  const objectives = Object.entries(study.objectives).map(([name, sense]) => ({ name, sense, unit: study.units[name], key: column(name) }));
+  const best = new Map(study.steps.map((step) => {
+    const rows = table.rows.filter((row) => row.step === String(step.number));
+    return [step, objectives.map(({ key, sense }) => {
+      const values = rows.map((row) => row[key]).filter((cell) => cell !== "" && cell !== undefined).map(Number);
+      return values.length ? (sense === "max" ? Math.max : Math.min)(...values) : null;
+    })];
+  }));
+  const numeric = study.steps.every((step) => typeof step.values[place] === "number");
+  const found = numeric && !others.length ? marksOf(study) : { marks: [], barren: [] };
+  const other = (step) => step.values.filter((_, k) => k !== place).map((value, k) => `${words(others[k].label)} ${amount(value)} ${unitText(others[k].unit)}`.trim()).join(", ");
+  const series = (k) => {
+    const lines = new Map();
+    for (const step of study.steps) lines.set(other(step), [...(lines.get(other(step)) ?? []), [step.values[place], best.get(step)[k]]]);
+    return [...lines].map(([label, points]) => ({ label, points: points.sort((a, b) => a[0] - b[0]) })).filter(({ points }) => points.some(([, y]) => y !== null));
+  };
+  const across = { name: along.label, unit: along.unit };
+  const curves = numeric ? objectives.map((objective, k) => [objective, series(k)]).filter(([, lines]) => lines.length).map(([{ name, unit, sense }, lines]) =>
+    curveOf(across, { name, unit, note: sense === "max" ? "the largest there is" : "the least there is" }, lines, { ...found, marks: found.marks.filter((mark) => !mark.objective || mark.objective === name) })) : [];
+  const stated = (step) => step.values.map((value, k) => (Array.isArray(value) ? value.join(", ") : typeof value === "number" ? `${amount(value)} ${unitText(study.varied[k].unit)}`.trim() : value));
+  const seen = new Set();
+  const once = (one) => one.kind !== "feasible" || others.length > 0 || !(seen.has(Boolean(one.before)) || !seen.add(Boolean(one.before)));
+  const breaks = study.breaks.filter(once).sort((a, b) => a.value - b.value);
+  const facts = job.summary;
+  const ends = found.marks.filter((mark) => mark.ends).map((mark) => mark.text.split(":")[0]);
+  return [
+    card(`${words(along.label)}${others.length ? ` and ${others.map((one) => words(one.label)).join(", ")}` : ""}: ${count(facts.steps, "value")}`,
+      h("p", {}, [facts.feasible_steps === facts.steps ? "There are designs at every value." : `There are designs at ${facts.feasible_steps} of ${facts.steps} values.`, ...ends.map((text) => `${text}.`), facts.breaks ? `${count(facts.breaks, "change")} of the best parts or counts between them.` : ""].filter(Boolean).join(" ")),
+      study.interrupted ? h("p", { class: "note" }, `Interrupted: ${study.interrupted}`) : null,
+      curves.length ? h("div", { class: "curves" }, curves) : null),
+    breaks.length ? card("Where something changes", folded("Where something changes", [
+      { title: words(along.label), unit: along.unit, cell: (one) => one.value },
+      { title: "for", words: true, cell: (one) => (one.kind === "feasible" ? "all" : `${study.objectives[one.objective] === "max" ? "largest" : "least"} ${words(one.objective)}`) },
+      { title: "what changes there", long: true, cell: (one) => arrows(one.change) },
+      { title: "proven", words: true, cell: (one) => (one.proven ? "yes" : "no") },
+    ], breaks)) : null,
+    card("Values", tableView("Values", [
+      ...study.varied.map((one, k) => ({ title: words(one.label), words: typeof study.steps[0]?.values[k] !== "number", cell: (step) => stated(step)[k] })),
+      { title: "stands", cell: (step) => badge(...(STANDS[step.status] ?? ["", "○", words(step.status)])) },
+      ...objectives.map((objective, k) => ({ title: `${objective.sense === "max" ? "largest" : "least"} ${words(objective.name)}`, unit: objective.unit, cell: (step) => best.get(step)[k] })),
+      { title: "why there is none", long: true, cell: (step) => h("span", { class: "note" }, step.front?.designs.length ? "" : words(step.reason)) },
+    ].filter((one) => one.title !== "why there is none" || study.steps.some((step) => step.reason && !step.front?.designs.length)), study.steps)),
+  ];
+}
+
+// ---- prices -----------------------------------------------------------------------------------------------------------
+
+async function pricesView(job) {
+  const { rows } = await tableOf(job.id, "prices.csv");
+  const step = job.summary.step ?? "1 %";
+  const own = rows.filter((row) => row.status !== "no influence");
+  const designs = [...new Set(own.map((row) => row.design))];
+  const objectives = [...new Set(own.map((row) => row.objective))];
+  const change = (value) => (value === "" || value === undefined ? h("span", { class: "note" }, "not told") : Math.abs(Number(value)) < 5e-4 ? "0" : `${signed(Number(value))} %`);
+  const view = (design) => {
+    const lines = new Map();
+    for (const row of own.filter((row) => row.design === design)) lines.set(row.quantity, { ...lines.get(row.quantity), name: row.quantity, kind: row.kind, [row.objective]: row });
+    const size = (line) => Math.max(...objectives.map((name) => Math.max(Math.abs(Number(line[name]?.up || 0)), Math.abs(Number(line[name]?.down || 0)))));
+    const order = [...lines.values()].filter((line) => size(line) >= 5e-4).sort((a, b) => size(b) - size(a));
+    const remark = (line) => [...new Set(objectives.map((name) => line[name]).filter((row) => row && row.status !== "confirmed").flatMap((row) => (row.reason || row.status).split("; ").map((text) => remarked(text, step))))].join("; ");
+    if (!order.length) return h("p", {}, "Nothing that was asked has a price here: no limit holds this design back.");
+    return folded(`Prices of design ${design}`, [
+      { title: "requirement or limit", words: true, cell: (line) => words(line.name) },
+      ...objectives.flatMap((name) => [
+        { title: `${words(name)}: ${step} more`, right: true, cell: (line) => change(line[name]?.up) },
+        { title: `${words(name)}: ${step} less`, right: true, cell: (line) => (line[name]?.down === "" || line[name]?.down === undefined ? change("") : change(String(-Number(line[name].down)))) },
+      ]),
+      { title: "remark", long: true, cell: (line) => h("span", { class: "note" }, remark(line)) },
+    ], order);
+  };
+  return [
+    card("", h("p", {}, `What ${step} more, or less, of each requirement and limit changes in ${objectives.map(words).join(" and ")}: what holds a design back has a price. Those that change nothing are left out.`)),
+    ...designs.map((design) => card(`Design ${design}`, view(design))),
+    job.summary.designs < job.summary.asked ? h("p", { class: "note" }, `${job.summary.asked - job.summary.designs} designs were not reached in the time.`) : null,
+  ];
+}
+
+/** Return a reason in few words: which other parts a step asks for. */
+const remarked = (text, step) => arrows(text.replace(/^(up|down)wards .*? these parts cannot keep all limits, others can: /, (_, way) => `other parts with ${step} ${way === "up" ? "more" : "less"}: `)
+  .replace(/^(up|down)wards holds for (.*)$/, (_, way, share) => `${way === "up" ? "more" : "less"} holds for ${share}`).replace(/^upwards /, "more: ").replace(/^downwards /, "less: "));
+
+// ---- near equals ------------------------------------------------------------------------------------------------------
+
+async function nearView(job) {
+  const { columns, rows } = await tableOf(job.id, "near_equals.csv");
+  const changes = columns.filter(({ name }) => name.startsWith("change: "));
+  const objectives = changes.map(({ name }) => columns.find((column) => column.name === name.slice(8))).filter(Boolean);
+  return [
+    verdict(job.summary.complete ? "good" : "warn", job.summary.complete ? "✓" : "!", job.summary.complete ? "complete" : "not complete", sentence(arrows(job.summary.sentence ?? outcomeText(job))), job.summary.interrupted ? h("p", { class: "note" }, `Interrupted: ${job.summary.interrupted}`) : null),
+    rows.length ? card("Nearly as good", tableView("Nearly as good", [
+      { title: "what differs", words: true, cell: (row) => arrows(row.differences) },
+      ...changes.map(({ key, name }) => ({ title: `change of ${words(name.slice(8))}`, right: true, cell: (row) => (Number(row.number) ? `${signed(Number(row[key]))}\u00a0%` : "–") })),
+      ...objectives.map(({ key, name, unit }) => ({ title: words(name), unit, cell: (row) => row[key] })),
+      { title: "design", words: true, cell: (row) => h("a", { href: `${API}/jobs/${job.id}/files/design_${String(row.number).padStart(2, "0")}.yaml`, download: true }, "YAML") },
+    ], rows, (row) => (Number(row.number) ? "" : "chosen"))) : null,
+  ];
+}
+
+// ---- rating -----------------------------------------------------------------------------------------------------------
+
+function bar(share) {
+  const tone = share > 1 + 1e-9 ? "bad" : share >= 0.999 ? "hot" : "";
+  return s("svg", { class: `used ${tone}`, width: USED + 30, height: 12, viewBox: `0 0 ${USED + 30} 12`, "aria-hidden": "true" }, s("rect", { class: "base", x: 0, y: 3, width: USED, height: 6, rx: 1 }),
+    s("rect", { class: "fill", x: 0, y: 3, width: Math.min(USED + 28, Math.max(0, USED * share)), height: 6, rx: 1 }), s("path", { class: "end", d: `M${USED} 0v12` }));
+}
+
+async function rateView(job) {
+  const [designs, limits] = await Promise.all([tableOf(job.id, "rating.csv"), tableOf(job.id, "robust.csv")]);
+  const where = limits.columns.filter(({ name }) => name.startsWith("worst at: "));
+  const facts = job.summary;
+  const all = facts.holding === facts.rated;
+  const holds = (text) => (text === "yes" ? badge("good", "✓", "holds") : badge("bad", "✗", "does not hold"));
+  const at = (row) => where.filter(({ key }) => row[key] !== "").map(({ key, name, unit }) => `${words(name.slice(10))} ${amount(Number(row[key]))} ${unitText(unit)}`.trim()).join(", ");
+  const chance = (row) => (row.yield === "" ? "" : `${percent(row.yield)} (${percent(row["yield low"], 2)} to ${percent(row["yield high"], 2)})`);
+  return [
+    verdict(all ? "good" : "warn", all ? "✓" : "!", `${facts.holding} of ${facts.rated} hold`, sentence(facts.sentence), facts.interrupted ? h("p", { class: "note" }, `Interrupted: ${facts.interrupted}`) : null),
+    card("Over the whole range", tableView("How designs stand what scatters", [
+      { title: "design", cell: (row) => row.rank },
+      { title: "over the range", cell: (row) => holds(row.robust) },
+      { title: "samples that keep all limits", words: true, cell: chance },
+      { title: "worst limit", words: true, cell: (row) => words(row["worst limit"]) },
+      { title: "used", right: true, cell: (row) => percent(row["worst utilisation"]) },
+      { title: "worst at", words: true, cell: (row) => row["worst at"] },
+    ], designs.rows)),
+    ...designs.rows.map((design) => {
+      const rows = limits.rows.filter((row) => row.rank === design.rank && row.utilisation !== "").sort((a, b) => Number(b.utilisation) - Number(a.utilisation));
+      return card(`Design ${design.rank}: how far each limit is used at its worst`, folded(`Limits of design ${design.rank}`, [
+        { title: "limit", words: true, cell: (row) => words(row.limit) },
+        { title: "used", words: true, cell: (row) => h("span", { class: "share-used" }, bar(Number(row.utilisation)), percent(row.utilisation)) },
+        { title: "value", cell: (row) => row.value },
+        { title: "limit", cell: (row) => row["limit value"] },
+        { title: "unit", words: true, cell: (row) => unitText(row.unit) || "–" },
+        { title: "worst at", words: true, cell: at },
+      ], rows, (row) => (row.robust === "no" ? "missed" : "")));
+    }),
+  ];
+}
+
+// ---- verification -----------------------------------------------------------------------------------------------------
+
+const VERDICTS = { holds: ["good", "✓"], "does not hold": ["bad", "✗"], fails: ["bad", "✗"] };
+
+async function verifyView(job) {
+  const found = await get(`/jobs/${job.id}/result`);
+  const [kind, mark] = found.holds ? VERDICTS.holds : VERDICTS[words(found.verdict)] ?? ["warn", "!"];
+  const facts = [["designs looked at", found.designs], ["proof", words(found.certificate)], ["gap that was claimed", found.claimed_gap === null ? null : percent(found.claimed_gap)], ["gap that was proven again", found.proven_gap === null ? null : percent(found.proven_gap)],
+    ["boxes of the proof", amount(found.nodes)], ["time", typeof found.seconds === "number" ? duration(found.seconds) : null]].filter(([, value]) => value !== null && value !== undefined && value !== "");
+  const list = (title, entries) => (entries?.length ? card(title, h("ul", { class: "misses" }, entries.map((entry) => h("li", {}, sentence(arrows(typeof entry === "string" ? entry : JSON.stringify(entry))))))) : null);
+  return [
+    verdict(kind, mark, words(found.verdict), sentence(arrows(found.sentence.replace(new RegExp(`^${found.verdict}: `), "").replace(/ \(\d+ boxes, [^()]*\)$/, "")))),
+    list("What is not right", found.findings), list("What stays open", found.open),
+    card("How it was checked", h("dl", { class: "facts" }, facts.map(([name, value]) => [h("dt", {}, name), h("dd", {}, String(value))])), h("p", { class: "note" }, "By code that shares nothing with the search: designs are computed anew, and bounds are proven by another method.")),
+  ];
+}
+
+// ---- report -----------------------------------------------------------------------------------------------------------
+
+async function reportView(job) {
+  const { files, notes } = job.summary;
+  return [
+    card(count(files.length, "file"), h("ul", { class: "written" }, files.map((name) => h("li", {}, h("a", { href: `${API}/jobs/${job.id}/files/${name}`, download: name.split("/").at(-1) }, name)))),
+      notes?.length ? h("ul", { class: "note" }, notes.map((note) => h("li", {}, sentence(note)))) : null),
+  ];
+}
