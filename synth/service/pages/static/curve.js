@@ -8,7 +8,7 @@ const WIDE = SMALL ? 340 : 560, HIGH = SMALL ? 210 : 250, LEFT = 62, RIGHT = 18,
 
 /**
  * Draw curves.
- * @param {{name: string, unit: string}} across
+ * @param {{name: string, unit: string, whole?: boolean}} across whole: ticks at whole numbers alone
  * @param {{name: string, unit: string, note?: string}} up
  * @param {{label?: string, points: [number, number | null][]}[]} series points with null are gaps
  * @param {{marks?: {value: number, text: string, ends: boolean}[], barren?: [number, number][], zero?: boolean}} [more]
@@ -39,7 +39,7 @@ export function curveOf(across, up, series, { marks = [], barren = [], zero = fa
       series.length > 1 && last ? s("text", { x: x(last[0]) - 8, y: y(last[1]) - 8, "text-anchor": "end" }, label) : null);
   });
   const drawing = s("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, class: "plot curve", role: "img", "aria-label": `${title(up)} over ${title(across)}: ${known.length} points` }, bands,
-    ticks(x0, x1, SMALL ? 3 : 5).filter((value) => value >= x0 && value <= x1).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: HIGH - BOTTOM }), s("text", { x: x(value), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, amount(value))]),
+    ticks(x0, x1, SMALL ? 3 : 5).filter((value) => value >= x0 && value <= x1 && (!across.whole || Number.isInteger(value))).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: HIGH - BOTTOM }), s("text", { x: x(value), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, amount(value))]),
     ticks(y0, y1).filter((value) => value >= y0 && value <= y1).map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, amount(value))]),
     marks.filter(({ value }) => value >= x0 && value <= x1).map((mark) => s("g", { class: mark.ends ? "mark ends" : "mark" }, s("title", {}, mark.text), s("line", { x1: x(mark.value), x2: x(mark.value), y1: TOP, y2: HIGH - BOTTOM }), s("path", { d: `M${(x(mark.value) - 4).toFixed(1)} ${HIGH - BOTTOM}h8l-4 -6z` }))),
     lines, s("text", { class: "axis", x: WIDE - RIGHT, y: HIGH - 8, "text-anchor": "end" }, title(across)));

@@ -53,7 +53,7 @@ async function excessOf(job) {
   const points = rows.map(([sizes, excess]) => [Number(sizes), excess === "" ? null : Number(excess)]);
   const up = { name: `total excess of ${words(job.summary.objective)}`, unit: headingOf(header[1]).unit, note: "over the number of sizes: what more would save, and fewer cost" };
   const chosen = { value: job.summary.variants, ends: false, text: "chosen" };
-  return points.length > 1 ? curveOf({ name: "number of sizes", unit: "" }, up, [{ points }], { zero: true, marks: [chosen] }) : null;
+  return points.length > 1 ? curveOf({ name: "number of sizes", unit: "", whole: true }, up, [{ points }], { zero: true, marks: [chosen] }) : null;
 }
 
 /** Show which sizes were chosen, what they cost, and which row each serves. */
