@@ -58,6 +58,14 @@ def _powder(torque: str, speed: str) -> dict[str, Any]:
     return {"required_torque": torque, "driver_speed": speed}
 
 
+WRAP_SPRINGS = (("5 N*m", "10 mm", "12.5 N*m"), ("50 N*m", "28 mm", "125 N*m"), ("1 kN*m", "70 mm", "2.5 kN*m"))
+
+
+def _wrap_spring(family: str, torque: str, bore: str, peak: str, **more: str) -> Duty:
+    wants = {"required_torque": torque, "bore_diameter": bore, "peak_torque": peak, **more}
+    return Duty(family, torque.replace("*", " "), wants)
+
+
 DUTIES = [
     Duty("multi_plate_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.01 kg*m2")),
     Duty("multi_plate_clutch", "5 N m, dry", _start("5 N*m", "1500 1/min", "0.01 kg*m2"), {"lubrication": "dry"}),
@@ -94,6 +102,8 @@ DUTIES = [
     Duty("roller_coupling", "300 N m", {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}),
     Duty("roller_coupling", "5 kN m", {"required_torque": "5 kN*m", "driver_speed": "300 1/min", "offset": "10 mm"}),
     *CENTRIFUGAL,
+    *(_wrap_spring("wrap_spring", *duty) for duty in WRAP_SPRINGS),
+    *(_wrap_spring("wrap_spring_actuated", *duty, relative_speed="500 1/min") for duty in WRAP_SPRINGS),
 ]
 
 
