@@ -71,6 +71,7 @@ async function declaredBySeveral() {
 }
 
 const of = (...sections) => declared.rows.filter((row) => sections.includes(row.section));
+const ofPractice = (row) => row.group === "practice";
 const asked = (section) => declared.rows.filter((row) => row.section === section && row.kind === "requirement");
 
 function draw() {
@@ -79,16 +80,18 @@ function draw() {
   if (!maySubmit()) form.replaceChildren(h("p", { class: "card note" }, "Your token may look at studies, not ask for any. What you write here can be copied."));
   else form.replaceChildren();
   const objectives = of("objective");
+  const rules = [...asked("limit"), ...asked("assumption")].filter(ofPractice), assumptions = asked("assumption").filter((row) => !ofPractice(row));
   form.append(
     familyCard(),
     study.several ? card("The duty", "what you know of it; who needs more says so", asked("duty").map((row) => field(row, "requirements")))
       : card("The duty", "needed", asked("needed").map((row) => field(row, "requirements"))),
-    folded("limits", "Limits you may set", "empty is not asked", asked("limit").map((row) => field(row, "requirements")), true),
+    folded("limits", "Limits you may set", "empty is not asked", asked("limit").filter((row) => !ofPractice(row)).map((row) => field(row, "requirements")), true),
     objectiveCard(objectives),
     ...(study.several ? [] : [folded("construction", "Construction", `${of("option").length} choices`, of("option").map((row) => choices(row, study.options[row.name] ?? row.default, (name) => choose(row, name)))),
     folded("parts", "Parts", "designations with commas between them, or a condition on columns", of("part").map((row) => field({ ...row, unit: "" }, "parts"))),
     folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix")))]),
-    folded("assumptions", "Assumptions", `${asked("assumption").length} values, each with a default and its source`, asked("assumption").map((row) => field(row, "requirements")), false, true),
+    folded("practice", "Rules of practice", `${rules.length} of what an experienced engineer demands; each can be widened alone`, rules.map((row) => field(row, "requirements")), false, true),
+    folded("assumptions", "Assumptions", `${assumptions.length} values, each with a default and its source`, assumptions.map((row) => field(row, "requirements")), false, true),
     h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } })));
   for (const id of open) form.querySelector(`#${id}`)?.setAttribute("open", "");
   for (const one of form.querySelectorAll("details")) if (one.querySelector(".changed")) one.open = true;
