@@ -91,7 +91,9 @@ def watched(folder: Path) -> dict[str, str]:
 @contextmanager
 def served(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> Iterator[Served]:
     """Run the server with a worker; it ends with the block, whatever happens there."""
-    own = {**watched(folder), **(environment or {})}
+    watch, more = watched(folder), dict(environment or {})
+    paths = [own["PYTHONPATH"] for own in (watch, more) if "PYTHONPATH" in own]
+    own = {**watch, **more, "PYTHONPATH": os.pathsep.join(paths)}
     place = () if "CLUTCHSYNTH_DATABASE" in own else ("--data", str(folder / "data"))
     with (folder / "out.txt").open("w") as out, (folder / "err.txt").open("w") as err:
         process = subprocess.Popen(

@@ -70,14 +70,15 @@ class Site:
 
 
 @contextmanager
-def site_in(folder: Path) -> Iterator[Site]:
-    """Begin a server that has a token from the start, and wait until it answers."""
+def site_in(folder: Path, installed: Path | None = None) -> Iterator[Site]:
+    """Begin a server that has a token from the start, and wait until it answers; packages may stand beside it."""
     (folder / "data").mkdir()
     with Store(file_url(folder / "data" / "jobs.sqlite")) as store:
         accounts = Accounts(store)
         number = accounts.tenant("office", ServiceSettings().tenant_limits)
         token = accounts.make_token("first", number, ALL, 1).value
-    with served(folder, "--workers", "2") as server:
+    beside = {} if installed is None else {"PYTHONPATH": str(installed)}
+    with served(folder, "--workers", "2", environment=beside) as server:
         site = Site(server, token)
         until(lambda: site.administrator.ask("POST", "check", json=QUICK).status_code == 200, 60.0)
         yield site
