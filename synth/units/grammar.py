@@ -14,6 +14,11 @@ from synth.input_limits import INPUT_LIMITS
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 ABSOLUTE_ZERO = Fraction("273.15")
 _KP = Fraction("9.80665")
+# The yard and pound agreement of 1959: exact.
+_FOOT = Fraction("0.3048")
+_INCH = _FOOT / 12
+_POUND = Fraction("0.45359237")
+_LBF = _POUND * _KP
 _TINY = Fraction(1, 10**100)
 
 
@@ -80,21 +85,29 @@ def _decades(dimension: _Dimension, **powers: int) -> dict[str, tuple[Fraction, 
 # token: (SI factor, dimension, power of an angle)
 _TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
     **_decades(_LENGTH, um=-6, mm=-3, cm=-2, dm=-1, m=0, km=3),
+    "in": (_INCH, _LENGTH, 0),
+    "ft": (_FOOT, _LENGTH, 0),
     **_decades(_MASS, g=-3, kg=0, t=3),
+    "lb": (_POUND, _MASS, 0),
     **_decades(_TIME, ms=-3, s=0),
     "min": (Fraction(60), _TIME, 0),
     "h": (Fraction(3600), _TIME, 0),
     **_decades(_RATE, Hz=0, kHz=3),
     **_decades(_FORCE, mN=-3, N=0, kN=3, MN=6),
     "kp": (_KP, _FORCE, 0),
-    **_decades(_ENERGY, Nmm=-3, Nm=0, kNm=3),
+    "kgf": (_KP, _FORCE, 0),
+    "lbf": (_LBF, _FORCE, 0),
+    **_decades(_ENERGY, Nmm=-3, mNm=-3, Nm=0, kNm=3),
     "mkp": (_KP, _ENERGY, 0),
     "kpm": (_KP, _ENERGY, 0),
     **_decades(_PRESSURE, Pa=0, kPa=3, bar=5, MPa=6, GPa=9),
+    "psi": (_LBF / _INCH**2, _PRESSURE, 0),
     **_decades(_ENERGY, mJ=-3, J=0, kJ=3, MJ=6),
     "Wh": (Fraction(3600), _ENERGY, 0),
     "kWh": (Fraction(3600000), _ENERGY, 0),
     **_decades(_POWER, W=0, kW=3, MW=6),
+    "hp": (550 * _FOOT * _LBF, _POWER, 0),
+    "PS": (75 * _KP, _POWER, 0),
     "rad": (Fraction(1), _NONE, 1),
     "deg": (_PI / 180, _NONE, 1),
     "°": (_PI / 180, _NONE, 1),
@@ -107,11 +120,12 @@ _TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
     "ohm": (Fraction(1), _RESISTANCE, 0),
 }
 _ALIASES = {"µm": "um", "μm": "um"}
-_FORCE_TOKENS = frozenset({"mN", "N", "kN", "MN", "kp"})
-_MOMENT_TOKENS = frozenset({"Nmm", "Nm", "kNm"})
-_HISTORIC_TOKENS = frozenset({"kp", "mkp", "kpm"})
-_ENERGY_TOKENS = frozenset({"mJ", "J", "kJ", "MJ", "Wh", "kWh", "W", "kW", "MW"})
-_LENGTH_TOKENS = frozenset({"um", "mm", "cm", "dm", "m", "km"})
+_FORCE_TOKENS = frozenset({"mN", "N", "kN", "MN", "kp", "kgf", "lbf"})
+_MOMENT_TOKENS = frozenset({"Nmm", "mNm", "Nm", "kNm"})
+# The metre of these forces, or the foot, measures torque and work alike.
+_TORQUE_OR_WORK_TOKENS = frozenset({"kp", "mkp", "kpm", "kgf", "lbf"})
+_ENERGY_TOKENS = frozenset({"mJ", "J", "kJ", "MJ", "Wh", "kWh", "W", "kW", "MW", "hp", "PS"})
+_LENGTH_TOKENS = frozenset({"um", "mm", "cm", "dm", "m", "km", "in", "ft"})
 
 # what people type who are used to other spellings
 _SPELLINGS = {
@@ -119,8 +133,21 @@ _SPELLINGS = {
     "hr": "h",
     "hour": "h",
     "u": "1/min",
-    "kgf": "kp",
     "l": "dm3",
+    "inch": "in",
+    "inches": "in",
+    '"': "in",
+    "foot": "ft",
+    "feet": "ft",
+    "lbs": "lb, or lbf for a force,",
+    "ftlb": "lbf*ft",
+    "lbft": "lbf*ft",
+    "ftlbf": "lbf*ft",
+    "lbfft": "lbf*ft",
+    "inlb": "lbf*in",
+    "lbin": "lbf*in",
+    "lbfin": "lbf*in",
+    "cv": "PS",
     "degree": "deg",
     "degrees": "deg",
     "celsius": "degC",
@@ -376,8 +403,8 @@ def _kinds(reading: _UnitText) -> dict[str, tuple[Fraction, Fraction]]:
         lever = any(tokens[name] > 0 for name in used & _LENGTH_TOKENS)
         moment = bool(used & (_MOMENT_TOKENS | {"mkp", "kpm"})) or (bool(used & _FORCE_TOKENS) and lever)
         if dimension in (_ENERGY, _POWER):
-            if used & _HISTORIC_TOKENS or not used & (_FORCE_TOKENS | _MOMENT_TOKENS):
-                # the kilopond metre measured torque and work alike, and base units say neither
+            if used & _TORQUE_OR_WORK_TOKENS or not used & (_FORCE_TOKENS | _MOMENT_TOKENS):
+                # base units say neither
                 return {of_force: plain, of_energy: plain}
             return {of_force: plain}
         return {of_energy: plain} if moment else {of_force: plain}

@@ -67,7 +67,7 @@ def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> No
         ("# nothing\n", ["empty file"]),
         ("- family\n- x\n", ["got a list", "family:"]),
         ("just words\n", ["just words"]),
-        ("requirements: {a: 1}\n", ["family", "is missing", "clutchsynth families"]),
+        ("requirements: {a: 1}\n", ["family", "is missing", "the name of a family"]),
         ("family: [1]\n", ["family", "entry 1", "got 1", "a name"]),
         ("family: f\nrequirements: [1, 2]\n", ["hoist.yaml: requirements", "got a list", "a mapping"]),
         ("family: f\nrequirements: {a: [1]}\n", ["requirements: a", "got a list", "one value"]),
