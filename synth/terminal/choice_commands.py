@@ -103,15 +103,16 @@ def show_common() -> None:
         print(f"{name:{wide}}  {unit:{units}}  {', '.join(families)}")
 
 
-def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> None:
-    """Search the families of a spec, show and save their common front; end as ``run`` does."""
+def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool) -> None:
+    """Search the families of a spec, show their common front and save it where a folder is named; end as ``run``."""
     from synth.question.spec_keys import ASKED, SEARCHED
     from synth.studies.families.compare import compare
     from synth.tables.catalogs import Catalogs
     from synth.terminal.choice_console import comparison_explanation, print_comparison
     from synth.terminal.console import output, progress_display
 
-    place = place_for_stopped(folder, FRONT)  # finished families are kept there until all are
+    # Finished families are kept there until all are.
+    place = None if folder is None else place_for_stopped(folder, FRONT)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         apart = ("family", "options", "requirements", "catalogs")
         stated = asked.stated([key for key in (*ASKED, *SEARCHED) if key not in apart])
@@ -121,15 +122,17 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
             catalogs=Catalogs(asked.catalogs, base=asked.folder),
             options=asked.options,
             progress=progress,
-            finished=lambda label, front: front.save(place / label),
+            finished=None if place is None else lambda label, front: front.save(place / label),
             **stated,
         )
     texts = {**found.files(), **found.family_files()}
     if not found.designs and not found.interrupted:
         texts["explanation.txt"] = comparison_explanation(found)
-    target = save_result(place if found.interrupted else folder, texts, FRONT, False)
-    if place not in (target, folder):
-        shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
+    target = None
+    if folder is not None and place is not None:
+        target = save_result(place if found.interrupted else folder, texts, FRONT, False)
+        if place not in (target, folder):
+            shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
     if not quiet:
         print_comparison(found, output(), every)
         folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]

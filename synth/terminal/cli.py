@@ -20,10 +20,17 @@ from synth.plain_text import plain_streams
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import report
 from synth.terminal import batch_commands as batches
-from synth.terminal import choice_commands, report_commands, robust_commands, service_commands, worker_commands
+from synth.terminal import (
+    choice_commands,
+    new_command,
+    report_commands,
+    robust_commands,
+    service_commands,
+    worker_commands,
+)
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
-from synth.terminal.options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
+from synth.terminal.options import Family, Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
 from synth.terminal.session import (
     BAD_INPUT,
     DOES_NOT_HOLD,
@@ -54,7 +61,7 @@ app = typer.Typer(
     epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written), "
     "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved), "
     "5 what verify checked does not hold, 6 verify could neither prove it again nor refute it.",
-    add_completion=False,
+    add_completion=True,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -83,7 +90,7 @@ COMMANDS = {
 def _run() -> None:
     try:
         with taken_alike(), one_command():
-            app()
+            app(prog_name="clutchsynth")
     except InputError as error:
         tell(" ".join(f"{error}{COMMANDS.get(error.expected, '')}".split()))
         sys.exit(BAD_INPUT)
@@ -160,7 +167,7 @@ def families(
 
 @app.command()
 def describe(
-    family: Annotated[str, typer.Argument(help="Name of a family.", metavar="FAMILY")],
+    family: Family,
     option: Annotated[
         list[str] | None, typer.Option("--option", help="A structural choice, name=value.", metavar="NAME=VALUE")
     ] = None,
@@ -186,7 +193,10 @@ def describe(
 @app.command()
 def run(
     spec: SpecFile,
-    folder: Folder,
+    folder: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for the results; without one nothing is written.", metavar="DIR"),
+    ] = None,
     points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
     gap: Gap = None,
     grid: Grid[bool | None] = None,
@@ -200,7 +210,7 @@ def run(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Search the designs for a spec, show them ranked and save them."""
+    """Search the designs for a spec, show them ranked, and save them in a folder that is named."""
     begun = time.monotonic()
     from synth.question.spec import read_spec
     from synth.terminal.console import explanation_text
@@ -215,7 +225,10 @@ def run(
         objectives=objectives(objective or []),
     )
     must_be_a_question(asked)
-    claim_output(folder, FRONT)
+    if folder is not None:
+        claim_output(folder, FRONT)
+    elif quiet:
+        raise InputError("--quiet", True, "a folder for the results with --output, as nothing else would tell of them")
     from synth.search.shared_code import begin_shared_code
 
     begin_shared_code(asked.time_limit)  # a compiler works while all else is imported
@@ -228,7 +241,7 @@ def run(
     files = front.files()
     if front.explanation is not None:
         files["explanation.txt"] = explanation_text(front)
-    target = save_result(folder, files, FRONT, bool(front.interrupted))
+    target = None if folder is None else save_result(folder, files, FRONT, bool(front.interrupted))
     if not quiet:
         _show(front, files, every)
         tell_written(target, folder, _listed(files))
@@ -401,6 +414,7 @@ def verify(
         raise typer.Exit(DOES_NOT_HOLD if verification.findings else NOT_PROVEN)
 
 
+new_command.register(app)
 batches.register(app)
 size_ranges.register(app)
 choice_commands.register(app)

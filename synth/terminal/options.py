@@ -9,6 +9,16 @@ import typer
 
 T = TypeVar("T")
 
+
+def _families(begun: str) -> list[str]:
+    from synth.model.registry import families
+
+    return [name for name in families() if name.startswith(begun)]
+
+
+Family = Annotated[
+    str, typer.Argument(help="Name of a family.", metavar="FAMILY", autocompletion=_families, show_default=False)
+]
 SpecFile = Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")]
 FrontFolder = Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")]
 

@@ -65,8 +65,11 @@ def as_csv(frame: pd.DataFrame) -> str:
     return frame_csv(frame, "%.10g")
 
 
-def tell_written(target: Path, folder: Path, files: Iterable[str]) -> None:
+def tell_written(target: Path | None, folder: Path | None, files: Iterable[str]) -> None:
     """Say where a result was written, and that an earlier one still stands where this one was stopped."""
+    if target is None:
+        print("nothing is written; -o DIR keeps the result")
+        return
     print(f"written to {target}: {', '.join(files)}")
     if target != folder:
         print(f"the earlier result in {folder} stays as it was, as this one is not finished")
