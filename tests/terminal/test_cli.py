@@ -260,7 +260,7 @@ def test_flags_are_checked_like_the_spec(tmp_path: Path) -> None:
     assert not out.exists()
 
 
-@pytest.mark.parametrize("words", [["run", str(HOIST)], ["run", "x.yaml", "-o", "o", "--points", "many"], ["runn"]])
+@pytest.mark.parametrize("words", [["batch", str(HOIST)], ["run", "x.yaml", "-o", "o", "--points", "many"], ["runn"]])
 def test_wrong_usage_ends_with_two(words: list[str], tmp_path: Path) -> None:
     done = at_once(*words, folder=tmp_path)
     assert done.returncode == 2
