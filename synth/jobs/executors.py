@@ -124,6 +124,17 @@ def _begin(lifeline: Connection, found: Any) -> None:
     threading.Thread(target=watch, name="lifeline", daemon=True).start()
 
 
+def must_answer(address: str, settings: ClusterSettings = JOBS.cluster) -> None:
+    """Refuse the address of a scheduler that nothing answers at, before anything is written for it.
+
+    Raises
+    ------
+    InputError
+        As for :class:`Cluster`.
+    """
+    Cluster(address, lambda _: None, settings).shutdown()
+
+
 class Cluster(Executor):
     """A Dask cluster. A scheduler that dies is waited for; what it was doing is asked for again.
 

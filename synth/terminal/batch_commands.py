@@ -108,6 +108,10 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
     """Plan a batch, work it off, write it, and return the exit code that it has."""
     if workers is not None:
         whole_number(workers, "--workers", INPUT_LIMITS.workers, path=("workers",))
+    if scheduler is not None:
+        from synth.jobs.executors import must_answer
+
+        must_answer(scheduler)
     with heard_again() as check:
         try:
             from synth.terminal.batch_console import batch_display, print_summary, print_table_remarks

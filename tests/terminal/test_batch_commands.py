@@ -201,3 +201,13 @@ def test_the_database_may_be_named_by_the_environment(tmp_path: Path, monkeypatc
     assert not (tmp_path / "out" / "jobs.sqlite").exists()
     assert "rows.csv" in clutchsynth("jobs", "list", folder=tmp_path).stdout
     assert os.fspath(tmp_path / "out") in clutchsynth("jobs", "show", "", folder=tmp_path).stdout
+
+
+def test_the_address_of_no_scheduler_leaves_nothing_behind(tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    rows.write_text("load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2]\n60,1500,0.5\n")
+    words = ("batch", rows, "--family", "cone_clutch", "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9")
+    done = clutchsynth(*words)
+    assert done.returncode == 2
+    assert "--scheduler: got 'tcp://127.0.0.1:9'; expected the address of a Dask scheduler that answers" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["rows.csv"]
