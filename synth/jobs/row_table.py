@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import io
 import sys
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from synth.errors import InputError
 from synth.files import check_file, read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.plain_text import as_meant
+from synth.tables.delimited_text import DelimitedText, delimited_text
 
 EXCEL = (".xlsx", ".xlsm")
 ROWS = "a CSV or .xlsx file"
@@ -71,7 +72,17 @@ class RowTable:
         elif self.source.suffix.lower() in EXCEL:
             yield from _excel(self.source, self.name)
         else:
-            yield from _csv(self.source, self.name)
+            yield from ((line, tuple(map(as_meant, cells))) for line, cells in self._text.lines())
+
+    def sentence(self) -> str:
+        """Return how the file is written, if not as is expected: delimiters, encoding, decimal commas."""
+        delimited = isinstance(self.source, Path) and self.source.suffix.lower() not in EXCEL
+        return self._text.sentence() if delimited else ""
+
+    @cached_property
+    def _text(self) -> DelimitedText:
+        assert isinstance(self.source, Path)
+        return delimited_text(read_bytes(self.source, "rows", ROWS), self.name)
 
 
 def read_table(table: Any) -> RowTable:
@@ -144,8 +155,6 @@ def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
     while titles and not titles[-1]:
         titles.pop()
     where = f"{name}, line 1"
-    if len(titles) == 1 and any(sign in titles[0] for sign in ";\t"):
-        raise InputError(where, titles[0], "commas between the columns (and decimal points)")
     if not titles:
         raise InputError(where, None, "a header such as 'family,load_torque [N*m]'")
     if len(titles) > INPUT_LIMITS.columns:
@@ -156,24 +165,6 @@ def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
         if titles.count(title) > 1:
             raise InputError(where, title, "each column once")
     return tuple(titles)
-
-
-def _csv(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
-    line = 1
-    try:
-        file = io.TextIOWrapper(io.BytesIO(read_bytes(path, "rows", ROWS)), encoding="utf-8-sig", newline="")
-        reader = csv.reader(file, strict=True)
-        for cells in reader:
-            if any("\0" in cell for cell in cells):
-                raise InputError(f"{name}, line {line}", "a binary file", "a text file in UTF-8, or .xlsx")
-            yield line, tuple(as_meant(cell) for cell in cells)
-            line = reader.line_num + 1
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{name}, from line {line} on", "another encoding", "a text file in UTF-8, or .xlsx"
-        ) from error
-    except csv.Error as error:
-        raise InputError(f"{name}, line {line}", str(error), "CSV with commas, and quotes that close") from error
 
 
 def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:

@@ -19,7 +19,8 @@ from synth.question.variable_ranges import VariableRanges
 from synth.units import format_quantity, parse_quantity
 
 SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
-CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*([^\s<>=].*)$", re.DOTALL)
+SENSES |= {"≤": "at_most", "≥": "at_least"}
+CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>|≤|≥)\s*([^\s<>=≤≥].*)$", re.DOTALL)
 
 
 class UserLimits:

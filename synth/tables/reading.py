@@ -231,7 +231,7 @@ def load_table(
             schema = beside
     if schema is not None and not isinstance(schema, Schema):
         schema = load_schema(schema)
-    return _table_of(*read_csv_file(path), schema, name, path.name, shipped)
+    return _table_of(*read_csv_file(path, plain=shipped), schema, name, path.name, shipped)
 
 
 def table_of_text(text: TableText, schema: Schema | None, name: str) -> Table:

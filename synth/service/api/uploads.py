@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from synth.errors import InputError
 from synth.service.errors import ServiceError
 from synth.service.settings import ServiceSettings
+from synth.tables.delimited_text import decoded
 
 ZIP = b"PK"
 WORKBOOK = "xl/workbook.xml"  # in every file of Excel
@@ -38,14 +39,12 @@ def kind_of(content: bytes, settings: ServiceSettings) -> str:
         check_workbook(content, settings)
         return ".xlsx"
     try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
+        text, _ = decoded(content, FIELD)
+    except InputError as error:
         if CONTROLS.search(content) is not None:
             raise _neither() from None
-        line = content.count(b"\n", 0, error.start) + 1
-        message = f"line {line} of the file is in another encoding; expected CSV in UTF-8, or an .xlsx workbook"
-        raise ServiceError(415, message) from None
-    if "\0" in text or text.lstrip()[:1] in ("<", "{", "%"):  # pages, JSON, PDF
+        raise ServiceError(415, f"{error}, or an .xlsx workbook") from None
+    if CONTROLS.search(text.encode()) is not None or text.lstrip()[:1] in ("<", "{", "%"):  # pages, JSON, PDF
         raise _neither()
     if not text.strip():
         raise InputError(FIELD, None, "a header, and rows below it", (FIELD,))
@@ -53,7 +52,7 @@ def kind_of(content: bytes, settings: ServiceSettings) -> str:
 
 
 def _neither() -> ServiceError:
-    return ServiceError(415, "the file is neither CSV in UTF-8 nor an .xlsx workbook")
+    return ServiceError(415, "the file is neither CSV nor an .xlsx workbook")
 
 
 def check_workbook(content: bytes, settings: ServiceSettings) -> None:
