@@ -57,6 +57,12 @@ def answered(url: str) -> int:
         engine.dispose()
 
 
+@pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is: the batch makes its tables."""
+    return new_database
+
+
 @pytest.mark.slow
 def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(tmp_path: Path, database: str) -> None:
     url = sa.make_url(database)

@@ -35,6 +35,12 @@ def small_table(folder: Path, count: int) -> Path:
     return path
 
 
+@pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is: the batch makes its tables, and may be killed while it does."""
+    return new_database
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes of POSIX")
 def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:

@@ -43,6 +43,12 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is, and whose tables are replaced."""
+    return new_database
+
+
+@pytest.fixture
 def old(tmp_path: Path) -> Path:
     file = tmp_path / "jobs.sqlite"
     with sqlite3.connect(file) as connection:
