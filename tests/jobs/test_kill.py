@@ -37,7 +37,7 @@ def small_table(folder: Path, count: int) -> Path:
 
 @pytest.fixture
 def database(new_database: str) -> str:
-    """Return the address of a database in which nothing is: the batch makes its tables, and may be killed while it does."""
+    """Return the address of a database in which nothing is: batches are killed while they make its tables, too."""
     return new_database
 
 
