@@ -135,7 +135,7 @@ def test_a_job_is_cancelled_resumed_and_removed(client: ServiceClient) -> None:
     job.cancel()  # what has ended stays as it is
     with pytest.raises(ServiceRefusedError, match="cancelled"):
         job.wait()
-    ended = threading.Timer(1.0, job.cancel)
+    ended = threading.Timer(0.4, job.cancel)
     ended.start()
     with pytest.raises(ServiceRefusedError, match="cancelled"):
         job.resume().wait()
