@@ -83,7 +83,7 @@ def check(operation: Any, mode: GenerationMode, headers: dict[str, str]) -> None
     """Ask an operation in many ways."""
 
     @settings(
-        max_examples=repetitions(25, 500),
+        max_examples=repetitions(12, 500),
         deadline=None,
         derandomize=True,
         phases=[Phase.generate],
