@@ -84,22 +84,25 @@ def test_studies_explanations_and_comparisons_are_jobs_that_are_done(client: Ser
         "study.json",
         "whatif.csv",
     ]
-    small = client.explain(FAMILY, {**DUTY, "outer_diameter_limit": "60 mm"}, fix=FIX)
-    assert small.status()["outcome"] == "infeasible"
     drive = {"load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2"}
     disc = {"family": "disc_clutch", "parts": {"friction_pair": ["moulded_dry"]}}
-    cone = {"family": "cone_clutch", "parts": {"friction_pair": ["moulded_dry"], "cone_layout": ["outer_spring"]}}
+    cone_parts = {"friction_pair": ["moulded_dry"], "cone_layout": ["outer_spring"]}
+    cone = {"family": "cone_clutch", "parts": cone_parts}
+    room = {**drive, "outer_diameter_limit": "60 mm"}
+    small = client.explain("cone_clutch", room, parts=cone_parts, fix={"ramp_time": "0.3 s"})
+    assert small.status()["outcome"] == "infeasible"
     several = client.compare([disc, cone], drive, ["mass"], 2, fix={"ramp_time": "0.3 s"})
     assert {family["family"] for family in several.result()["families"]} == {"disc_clutch", "cone_clutch"}
 
 
 def test_batches_give_the_bytes_of_synth_batch(client: ServiceClient, tmp_path: Path) -> None:
     rows = [{**DUTY, "load_torque": torque} for torque in ("400 N*m", "500 N*m", "much")]
-    done = client.batch(FAMILY, pd.DataFrame(rows), points=1)
-    here = synth.batch(FAMILY, pd.DataFrame(rows), tmp_path / "out", points=1)
+    asked: dict[str, Any] = {"objectives": ["mass"], "points": 1, "fix": FIX}
+    done = client.batch(FAMILY, pd.DataFrame(rows), **asked)
+    here = synth.batch(FAMILY, pd.DataFrame(rows), tmp_path / "out", **asked)
     assert done.file("designs.csv") == (here.folder / "designs.csv").read_bytes()
     assert done.status()["summary"]["status"] == {"bad_input": 1, "optimal": 2}
-    again = client.batch(FAMILY, rows, points=1)
+    again = client.batch(FAMILY, rows, **asked)
     assert len(again.frame("rows.csv")) == 3
     few = client.size_range(done)
     assert few.result()["variants"] >= 1
@@ -135,7 +138,7 @@ def test_a_job_is_cancelled_resumed_and_removed(client: ServiceClient) -> None:
     job.cancel()  # what has ended stays as it is
     with pytest.raises(ServiceRefusedError, match="cancelled"):
         job.wait()
-    ended = threading.Timer(1.0, job.cancel)
+    ended = threading.Timer(0.4, job.cancel)
     ended.start()
     with pytest.raises(ServiceRefusedError, match="cancelled"):
         job.resume().wait()

@@ -57,14 +57,30 @@ def answered(url: str) -> int:
         engine.dispose()
 
 
+@pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is: the batch makes its tables."""
+    return new_database
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a table and of what a batch makes of it that nothing happens to."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    table = small_table(tmp_path_factory.mktemp("table"), ROWS)
+    first = in_process("batch", table, "-o", folder, *ASKED)
+    assert first.returncode == 0, first.stderr
+    return folder
+
+
 @pytest.mark.slow
-def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(tmp_path: Path, database: str) -> None:
+def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(
+    undisturbed: Path, tmp_path: Path, database: str
+) -> None:
     url = sa.make_url(database)
     if url.get_backend_name() == "postgresql" and not (shutil.which("pg_dump") and shutil.which("pg_restore")):
         pytest.skip("NO PG_DUMP or pg_restore on this machine")
     table, copy = small_table(tmp_path, ROWS), tmp_path / "copy"
-    first = in_process("batch", table, "-o", tmp_path / "first", *ASKED)
-    assert first.returncode == 0, first.stderr
     words = ["batch", str(table), "-o", str(tmp_path / "out"), "--database", database, "--workers", "1", *ASKED]
     process = subprocess.Popen([*COMMAND, *words], stderr=subprocess.DEVNULL)
     try:
@@ -91,5 +107,5 @@ def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(tmp
             assert (same.id, same.state) == (job.id, "done")
             assert store.account(job.id).done == ROWS
     designs = (tmp_path / "again" / "designs.csv").read_bytes()
-    assert designs == (tmp_path / "first" / "designs.csv").read_bytes()
+    assert designs == (undisturbed / "designs.csv").read_bytes()
     assert len(designs.splitlines()) == ROWS + 1

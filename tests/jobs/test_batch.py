@@ -21,8 +21,8 @@ from synth.errors import InputError
 from synth.jobs import runner
 from synth.jobs.batch import BatchJob, resume, work_off
 from synth.jobs.database import file_url
-from synth.jobs.executors import Inline, Processes
-from synth.jobs.job_settings import JOBS
+from synth.jobs.executors import Cluster, Inline, Processes
+from synth.jobs.job_settings import JOBS, ClusterSettings, JobSettings, RunnerSettings
 from synth.jobs.runner import Shares
 from synth.jobs.store import Store
 from synth.question.settings import SearchSettings
@@ -164,8 +164,10 @@ def test_a_folder_of_ones_own_lives_as_long_as_the_result() -> None:
     ],
 )
 def test_bad_input_is_told_before_anything_is_written(
-    table: Any, more: dict[str, Any], words: str, tmp_path: Path
+    table: Any, more: dict[str, Any], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    hurried = ClusterSettings(answer=0.5)  # of a scheduler that is not there
+    monkeypatch.setattr("synth.jobs.batch.Cluster", lambda address, say, _: Cluster(address, say, hurried))
     with pytest.raises(InputError, match=words):
         synth.batch(Rod, table, tmp_path / "out", **more)
     written = {path.name for path in (tmp_path / "out").glob("*")}
@@ -229,9 +231,9 @@ class Slow(Inline):
         return future
 
 
-def job_of(folder: Path, count: int) -> BatchJob:
+def job_of(folder: Path, count: int, numbers: JobSettings = JOBS) -> BatchJob:
     common = {"parts": {"steel": ["S185"]}, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
-    job = BatchJob(Rod, rows(count), folder, None, None, None, SearchSettings(points=1), common)
+    job = BatchJob(Rod, rows(count), folder, None, None, None, SearchSettings(points=1), common, numbers)
     job.plan()
     return job
 
@@ -253,14 +255,15 @@ def test_work_that_is_lost_is_asked_for_again_and_is_no_attempt(tmp_path: Path) 
 
 
 def test_cancelling_stops_and_resuming_goes_on(tmp_path: Path) -> None:
-    job = job_of(tmp_path, 9)
+    tick = 0.1
+    job = job_of(tmp_path, 9, JobSettings(runner=RunnerSettings(tick=tick)))
     states: list[Mapping[str, Any]] = []
 
     def look(state: Mapping[str, Any]) -> None:
         states.append(state)
         if len(states) == 1:
             job.store.cancel(job.id)
-            time.sleep(2 * JOBS.runner.tick + 0.3)  # until the heart has beaten
+            time.sleep(2 * tick + 0.3)  # until the heart has beaten
 
     assert job.work(None, None, look) == "cancelled"
     assert job.write() == {"not_solved": 9}

@@ -124,14 +124,14 @@ def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts) -> None:
     scheduler = parts.scheduler()
     parts.ready(0)
     said: list[str] = []
-    cluster = Cluster(parts.address, said.append, ClusterSettings(patience=0.5))
+    cluster = Cluster(parts.address, said.append, ClusterSettings(answer=2.0, retry=0.1, patience=0.3))
     assert cluster.alive()
     assert cluster.slots == 2
     scheduler.kill()
     scheduler.wait()
     deadline = time.monotonic() + 30
     while cluster.alive() and time.monotonic() < deadline:
-        time.sleep(0.1)
+        time.sleep(0.02)
     assert not cluster.alive()
     assert not cluster.reconnect(lambda: False)
     assert "does not answer; nothing is lost" in said[0]

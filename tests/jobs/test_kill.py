@@ -35,6 +35,12 @@ def small_table(folder: Path, count: int) -> Path:
     return path
 
 
+@pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is: batches are killed while they make its tables, too."""
+    return new_database
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes of POSIX")
 def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:
@@ -95,7 +101,7 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
         file = tmp_path / "out" / DATABASE
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and not at_work(file):
-            time.sleep(0.05)
+            time.sleep(0.02)
         time.sleep(random.Random(int(number)).uniform(0.0, 0.5))
         workers = children_of(process.pid)
         assert workers
@@ -106,7 +112,7 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
     assert process.returncode == (-9 if number == signal.SIGKILL else 4), errors
     deadline = time.monotonic() + 20
     while time.monotonic() < deadline and any(exists(worker) for worker in workers):
-        time.sleep(0.1)
+        time.sleep(0.02)
     assert not [worker for worker in workers if exists(worker)]
     if number == signal.SIGKILL:
         assert not (tmp_path / "out" / "designs.csv").exists()

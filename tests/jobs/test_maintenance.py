@@ -125,14 +125,14 @@ def test_what_is_not_there_is_not_made_by_looking(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_tables_are_brought_to_those_of_today(database: str) -> None:
-    assert bring_up(database) == (None, HEAD)
-    assert bring_up(database) == (HEAD, HEAD)
-    assert examine(database).current
-    engine = engine_for(database, 5.0)
+def test_tables_are_brought_to_those_of_today(new_database: str) -> None:
+    assert bring_up(new_database) == (None, HEAD)
+    assert bring_up(new_database) == (HEAD, HEAD)
+    assert examine(new_database).current
+    engine = engine_for(new_database, 5.0)
     with engine.begin() as connection:
         connection.execute(sa.text("UPDATE batch_version SET version_num = '99'"))
     engine.dispose()
-    assert not examine(database).current
+    assert not examine(new_database).current
     with pytest.raises(InputError, match="99"):
-        bring_up(database)
+        bring_up(new_database)

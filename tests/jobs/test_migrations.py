@@ -28,6 +28,7 @@ KEPT = (
     HERE / "version_1"
 )  # written by the first version: one batch that is done, one that was stopped after 8 of 10 rows
 ROOT = HERE.parents[1]
+FIX = {"ramp_time": "2 s"}  # a row is answered in a tenth of a second
 OLD_TABLES = {
     "batch_job": ("job", "id, basis, state, source, folder, created, updated, rows, content"),
     "batch_unit": ("unit", "id, job, state, owner, lease, token, attempts"),
@@ -40,6 +41,12 @@ OLD_TABLES = {
 
 
 pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def database(new_database: str) -> str:
+    """Return the address of a database in which nothing is, and whose tables are replaced."""
+    return new_database
 
 
 @pytest.fixture
@@ -78,7 +85,7 @@ def test_a_copy_of_the_old_file_stays(old: Path) -> None:
 def test_a_batch_that_the_first_version_has_stopped_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:
     """The tables are put back to those of the first version; the code is of today, as answers of others are refused."""
     rows = hoists("300 N*m", "350 N*m", "450 N*m", "many", "550 N*m", "650 N*m")
-    asked: dict[str, Any] = {"objectives": ["mass"], "points": 1}
+    asked: dict[str, Any] = {"objectives": ["mass"], "points": 1, "fix": FIX}
     undisturbed = batch("multi_plate_clutch", rows, tmp_path / "first", **asked)
 
     def stop(state: Mapping[str, Any]) -> None:
@@ -86,7 +93,7 @@ def test_a_batch_that_the_first_version_has_stopped_ends_with_the_same_bytes(tmp
             raise KeyboardInterrupt
 
     often = replace(JOBS, runner=RunnerSettings(pause=0.0, report_share=1e9))
-    common = {"parts": None, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
+    common = {"parts": None, "limits": None, "fix": FIX, "objectives": ["mass"], "grid": True}
     settings = SearchSettings(points=1)
     planned = BatchJob("multi_plate_clutch", rows, tmp_path / "out", None, None, database, settings, common, often)
     assert planned.result(1, None, stop).stopped
@@ -106,7 +113,7 @@ def test_a_batch_that_the_first_version_has_stopped_ends_with_the_same_bytes(tmp
 
 
 def test_a_batch_of_the_first_version_is_found_by_its_command(tmp_path: Path, database: str) -> None:
-    common = {"parts": None, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
+    common = {"parts": None, "limits": None, "fix": FIX, "objectives": ["mass"], "grid": True}
     settings = SearchSettings(points=1)
 
     def job() -> BatchJob:

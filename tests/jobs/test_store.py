@@ -235,13 +235,15 @@ def test_the_state_of_a_job_changes_with_an_event(store: Store) -> None:
     assert [kind for _, kind, _ in store.events("j")] == ["created", "cancelled", "resumed", "started"]
 
 
-def test_migrations_make_what_the_models_say(store: Store) -> None:
-    with store.engine.connect() as connection:
-        context = MigrationContext.configure(connection, opts={"version_table": VERSION_TABLE, "compare_type": True})
-        assert compare_metadata(context, Base.metadata) == []
-    assert module.version_of(store.engine) == module.HEAD
-    with Store(store.engine.url, create=False) as again:
-        assert again.jobs() == []
+def test_migrations_make_what_the_models_say(new_database: str) -> None:
+    with Store(new_database) as store:
+        with store.engine.connect() as connection:
+            options = {"version_table": VERSION_TABLE, "compare_type": True}
+            context = MigrationContext.configure(connection, opts=options)
+            assert compare_metadata(context, Base.metadata) == []
+        assert module.version_of(store.engine) == module.HEAD
+        with Store(store.engine.url, create=False) as again:
+            assert again.jobs() == []
 
 
 @pytest.mark.parametrize("version", ["9", "10", "0", "02-later"])
@@ -278,8 +280,8 @@ def test_what_is_no_database_is_not_waited_for(tmp_path: Path, monkeypatch: pyte
 
 
 @pytest.mark.slow
-def test_two_processes_may_open_a_new_database_at_once(database: str) -> None:
-    program = f"from synth.jobs.store import Store; Store({database!r}).close()"
+def test_two_processes_may_open_a_new_database_at_once(new_database: str) -> None:
+    program = f"from synth.jobs.store import Store; Store({new_database!r}).close()"
     both = [subprocess.Popen([sys.executable, "-c", program]) for _ in range(2)]
     assert [process.wait(timeout=60) for process in both] == [0, 0]
 

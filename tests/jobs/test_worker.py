@@ -42,6 +42,7 @@ from tests.jobs.test_migrations import hoists
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 HOIST: dict[str, Any] = yaml.safe_load((ROOT / "examples" / "hoist_multi_plate.yaml").read_text(encoding="utf-8"))
+ONE_NUMBER: dict[str, Any] = {"objectives": ["mass"], "points": 1, "fix": HOIST["fix"]}
 QUICK = {**HOIST, "objectives": ["mass"], "points": 1}
 LONG = {**HOIST, "objectives": ["mass", "length", "friction_work"], "points": 200}
 
@@ -99,7 +100,7 @@ def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_pat
     rows = hoists("400 N*m", "500 N*m", "many")
     with Store(database) as store, serving(store, 2):
         front = submit(store, engines, "synthesis", QUICK)
-        table = submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": rows, "points": 1})
+        table = submit(store, engines, "batch", {"family": "multi_plate_clutch", "rows": rows, **ONE_NUMBER})
         found = ended(store, front)
         assert (found.state, found.outcome, found.summary["designs"]) == (DONE, "optimal", 1)
         assert {"front.json", "question.json"} <= set(store.records(front))
@@ -115,7 +116,7 @@ def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_pat
         }
         few = ended(store, submit(store, engines, "size_range", {"of": table}))
         assert (few.state, few.summary["variants"]) == (DONE, few.summary["fewest"])
-    alone = batch("multi_plate_clutch", rows, tmp_path / "out", points=1)
+    alone = batch("multi_plate_clutch", rows, tmp_path / "out", **ONE_NUMBER)
     assert files["designs.csv"].content == (alone.folder / "designs.csv").read_bytes()
 
 

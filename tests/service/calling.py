@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
-import tempfile
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
@@ -19,18 +17,9 @@ from synth.jobs.store import Store
 from synth.service.app import create_app
 from synth.service.context import EngineCalls, ServiceContext
 from synth.service.settings import ServiceSettings
+from tests.jobs.databases import empty_file
 
 HOME = "http://127.0.0.1:8350"
-
-
-@cache
-def empty_database() -> bytes:
-    """Return a file of a database with its tables; to make one takes a third of a second."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "jobs.sqlite"
-        with Store(file_url(file)) as store, store.engine.connect() as connection:
-            connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
-        return file.read_bytes()
 
 
 class Answering:
@@ -56,7 +45,7 @@ class Service:
     ) -> None:
         self.file = folder / "jobs.sqlite"
         if not database:
-            self.file.write_bytes(empty_database())
+            self.file.write_bytes(empty_file())
         self.store = Store(database or file_url(self.file))
         self.settings = dataclasses.replace(ServiceSettings(data=folder), **numbers)
         self.app: FastAPI = create_app(self.settings, self.store, answering or Answering(), files)

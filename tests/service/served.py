@@ -64,7 +64,7 @@ class Served:
         end = time.monotonic() + within
         while (told := self.ask("GET", f"jobs/{job}", **asked).json())["state"] in ("open", "running"):
             assert time.monotonic() < end, told
-            time.sleep(0.1)
+            time.sleep(0.05)
         return dict(told)
 
     def network(self) -> str:
@@ -119,7 +119,7 @@ def until(found: Callable[[], Any], seconds: float = 30.0) -> Any:
     end = time.monotonic() + seconds
     while not (value := found()):
         assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.05)
+        time.sleep(0.02)
     return value
 
 

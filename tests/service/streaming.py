@@ -13,7 +13,7 @@ from tests.service.calling import Service
 
 
 def main(folder: Path) -> None:
-    with Service(folder, header_timeout=2.0, idle_connections=50) as service:
+    with Service(folder, header_timeout=1.0, idle_connections=50) as service:
 
         async def beats() -> AsyncIterator[str]:
             yield ": begun\n\n"

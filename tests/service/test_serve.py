@@ -118,7 +118,7 @@ def test_who_says_nothing_or_one_letter_at_a_time_holds_up_nobody(streaming: int
             except OSError:
                 continue
         assert version(streaming) < 5.0
-        time.sleep(0.5)
+        time.sleep(0.25)
     assert all(is_closed(connection, 10.0) for connection in slow)
     for connection in slow:
         connection.close()

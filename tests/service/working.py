@@ -8,12 +8,14 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import httpx
 
 from synth.jobs.engine_process import Engines
+from synth.jobs.job_settings import JOBS
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
 from synth.service.serve import ServiceServer, listening, server_config
@@ -46,6 +48,7 @@ BATCH = {
     "points": 1,
 }
 LIVE = ("open", "running")
+LOOKS_OFTEN = replace(JOBS, worker=replace(JOBS.worker, poll=0.1))
 
 
 class Client:
@@ -98,7 +101,7 @@ def working(
 ) -> Iterator[Service]:
     """Give a service whose jobs are worked at; one that is called directly does what it does beside, too."""
     with Service(folder, engines, database, **numbers) as service:
-        worker = Worker(Store(service.store.engine.url), slots, spare=False)
+        worker = Worker(Store(service.store.engine.url), slots, spare=False, settings=LOOKS_OFTEN)
         thread = threading.Thread(target=worker.run)
         thread.start()
         lifespan = service.app.router.lifespan_context(service.app) if called else contextlib.nullcontext()

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import pytest
 
 from synth.jobs.engine_process import Engines
-from tests.jobs.conftest import database  # noqa: F401  (a fixture)
 from tests.service.calling import Service
 from tests.service.working import BATCH, FRONT, Client, working
 

@@ -69,7 +69,7 @@ def test_a_stream_tells_how_a_job_goes_and_ends_with_it(database: str, engines: 
 
 def test_a_stream_of_a_job_that_is_removed_ends(client: Client, works: Service) -> None:
     job = client.submit("synthesis", LONG)
-    thread = threading.Timer(0.5, works.store.delete, [job])
+    thread = threading.Timer(0.3, works.store.delete, [job])
     thread.start()
     last = events_of(client.get(f"jobs/{job}/events").text)[-1]
     thread.join()
@@ -211,12 +211,12 @@ def test_a_stream_of_a_job_that_goes_on_does_not_end_with_its_first_end(client: 
     job = client.submit("synthesis", LONG)
     client.post(f"jobs/{job}/cancel")
     client.post(f"jobs/{job}/resume")
-    thread = threading.Timer(1.0, works.store.cancel, [job])
+    thread = threading.Timer(0.6, works.store.cancel, [job])
     thread.start()
     begun = time.monotonic()
     events = events_of(client.get(f"jobs/{job}/events", headers={"Last-Event-ID": "0"}).text)
     thread.join()
-    assert time.monotonic() - begun > 0.8
+    assert time.monotonic() - begun > 0.5
     assert [event["kind"] for event in events].count("end") == 1
     assert events[-1]["state"] == "cancelled"
     assert [event["text"] for event in events if event["kind"] == "remark"] == ["cancelled"]

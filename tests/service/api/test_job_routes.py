@@ -11,6 +11,7 @@ import yaml
 
 from synth.jobs.engine_process import Engines
 from synth.jobs.models import Job, Tenant
+from tests.jobs.kinds.jobs import DISC
 from tests.service.calling import Service, code_of
 from tests.service.working import BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, Client, working
 
@@ -63,7 +64,7 @@ def test_a_question_becomes_a_job_and_a_front(database: str, engines: Engines, t
 def test_every_kind_can_be_asked(client: Client, front: str) -> None:
     asked: dict[str, dict[str, Any]] = {
         "whatif": {**QUICK, "vary": {"load_torque": ["500 N*m", "600 N*m"]}, "breaks": False},
-        "explain": {**QUICK, "limits": {"outer_diameter": "<= 90 mm"}},
+        "explain": {**DISC, "parts": {"friction_pair": ["woven_dry"]}, "limits": {"actuation_force": "<= 100 N"}},
         "prices": {"of": front, "design": 1},
         "near_equals": {"of": front, "count": 1, "time_limit": 5},
         "rate": {"of": front, "design": [1], "robust": {"friction": "catalogue range"}},

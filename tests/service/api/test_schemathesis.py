@@ -19,7 +19,7 @@ from tests.service.calling import bearer
 from tests.service.working import API, BATCH, FRONT, Client, listened, working
 
 pytestmark = pytest.mark.slow
-EXAMPLES = 5  # of each route, and of each way
+EXAMPLES = 3  # of each route, and of each way
 # Where a schema says all, what fits it is taken; of what stands in a spec or a file it says little.
 TAKEN = {
     "checks": {"positive_data_acceptance": {"expected-statuses": ["2xx", "401", "403", "404", "409", "415", "422"]}}
