@@ -30,6 +30,9 @@ WHERE = "request"
 OF = "of"
 FAMILY = "family"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
+STATED = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? ")  # how a quantity begins, which a unit follows
+POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
+RAISED = str.maketrans("234", "²³⁴")
 SPEC = tuple(key for key in FIELDS if key != "values")
 TABLE_EXPECTED = (
     "a table of your own by name and version, 'my_linings@3', or ['+', 'my_linings@3'] to extend the shipped one"
@@ -334,7 +337,7 @@ def titled(request: Request) -> str:
     names = declared.names()
     given = {names.get(str(word), str(word)): value for word, value in request.requirements.items()}
     shown = [
-        f"{name} {_shown(given[name], declared.requirements[name].unit)}"
+        f"{words(name)} {_shown(given[name], declared.requirements[name].unit)}"
         for name in declared.requirements
         if name in given
     ]
@@ -342,8 +345,15 @@ def titled(request: Request) -> str:
     return f"{title}: {', '.join(shown[: KIND_SETTINGS.titled])}" if shown else title
 
 
+def words(name: str) -> str:
+    """Return a name as people write it in a title."""
+    return name.replace("_", " ")
+
+
 def _shown(value: Any, unit: str) -> str:
-    return value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -")
+    """Return a value as people write it: ``600 N·m`` for ``600 N*m``."""
+    text = value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -")
+    return POWER.sub(lambda found: found[0].translate(RAISED), text.replace("*", "·")) if STATED.match(text) else text
 
 
 # ---- what comes out -------------------------------------------------------------------------------------------------

@@ -123,7 +123,7 @@ export function batchView(element, job) {
   element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "How the rows stand"), bar, legend, facts),
     h("section", { class: "card stack" }, h("div", { class: "heading" }, chosen, all), table, h("p", { class: "row" }, earlier, later)), sizesCard(job));
   view.show(job);
-  if (!looked) rows();
+  if (!looked) view.loaded = rows();
   return view;
 }
 
