@@ -30,7 +30,7 @@ WHERE = "request"
 OF = "of"
 FAMILY = "family"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
-STATED = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? ")  # how a quantity begins, which a unit follows
+STATED = re.compile(r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*")  # a number with a unit
 POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
 RAISED = str.maketrans("234", "²³⁴")
 SPEC = tuple(key for key in FIELDS if key != "values")
@@ -345,15 +345,23 @@ def titled(request: Request) -> str:
     return f"{title}: {', '.join(shown[: KIND_SETTINGS.titled])}" if shown else title
 
 
-def words(name: str) -> str:
-    """Return a name as people write it in a title."""
-    return name.replace("_", " ")
+def words(text: str) -> str:
+    """Return names and quantities as people write them in a title.
+
+    Examples
+    --------
+    >>> words("load_torque 300 N*m .. 600 N*m"), words("driven_inertia 2 kg*m2")
+    ('load torque 300 N·m .. 600 N·m', 'driven inertia 2 kg·m²')
+    """
+    return STATED.sub(lambda found: POWER.sub(_raised, found[0].replace("*", "·")), text.replace("_", " "))
+
+
+def _raised(found: re.Match[str]) -> str:
+    return found[0].translate(RAISED)
 
 
 def _shown(value: Any, unit: str) -> str:
-    """Return a value as people write it: ``600 N·m`` for ``600 N*m``."""
-    text = value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -")
-    return POWER.sub(lambda found: found[0].translate(RAISED), text.replace("*", "·")) if STATED.match(text) else text
+    return words(value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -"))
 
 
 # ---- what comes out -------------------------------------------------------------------------------------------------

@@ -69,7 +69,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     serving = [one for one in found if not one.misfits]
     return Posed(
         request=stated,
-        title="Comparison: " + (", ".join(map(_titled, found)) if content[FAMILY] != "any" else "all families"),
+        title="Comparison: " + ("; ".join(map(_titled, found)) if content[FAMILY] != "any" else "all families"),
         families=tuple(dict.fromkeys(one.problem.name for one in serving)),
         tables=digests(stated.get("catalogs"), sources),
     )

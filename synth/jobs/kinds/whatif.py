@@ -63,7 +63,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated = stated_spec(asked, settings)
     return Posed(
         request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},
-        title=f"{titled(asked)}; {', '.join(map(words, varied))} varied",
+        title=f"What if {', '.join(map(words, varied))}: {titled(asked)}",
         families=(asked.problem.name,),
         bulk=count > KIND_SETTINGS.interactive_steps,
         steps=count,

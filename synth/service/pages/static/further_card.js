@@ -36,6 +36,7 @@ export async function furtherCard(job) {
   const element = h("section", { class: "card stack further", hidden: true });
   const front = ["synthesis", "compare"].includes(job.kind) && job.summary?.designs > 0;
   const request = front && maySubmit() ? await get(`/jobs/${job.id}/request`) : null;
+  const beside = job.kind === "batch" ? ["size_range"] : front ? [] : ["explain"]; // what the page shows itself
   const offered = request ? ASKS.filter((ask) => ask.of(job, request)) : [];
   const fault = h("p", { class: "fault", role: "alert" });
   const list = h("div", { class: "followed" });
@@ -67,7 +68,7 @@ export async function furtherCard(job) {
   }
 
   async function load() {
-    known = (await get(`/jobs?parent=${job.id}&limit=${MOST}`)).jobs;
+    known = (await get(`/jobs?parent=${job.id}&limit=${MOST}`)).jobs.filter((one) => !beside.includes(one.kind));
     draw();
     stop?.();
     const live = known.filter((one) => LIVE.includes(one.state)).map((one) => one.id);
@@ -86,7 +87,7 @@ export async function furtherCard(job) {
   function line(one) {
     const title = one.title.replace(`: ${job.title}`, "").replace(`, ${job.title}`, "");
     const kind = KINDS[one.kind] ?? one.kind;
-    return h("li", {}, badge(one), h("a", { href: `/jobs/${one.id}` }, title || kind), h("span", { class: "note" }, title.toLowerCase().startsWith(kind.toLowerCase()) ? "" : `${kind} · `, outcomeText(one)));
+    return h("li", {}, h("span", { class: "state" }, badge(one)), h("a", { href: `/jobs/${one.id}` }, title || kind), h("span", { class: "note" }, title.toLowerCase().startsWith(kind.toLowerCase()) ? "" : `${kind} · `, outcomeText(one)));
   }
 
   function draw() {

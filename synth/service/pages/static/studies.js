@@ -54,7 +54,8 @@ async function load(further = false) {
   const number = (state.asked += 1);
   const asked = query(further);
   try {
-    const pages = [await get(`/jobs?${asked}`)];
+    const [first] = await Promise.all([get(`/jobs?${asked}`), named]);
+    const pages = [first];
     if (!further) {
       asked.set("pinned", "true");
       pages.unshift(await get(`/jobs?${asked}`));
@@ -168,6 +169,5 @@ function offer(example) {
 document.addEventListener("visibilitychange", () => { if (!document.hidden) load(); });
 const named = get("/families").then(({ families }) => {
   state.titles = Object.fromEntries(families.map((family) => [family.name, family.title]));
-  for (const row of rows.values()) row.about.replaceChildren(...aboutOf(row.job));
 }, () => {});
 load();
