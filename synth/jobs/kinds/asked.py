@@ -30,7 +30,9 @@ WHERE = "request"
 OF = "of"
 FAMILY = "family"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
-STATED = re.compile(r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*")  # a number with a unit
+STATED = re.compile(
+    r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
+)  # a number with a unit
 POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
 RAISED = str.maketrans("234", "²³⁴")
 SPEC = tuple(key for key in FIELDS if key != "values")

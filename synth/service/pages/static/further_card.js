@@ -99,7 +99,7 @@ export async function furtherCard(job) {
     if (focused) list.querySelector(`a[href="${focused}"]`)?.focus();
   }
 
-  element.replaceChildren(...(offered.length ? [h("h2", {}, "Ask further"), h("ul", { class: "asked" }, offered.map((ask, k) => h("li", {}, buttons[k], h("span", { class: "note" }, ask.note)))), fault] : []), list);
+  element.replaceChildren(...(offered.length ? [h("h2", {}, "Ask further"), h("ul", { class: "ask-list" }, offered.map((ask, k) => h("li", {}, buttons[k], h("span", { class: "note" }, ask.note)))), fault] : []), list);
   shown(job, null);
   await load();
   return { element, shown };
