@@ -132,14 +132,17 @@ export class Explorer {
     typing?.focus({ preventScroll: true });
     this.draw();
     if (!this.views.length) return;
-    let wide = this.root.clientWidth;
+    const charts = [this.scatter, this.parallel].filter(Boolean);
+    const wide = new Map(charts.map((view) => [view.node, view.node.clientWidth]));
     this.watch = new ResizeObserver(() => {
-      if (Math.abs(this.root.clientWidth - wide) < 2) return;
-      wide = this.root.clientWidth;
-      this.scatter?.draw();
-      this.parallel?.draw();
+      for (const view of charts) {
+        const now = view.node.clientWidth;
+        if (!now || Math.abs(now - wide.get(view.node)) < 2) continue;
+        wide.set(view.node, now);
+        view.draw();
+      }
     });
-    this.watch.observe(this.root);
+    for (const view of charts) this.watch.observe(view.node);
   }
 
   /** Print what must not be missed on paper: what the certificate does not speak of, and all designs. */

@@ -233,6 +233,8 @@ export function panelView(x) {
     if (!d.slopes) return null;
     const { objectives } = x.model;
     const most = Math.max(...d.slopes.flatMap(([, row]) => row.map((v) => Math.abs(v ?? 0))));
+    const unitless = (c) => c.values[x.state.selected] === null || !c.unit;
+    const step = stepsOf(d);
     const cell = (v, k) => {
       if (v === null || Math.abs(v) < 1e-3) return h("td", { class: "soft" }, "–");
       const worse = v > 0 === (x.model.record.objectives[objectives[k].key] === "min");
@@ -252,6 +254,7 @@ export function panelView(x) {
           s("rect", { x: (35 - width).toFixed(1), y: 0, width: width.toFixed(1), height: 8, rx: 1 }),
         ),
         h("span", null, signed(v)),
+        unitless(objectives[k]) ? null : h("small", { class: "soft" }, changed((v * objectives[k].values[x.state.selected]) / 100, objectives[k].unit)),
       );
     };
     const table = h(
@@ -270,7 +273,7 @@ export function panelView(x) {
       h(
         "tbody",
         null,
-        d.slopes.map(([name, row]) => h("tr", null, h("th", { scope: "row" }, name), row.map(cell))),
+        d.slopes.map(([name, row]) => h("tr", null, h("th", { scope: "row" }, name, step(name) ? h("small", { class: "soft" }, step(name)) : null), row.map(cell))),
       ),
     );
     return block(
@@ -278,6 +281,19 @@ export function panelView(x) {
       table,
       h("p", { class: "note" }, "Slopes with these parts, good for a few per cent."),
     );
+  }
+
+  const changed = (value, unit) => `${value < 0 ? "−" : "+"}${amount(Math.abs(value), unit, 2)}`;
+
+  /** Return what tells how much 1 % of a requirement or limit is; nothing of what has no unit. */
+  function stepsOf(d) {
+    const { record } = x.model;
+    const known = new Map(record.limits.map((limit, k) => [limit.label, [d.sides[k][1], limit.unit]]));
+    for (const row of [...record.asked, ...record.assumed]) known.set(row.label, [row.value, row.unit]);
+    return (name) => {
+      const [value, unit] = known.get(name) ?? [];
+      return typeof value === "number" && value && unit ? changed(Math.abs(value) / 100, unit) : "";
+    };
   }
 
   function remarks(d) {

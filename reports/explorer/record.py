@@ -85,7 +85,7 @@ class RecordOf:
         """Return what is told of a quantity beside its values."""
         q = self.calculation.quantities.get(name)
         unit = self.frame.units[name]
-        told = {"name": name, "label": label(name), "unit": unit_text(unit), "kind": self.frame.kinds.get(name, "")}
+        told = {"name": name, "label": label(name), "unit": told_unit(unit), "kind": self.frame.kinds.get(name, "")}
         return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
 
     def limit(self, name: str) -> dict[str, Any]:
@@ -94,7 +94,7 @@ class RecordOf:
         return {
             "name": name,
             "label": _compared(label(name)),
-            "unit": unit_text(self.frame.limit_units[name]),
+            "unit": told_unit(self.frame.limit_units[name]),
             "sign": SIGN_OF[self.frame.limit_senses[name]],
             "text": rule.text if rule is not None else "",
             "source": rule.source if rule is not None else "",
@@ -110,7 +110,7 @@ class RecordOf:
                 "label": label(q.name),
                 "text": q.text,
                 "value": number(self.frame.requirement_values[q.name], q.unit),
-                "unit": unit_text(q.unit),
+                "unit": told_unit(q.unit),
             }
             for q in quantities
             if q.name in self.frame.requirement_values and (q.name in self.frame.requirements) == stated
@@ -204,7 +204,7 @@ class RecordOf:
             share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _compared(label(name)), "sides": sides, "unit": unit_text(unit), "sign": sign} | {"by": share}
+                {"label": _compared(label(name)), "sides": sides, "unit": told_unit(unit), "sign": sign} | {"by": share}
             )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {
@@ -297,6 +297,11 @@ def _matters(price: Mapping[str, Any]) -> bool:
 def label(name: str) -> str:
     """Return a name as words."""
     return name.replace("_", " ")
+
+
+def told_unit(unit: str) -> str:
+    """Return a unit as pages write it: ``N·m`` for ``N*m``."""
+    return unit_text(unit).replace(" ", "·")
 
 
 def _of(q: NamedQuantity | None, field: str) -> str:

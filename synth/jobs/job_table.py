@@ -14,7 +14,7 @@ from typing import Any
 
 import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 
 from synth.jobs.database import Database, digest, encoded
 from synth.jobs.kinds.contract import Record
@@ -159,6 +159,7 @@ class JobTable(Database):
         family: str | None = None,
         text: str = "",
         parent: str | None = None,
+        follows: bool | None = None,
         pinned: bool | None = None,
         before: tuple[float, str] | None = None,
         most: int = 50,
@@ -169,9 +170,9 @@ class JobTable(Database):
         ----------
         tenant : int or None
             Of all tenants for None.
-        states, kind, family, text, parent, pinned
+        states, kind, family, text, parent, follows, pinned
             Only those in these states, of this kind, that ask this family, with this text in their title or id, that
-            follow from this job.
+            follow from this job, that follow from any job that there is or from none, that are kept for good or not.
         before : tuple of float and str, optional
             ``created`` and ``id`` of the last job of the page before.
         most : int
@@ -186,6 +187,10 @@ class JobTable(Database):
             wanted.append(named.contains(encoded(family), autoescape=True))
         if parent is not None:
             wanted.append(Job.parent == parent)
+        if follows is not None:
+            other = aliased(Job)
+            there = sa.exists().where(other.id == Job.parent)  # what followed from a removed job stands by itself
+            wanted.append(there if follows else ~there)
         if pinned is not None:
             wanted.append(Job.pinned.is_(pinned))
         if text:

@@ -90,6 +90,8 @@ def told_of(designs: Sequence[Design], samples: int) -> str:
     holding = [d for d in rated if d.robust["holds"]]
     proven = sum(d.robust["proof"] == PROVEN for d in holding)
     of = "1 design" if len(rated) == 1 else f"{len(rated)} designs"
+    if not holding and len(rated) == 1:
+        return "the design does not keep all limits over the whole range"
     if not holding:
         return f"none of {of} keeps all limits over the whole range"
     keeps = "keeps" if len(holding) == 1 else "keep"

@@ -65,4 +65,4 @@ def test_what_became_of_each_family_and_how_far_it_is_proven_is_told() -> None:
         assert told[name]["spec"]["family"] == name
     assert (record["certificate"]["level"], record["certificate"]["word"]) == ("good", "Proven")
     assert any("Roller coupling" in text for text in record["certificate"]["not_part"])
-    assert {"label": "load torque", "unit": "N m"}.items() <= record["asked"][0].items()
+    assert {"label": "load torque", "unit": "N·m"}.items() <= record["asked"][0].items()

@@ -419,7 +419,10 @@ def test_what_readers_of_json_do_not_agree_upon_is_told_with_its_place(
 @pytest.mark.parametrize(
     ("path", "message"),
     [
-        ("jobs?foo=1", "parameter: got 'foo'; expected one of state, kind, family, q, parent, pinned, limit, cursor"),
+        (
+            "jobs?foo=1",
+            "parameter: got 'foo'; expected one of state, kind, family, q, parent, follows, pinned, limit, cursor",
+        ),
         ("jobs?state=bar", "state.0: got 'bar'; expected 'open', 'running', "),
         ("jobs?kind=foo", "kind: got 'foo'; expected one of synthesis, compare, "),
         ("jobs?family=xx", "family: got 'xx'; expected one of disc_clutch, wrap_spring"),

@@ -30,6 +30,11 @@ WHERE = "request"
 OF = "of"
 FAMILY = "family"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
+STATED = re.compile(
+    r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
+)  # a number with a unit
+POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
+RAISED = str.maketrans("234", "²³⁴")
 SPEC = tuple(key for key in FIELDS if key != "values")
 TABLE_EXPECTED = (
     "a table of your own by name and version, 'my_linings@3', or ['+', 'my_linings@3'] to extend the shipped one"
@@ -334,7 +339,7 @@ def titled(request: Request) -> str:
     names = declared.names()
     given = {names.get(str(word), str(word)): value for word, value in request.requirements.items()}
     shown = [
-        f"{name} {_shown(given[name], declared.requirements[name].unit)}"
+        f"{words(name)} {_shown(given[name], declared.requirements[name].unit)}"
         for name in declared.requirements
         if name in given
     ]
@@ -342,8 +347,23 @@ def titled(request: Request) -> str:
     return f"{title}: {', '.join(shown[: KIND_SETTINGS.titled])}" if shown else title
 
 
+def words(text: str) -> str:
+    """Return names and quantities as people write them in a title.
+
+    Examples
+    --------
+    >>> words("load_torque 300 N*m .. 600 N*m"), words("driven_inertia 2 kg*m2")
+    ('load torque 300 N·m .. 600 N·m', 'driven inertia 2 kg·m²')
+    """
+    return STATED.sub(lambda found: POWER.sub(_raised, found[0].replace("*", "·")), text.replace("_", " "))
+
+
+def _raised(found: re.Match[str]) -> str:
+    return found[0].translate(RAISED)
+
+
 def _shown(value: Any, unit: str) -> str:
-    return value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -")
+    return words(value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -"))
 
 
 # ---- what comes out -------------------------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from synth.jobs.kinds.asked import (
     settings_of,
     spec_of,
     told,
+    words,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.question.request import check_grid, listed_objectives
@@ -68,10 +69,15 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     serving = [one for one in found if not one.misfits]
     return Posed(
         request=stated,
-        title="compare " + (", ".join(one.label for one in found) if content[FAMILY] != "any" else "all families"),
+        title="Comparison: " + ("; ".join(map(_titled, found)) if content[FAMILY] != "any" else "all families"),
         families=tuple(dict.fromkeys(one.problem.name for one in serving)),
         tables=digests(stated.get("catalogs"), sources),
     )
+
+
+def _titled(one: Applicant) -> str:
+    """Return a family as a title names it; where one is asked more than once, with its number."""
+    return (one.problem.title or words(one.problem.name)) + words(one.label.removeprefix(one.problem.name))
 
 
 def _one_can_be_asked(found: list[Applicant], asked: Any, settings: SearchSettings) -> None:

@@ -47,7 +47,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated = {key: value for key, value in stated.items() if key not in ("objectives", "weights")}
     return Posed(
         request={**stated, PHYSICS: flag(PHYSICS, own.get(PHYSICS, False))},
-        title=f"why not: {titled(asked)}",
+        title=f"Ways out: {titled(asked)}",
         families=(asked.problem.name,),
         tables=digests(stated.get("catalogs"), sources),
     )

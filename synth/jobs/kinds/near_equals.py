@@ -48,7 +48,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated |= {"design": rank, "within": given["within"], "count": count, "seed": seed(given.get("seed"))}
     return Posed(
         request={**stated, **({} if limit is None else {"time_limit": limit})},
-        title=f"within {given['within']} of design {rank}: {front.frame.title}",
+        title=f"Near equals within {given['within']} of design {rank}: {front.frame.title}",
         families=(front.frame.family,),
     )
 

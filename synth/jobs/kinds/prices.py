@@ -43,7 +43,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
     return Posed(
         request={**stated, "design": ranks, "step": step, **({} if limit is None else {"time_limit": limit})},
-        title=f"prices: {front.frame.title}, {step}",
+        title=f"Prices: {front.frame.title}, {step}",
         families=(front.frame.family,),
     )
 

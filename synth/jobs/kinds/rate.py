@@ -23,6 +23,7 @@ from synth.jobs.kinds.asked import (
     read_json,
     seconds,
     told,
+    words,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.model.problem import DesignProblem
@@ -61,7 +62,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated |= {ROBUST: plain(block), **({} if limit is None else {"time_limit": limit})}
     return Posed(
         request=stated,
-        title=f"rating: {frame.title}, {', '.join(scattering.names)}",
+        title=f"Rating: {frame.title}, {', '.join(map(words, scattering.names))}",
         families=(frame.family,),
         tables=digests(stated.get("catalogs"), sources),
     )

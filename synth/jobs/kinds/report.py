@@ -138,7 +138,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
                 right = f"a rank from 1 to {len(front.designs)}" + (" or knee" if "knee" in known else "")
                 raise InputError(f"{WHERE}: design", word, right if known else "a front with designs", ("design",))
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
-    return Posed(request={**stated, **asked.stated()}, title=f"report: {title}", families=families)
+    return Posed(request={**stated, **asked.stated()}, title=f"Report: {title}", families=families)
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:

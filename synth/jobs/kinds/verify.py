@@ -34,7 +34,7 @@ from synth.verification.verify_comparison import verify_comparison
 
 MAIN = "verification.json"
 KEYS = (OF, FAMILY, "time_limit")
-WHOLE = "the comparison"
+WHOLE = "all of the comparison"
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -57,7 +57,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         families, title = (front.frame.family,), front.frame.title
     return Posed(
         request={**stated, "time_limit": KIND_SETTINGS.verify_seconds if limit is None else limit},
-        title=f"verify: {title}",
+        title=f"Verification: {title}",
         families=families,
     )
 

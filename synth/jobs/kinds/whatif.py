@@ -28,6 +28,7 @@ from synth.jobs.kinds.asked import (
     stated_spec,
     titled,
     told,
+    words,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
@@ -62,7 +63,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated = stated_spec(asked, settings)
     return Posed(
         request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},
-        title=f"{titled(asked)}; {', '.join(varied)}",
+        title=f"What if {', '.join(map(words, varied))}: {titled(asked)}",
         families=(asked.problem.name,),
         bulk=count > KIND_SETTINGS.interactive_steps,
         steps=count,

@@ -98,6 +98,9 @@ async def list_jobs(
         str | None, Query(max_length=LONGEST, pattern=WORD, description="A text in the title, or an id.")
     ] = None,
     parent: Word = None,
+    follows: Annotated[
+        bool | None, Query(description="Only those that follow from another job, or only those that follow from none.")
+    ] = None,
     pinned: bool | None = None,
     limit: Limit = None,
     cursor: Cursor = None,
@@ -109,7 +112,7 @@ async def list_jobs(
         await must_be_family(context, family)
     states = tuple(state or ())
     most = entries(context, limit)
-    scope = [principal.tenant, list(states), kind, family, q, parent, pinned]
+    scope = [principal.tenant, list(states), kind, family, q, parent, follows, pinned]
     place = place_of(cursor, scope, (float, str))
     jobs = await in_thread(
         context.store.page,
@@ -119,6 +122,7 @@ async def list_jobs(
         family=family,
         text=q or "",
         parent=parent,
+        follows=follows,
         pinned=pinned,
         before=None if place is None else (place[0], place[1]),
         most=most + 1,

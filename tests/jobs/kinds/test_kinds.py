@@ -82,7 +82,8 @@ def test_a_stored_request_reads_as_itself(name: str) -> None:
     first = posed(name, OF[name])
     again = posed(name, json.loads(first.text))
     assert (again.text, again.title, again.families) == (first.text, first.title, first.families)
-    assert first.title
+    assert first.title[0].isupper()
+    assert not set("_*") & set(first.title)
     assert first.families
     assert not first.bulk
 

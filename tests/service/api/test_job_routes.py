@@ -180,6 +180,12 @@ def test_lists_are_paged_and_chosen_from(works: Service, client: Client, front: 
     assert client.get("jobs?state=asleep").status_code == 422
     assert client.get("jobs?q=seite%203%20100%25").json()["jobs"][0]["id"] == mine[3]
     assert client.get("jobs?q=%25").json()["jobs"]
+    assert {job["id"] for job in client.get("jobs?limit=200&follows=true").json()["jobs"]} >= set(mine)
+    apart = client.get("jobs?limit=200&follows=false").json()["jobs"]
+    assert front in {job["id"] for job in apart}
+    assert all(job["parent"] is None for job in apart)
+    assert client.get(f"jobs?follows=false&parent={front}").json()["jobs"] == []
+    assert client.get("jobs?follows=perhaps").status_code == 422
     assert client.get("jobs?q=%00").status_code == 422
     assert client.get("jobs?kind=verify&pinned=true").json() == {"jobs": [], "next": None}
     for job in mine:

@@ -5,20 +5,17 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from synth.service.api.schemas import EXAMPLES
-from tests.reports.browser import DESKTOP, FORMS, PHONE, chromium, needs_chromium, serious
-from tests.service.pages.visiting import Site, Tenant, Visitor, site_in, visit
+from tests.reports.browser import DESKTOP, PHONE, needs_chromium
+from tests.service.pages.visiting import Site, Visit, in_all_forms
 from tests.service.working import BATCH, DUTY, FRONT, LONG, QUICK
 
 pytestmark = [pytest.mark.slow, needs_chromium]
-Visit = Callable[..., AbstractContextManager[Visitor]]
 SOON = 5.0  # s: what somebody waits for at the first start, where nothing else runs
 EVIL = "<img src=x onerror=alert(1)>"
 HOSTILE = (
@@ -39,9 +36,9 @@ TOO_SMALL = {
         "engagements_per_hour": "30 1/h",
         "jerk_limit": "600 rad/s3",
         "outer_diameter_limit": "100 mm",
-        "release_pull_max": 0.3,
     },
-    "points": 3,
+    "parts": {"friction_pair": ["woven_dry"]},
+    "points": 1,
 }
 TABLE = """\
 Machine,load_torqe [N*m],Speed,driven_inertia [kg*m2],engagements_per_hour [1/h],jerk_limit [rad/s3],wear_life_min,fix
@@ -58,26 +55,6 @@ FOCUSED = """(() => {
   const seenAt = [one, near, near?.querySelector('.button')].some((own) => lit(own)) || lit(one, '::after');
   return [seen.get(one), one.tagName, seenAt, one.outerHTML.slice(0, 80)];
 })()"""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with chromium() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    with site_in(tmp_path_factory.mktemp("pages")) as found:
-        yield found
-
-
-@pytest.fixture
-def visited(browser: Any, site: Site) -> Visit:
-    def begin(who: Tenant | None, *form: Any) -> Any:
-        return visit(browser, site, who, *form)
-
-    return begin
 
 
 def soon() -> float:
@@ -171,6 +148,38 @@ def test_where_nothing_is_feasible_a_way_out_is_applied(site: Site, visited: Vis
         page.get_by_role("button", name="Find designs").click()
         page.wait_for_url("**/jobs/*")
         found.sees(".explored table.designs tbody tr", seconds=30.0)
+
+
+def test_a_front_is_asked_further_and_the_list_leaves_out_what_followed(site: Site, visited: Visit) -> None:
+    who = site.tenant("further")
+    front = who.submit("synthesis", FRONT, title="Lifting drive")
+    who.ended(front)
+    with visited(who) as found:
+        page = found.page
+        found.goes(f"/jobs/{front}")
+        asks = page.locator(".ask-list button")
+        assert "Rating" not in asks.all_inner_texts()  # nothing was said of what scatters
+        page.locator(".explored table.designs tbody tr").nth(1).click()
+        assert "Near equals of design 2" in asks.all_inner_texts()
+        page.get_by_role("button", name="Near equals of design 2").click()
+        found.sees(".followed li", "Done", seconds=30.0)
+        with page.expect_response(lambda answer: answer.request.method == "POST") as again:
+            page.get_by_role("button", name="Near equals of design 2").click()
+        assert again.value.status == 200  # no second job
+        (child,) = who.get(f"jobs?parent={front}")["jobs"]
+        assert (child["kind"], child["title"]) == ("near_equals", "Near equals of design 2: Lifting drive")
+        assert who.get(f"jobs/{child['id']}/request")["design"] == 2
+        found.goes("/")
+        assert page.locator(".studies .title").all_inner_texts() == ["Lifting drive"]
+        page.get_by_role("button", name="Also what followed").click()
+        found.sees(".studies .title", "Near equals of design 2")
+        page.reload()
+        found.sees(".studies .title", "Near equals of design 2").click()
+        found.sees(".job-head a", "what it follows from")
+    with visited(site.tenant("further", "read")) as found:
+        found.goes(f"/jobs/{front}")
+        assert found.page.locator(".ask-list").count() == 0
+        found.sees(".followed a", "Near equals of design 2")
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
@@ -409,11 +418,7 @@ def test_each_page_can_be_used_by_all_in_every_form(
                 page.locator("summary").nth(k).click()
         assert page.locator("h1").count() == 1
         assert page.title().endswith("clutchsynth")
-        for size, theme in FORMS:
-            page.set_viewport_size({"width": size[0], "height": size[1]})
-            page.emulate_media(color_scheme=theme)
-            assert page.evaluate("document.documentElement.scrollWidth") <= size[0], (size, theme)
-            assert serious(page) == [], (size, theme)
+        in_all_forms(page)
 
 
 def test_everything_is_reached_by_keys_and_what_has_the_focus_is_seen(site: Site, visited: Visit) -> None:

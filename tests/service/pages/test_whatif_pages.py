@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
 import pytest
 
 from synth.files import yaml_text
-from tests.reports.browser import DESKTOP, FORMS, chromium, needs_chromium, serious
-from tests.service.served import Served, served, until
+from tests.reports.browser import needs_chromium
+from tests.service.pages.visiting import Site, Tenant, in_all_forms, visit
+from tests.service.served import until
 from tests.service.working import DUTY, FAMILY, FRONT, QUICK
 from tests.terminal.entry import in_process
 
@@ -21,7 +21,8 @@ pytestmark = [pytest.mark.slow, needs_chromium]
 WAIT = 60_000.0  # ms
 HOLDS = "load_torque~540"
 FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": ["core 1.8"], "outer_plate": ["core 1.8"]}
-ASKED = {**FRONT, "parts": FEW, "limits": {"friction_surfaces": "14 .. 18"}}
+FIXED = {"ramp_time": "2 s", "ring_inner_diameter": "115 mm"}
+ASKED = {**FRONT, "fix": FIXED, "parts": FEW, "limits": {"friction_surfaces": "14 .. 18"}, "gap": 0.05}
 COMPARED = {
     "family": ["disc_clutch", {"family": FAMILY, "parts": {"friction_pair": ["paper_wet"], "inner_plate": ["core 2"]}}],
     "requirements": {"load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2"},
@@ -31,53 +32,39 @@ COMPARED = {
 }
 
 
-class Site:
-    """A server, a browser, and a front that was asked there."""
+class Sliders:
+    """Somebody with a front, and pages of it."""
 
-    def __init__(self, server: Served, browser: Any) -> None:
-        self.server, self.browser = server, browser
-        server.warm()
+    def __init__(self, site: Site, browser: Any) -> None:
+        self.site, self.browser, self.who = site, browser, site.tenant("sliders")
         self.front = self.done("synthesis", ASKED, title="Lifting drive")
 
     def done(self, kind: str, request: dict[str, Any], **more: Any) -> str:
         """Ask for a job and wait for its end; return its id."""
-        answer = self.server.ask("POST", "jobs", json={"kind": kind, "request": request, **more})
-        assert answer.status_code == 202, answer.text
-        job = str(answer.json()["id"])
-        assert self.server.ended(job)["state"] == "done"
+        job = self.who.submit(kind, request, **more)
+        assert self.who.ended(job)["state"] == "done"
         return job
 
     def children(self, kind: str) -> list[dict[str, Any]]:
         """Return the jobs that follow from the front, the latest first."""
-        found = self.server.ask("GET", "jobs", params={"kind": kind, "parent": self.front})
-        jobs: list[dict[str, Any]] = found.json()["jobs"]
+        jobs: list[dict[str, Any]] = self.who.get(f"jobs?kind={kind}&parent={self.front}")["jobs"]
         return jobs
 
     @contextmanager
-    def page(self, path: str, prepare: Callable[[Any], object] = lambda page: None) -> Iterator[Any]:
+    def page(
+        self, path: str, prepare: Callable[[Any], object] = lambda page: None, who: Tenant | None = None
+    ) -> Iterator[Any]:
         """Open a page; nothing may be complained about, and nothing asked of another host."""
-        context = self.browser.new_context(viewport={"width": DESKTOP[0], "height": DESKTOP[1]})
-        try:
-            page = context.new_page()
-            page.set_default_timeout(WAIT)
-            faults: list[str] = []
-            hosts: set[str] = set()
-            page.on("console", lambda message: faults.append(f"{message.type}: {message.text}"))
-            page.on("pageerror", lambda error: faults.append(str(error)))
-            page.on("request", lambda request: hosts.add(urlsplit(request.url).netloc))
-            prepare(page)
-            page.goto(f"{self.server.address}{path}")
-            yield page
-            assert faults == []
-            assert hosts == {urlsplit(self.server.address).netloc}
-        finally:
-            context.close()
+        with visit(self.browser, self.site, who or self.who) as found:
+            found.page.set_default_timeout(WAIT)
+            prepare(found.page)
+            found.page.goto(f"{found.address}{path}")
+            yield found.page
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    with served(tmp_path_factory.mktemp("site")) as server, chromium() as browser:
-        yield Site(server, browser)
+def sliders(site: Site, browser: Any) -> Sliders:
+    return Sliders(site, browser)
 
 
 def settled(page: Any) -> str:
@@ -86,17 +73,8 @@ def settled(page: Any) -> str:
     return str(page.locator(".what-if .told").inner_text())
 
 
-def in_all_forms(page: Any) -> None:
-    """Look at a page in all forms: nothing is wider than it, and nobody is left out."""
-    for (wide, high), theme in FORMS:
-        page.set_viewport_size({"width": wide, "height": high})
-        page.emulate_media(color_scheme=theme)
-        assert page.evaluate("document.documentElement.scrollWidth") <= wide
-        assert serious(page) == []
-
-
-def test_a_slider_asks_anew_and_the_front_as_asked_stays_as_outlines(site: Site, tmp_path: Path) -> None:
-    with site.page(f"/jobs/{site.front}") as page:
+def test_a_slider_asks_anew_and_the_front_as_asked_stays_as_outlines(sliders: Sliders, tmp_path: Path) -> None:
+    with sliders.page(f"/jobs/{sliders.front}") as page:
         slider = page.locator(".knob input[type=range]")
         slider.focus()
         for _ in range(3):
@@ -106,27 +84,27 @@ def test_a_slider_asks_anew_and_the_front_as_asked_stays_as_outlines(site: Site,
         assert page.locator(".scatter .ghost").count() == 3
         assert page.evaluate("document.activeElement.type") == "range"
         assert f"if={HOLDS}" in page.url
-        (child,) = site.children("synthesis")
+        (child,) = sliders.children("synthesis")
         assert page.locator(".what-if a").get_attribute("href") == f"/jobs/{child['id']}"
-        assert (child["parent"], child["priority"]) == (site.front, 1)
+        assert (child["parent"], child["priority"]) == (sliders.front, 1)
         asked = {**ASKED, "requirements": {**DUTY, "load_torque": "540 N*m"}}
         (tmp_path / "spec.yaml").write_text(yaml_text(asked))
         assert in_process("run", str(tmp_path / "spec.yaml"), "-o", str(tmp_path / "out")).returncode == 0
-        served_csv = site.server.ask("GET", f"jobs/{child['id']}/files/designs.csv", params={"raw": "1"}).content
+        served_csv = sliders.who.ask("GET", f"jobs/{child['id']}/files/designs.csv", params={"raw": "1"}).content
         assert served_csv == (tmp_path / "out" / "designs.csv").read_bytes()
         page.wait_for_selector(".ticks line", state="attached")
         in_all_forms(page)
 
 
-def test_the_address_brings_the_same_back_and_nothing_is_asked_twice(site: Site) -> None:
-    with site.page(f"/jobs/{site.front}#if={HOLDS}") as page:
+def test_the_address_brings_the_same_back_and_nothing_is_asked_twice(sliders: Sliders) -> None:
+    with sliders.page(f"/jobs/{sliders.front}#if={HOLDS}") as page:
         told = settled(page)
         page.wait_for_selector(".ticks line", state="attached")
-        asked = [len(site.children(kind)) for kind in ("synthesis", "whatif")]
+        asked = [len(sliders.children(kind)) for kind in ("synthesis", "whatif")]
         page.reload()
         assert settled(page) == told
         page.wait_for_selector(".ticks line", state="attached")
-        assert [len(site.children(kind)) for kind in ("synthesis", "whatif")] == asked
+        assert [len(sliders.children(kind)) for kind in ("synthesis", "whatif")] == asked
         assert "It fits up to" in page.locator(".knob .unseen").inner_text()
         page.get_by_role("button", name="Back to what was asked").click()
         page.wait_for_selector(".scatter .ghost", state="detached")
@@ -134,8 +112,8 @@ def test_the_address_brings_the_same_back_and_nothing_is_asked_twice(site: Site)
         assert "if=" not in page.url
 
 
-def test_where_nothing_fits_the_ways_out_are_applied_in_place(site: Site) -> None:
-    with site.page(f"/jobs/{site.front}") as page:
+def test_where_nothing_fits_the_ways_out_are_applied_in_place(sliders: Sliders) -> None:
+    with sliders.page(f"/jobs/{sliders.front}") as page:
         field = page.locator(".knob .typed input")
         field.fill("many")
         field.press("Enter")
@@ -152,8 +130,8 @@ def test_where_nothing_fits_the_ways_out_are_applied_in_place(site: Site) -> Non
         assert page.locator(".scatter .pt").count() > 0
 
 
-def test_several_sliders_and_a_limit_on_what_was_found(site: Site) -> None:
-    with site.page(f"/jobs/{site.front}") as page:
+def test_several_sliders_and_a_limit_on_what_was_found(sliders: Sliders) -> None:
+    with sliders.page(f"/jobs/{sliders.front}") as page:
         page.get_by_role("button", name="Add another").click()
         second = page.locator(".knob").nth(1)
         second.locator("select").select_option("length<=")
@@ -162,48 +140,40 @@ def test_several_sliders_and_a_limit_on_what_was_found(site: Site) -> None:
         assert slider.get_attribute("aria-valuetext") == "no limit, as asked"
         slider.press("ArrowLeft")
         assert settled(page).startswith("With length at most ")
-        (newest, *_) = site.children("synthesis")
-        request = site.server.ask("GET", f"jobs/{newest['id']}/request").json()
+        (newest, *_) = sliders.children("synthesis")
+        request = sliders.who.ask("GET", f"jobs/{newest['id']}/request").json()
         assert request["limits"]["length"].startswith("<= ")
         second.get_by_role("button", name="Remove this slider").click()
         page.wait_for_selector(".scatter .ghost", state="detached")
 
 
-def test_whoever_may_only_look_has_no_slider(site: Site) -> None:
-    def as_reader(page: Any) -> None:
-        def answered(route: Any) -> None:
-            answer = route.fetch()
-            route.fulfill(response=answer, body=answer.text().replace('may-submit="yes"', 'may-submit="no"'))
-
-        page.route(
-            "**/jobs/*", lambda route: answered(route) if "/api/" not in route.request.url else route.continue_()
-        )
-
-    with site.page(f"/jobs/{site.front}", as_reader) as page:
+def test_whoever_may_only_look_has_no_slider(sliders: Sliders) -> None:
+    with sliders.page(f"/jobs/{sliders.front}", who=sliders.site.tenant("sliders", "read")) as page:
         page.wait_for_selector(".explorer .scatter")
+        page.wait_for_selector("main [aria-busy=true]", state="detached")
         assert page.locator(".what-if, .knob").count() == 0
 
 
-def test_a_question_that_took_long_is_asked_as_a_job(site: Site) -> None:
+def test_a_question_that_took_long_is_asked_as_a_job(sliders: Sliders) -> None:
     def as_slow(page: Any) -> None:
         def answered(route: Any) -> None:
             answer = route.fetch()
             job = answer.json()
             route.fulfill(response=answer, json={**job, "started": job["ended"] - 42.0})
 
-        page.route(f"**/api/v1/jobs/{site.front}", answered)
+        page.route(f"**/api/v1/jobs/{sliders.front}", answered)
 
-    with site.page(f"/jobs/{site.front}", as_slow) as page:
-        before = len(site.children("synthesis"))
+    with sliders.page(f"/jobs/{sliders.front}", as_slow) as page:
+        before = len(sliders.children("synthesis"))
         assert "took 42 s" in page.locator(".what-if .told").inner_text()
         page.locator(".knob input[type=range]").press("ArrowRight")
         page.get_by_role("button", name="Ask as a job").click()
-        page.wait_for_url(lambda url: site.front not in url)
-        assert len(site.children("synthesis")) == before + 1
+        page.wait_for_url(lambda url: sliders.front not in url)
+        assert len(sliders.children("synthesis")) == before + 1
 
 
-def test_the_form_asks_several_families(site: Site) -> None:
-    with site.page("/new?family=any") as page:
+def test_the_form_asks_several_families(sliders: Sliders) -> None:
+    with sliders.page("/new?family=any") as page:
         page.wait_for_selector(".several")
         for box in page.locator(".several input").all():
             if box.get_attribute("value") not in ("disc_clutch", FAMILY):
@@ -217,16 +187,16 @@ def test_the_form_asks_several_families(site: Site) -> None:
         in_all_forms(page)
 
 
-def test_the_common_front_of_families_is_explored(site: Site) -> None:
-    job = site.done("compare", COMPARED, title="Which clutch?")
-    with site.page(f"/jobs/{job}") as page:
+def test_the_common_front_of_families_is_explored(sliders: Sliders) -> None:
+    job = sliders.done("compare", COMPARED, title="Which clutch?")
+    with sliders.page(f"/jobs/{job}") as page:
         page.wait_for_selector(".explorer .scatter .pt")
         assert page.locator(".certificate strong").inner_text().startswith("Proven")
         rows = page.locator(".outcomes tr")
         assert {"listed", "beaten"} >= {row.locator(".badge").inner_text() for row in rows.all()}
         assert page.locator(".what-if").count() == 0
         in_all_forms(page)
-    page_of_one = site.server.ask("GET", f"jobs/{job}/files/explorer.html")
+    page_of_one = sliders.who.ask("GET", f"jobs/{job}/files/explorer.html")
     assert page_of_one.status_code == 200
     assert '"families":[' in page_of_one.text
 
@@ -242,11 +212,15 @@ KINDS: dict[str, tuple[dict[str, Any], str, str]] = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_kinds_of_jobs_have_found_is_shown(site: Site, kind: str) -> None:
+def test_what_kinds_of_jobs_have_found_is_shown(sliders: Sliders, kind: str) -> None:
     request, place, words = KINDS[kind]
-    of = {**QUICK, "points": None, "parts": FEW, **request} if kind == "whatif" else {"of": site.front, **request}
-    job = site.done(kind, {name: value for name, value in of.items() if value is not None})
-    with site.page(f"/jobs/{job}") as page:
+    of = (
+        {**QUICK, "points": None, "gap": 0.05, "fix": FIXED, "parts": FEW, **request}
+        if kind == "whatif"
+        else {"of": sliders.front, **request}
+    )
+    job = sliders.done(kind, {name: value for name, value in of.items() if value is not None})
+    with sliders.page(f"/jobs/{job}") as page:
         page.wait_for_selector(place, state="attached")
         until(lambda: words in page.locator("main").inner_text())
         in_all_forms(page)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +14,14 @@ from synth.jobs.accounts import Accounts
 from synth.jobs.database import file_url
 from synth.jobs.store import Store
 from synth.service.settings import ServiceSettings
-from tests.reports.browser import DESKTOP, Opened
+from tests.reports.browser import DESKTOP, FORMS, PHONE, Opened, serious
 from tests.service.calling import bearer
 from tests.service.served import Served, served, until
 from tests.service.working import LIVE, QUICK
 
 ALL = ("read", "submit", "admin")
+READ_ALOUD = ((DESKTOP, "light"), (PHONE, "dark"))  # forms in which axe looks: both sizes, both themes
+CLIENT = httpx.Client(timeout=60.0, verify=False)  # a new one for each request takes longer than the answer
 
 
 class Tenant:
@@ -30,7 +32,8 @@ class Tenant:
 
     def ask(self, method: str, path: str, **asked: Any) -> httpx.Response:
         """Ask something of the interface."""
-        return self.server.ask(method, path, headers=bearer(self.token), **asked)
+        where = path if path.startswith("/") else f"/api/v1/{path}"
+        return CLIENT.request(method, f"{self.server.address}{where}", headers=bearer(self.token), **asked)
 
     def get(self, path: str) -> Any:
         """Ask for something that is there."""
@@ -53,7 +56,7 @@ class Tenant:
         end = time.monotonic() + within
         while (told := self.get(f"jobs/{job}"))["state"] in LIVE:
             assert time.monotonic() < end, told
-            time.sleep(0.1)
+            time.sleep(0.05)
         return dict(told)
 
 
@@ -112,6 +115,19 @@ class Visitor(Opened):
         found = next((fault for fault in self.faults if fault.startswith(said)), None)
         assert found is not None, (status, self.faults)
         self.faults.remove(found)
+
+
+def in_all_forms(page: Any) -> None:
+    """Look at a page in all forms: nothing is wider than it, and nobody is left out."""
+    for size, theme in FORMS:
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        page.emulate_media(color_scheme=theme)
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0], (size, theme)
+        if (size, theme) in READ_ALOUD:
+            assert serious(page) == [], (size, theme)
+
+
+Visit = Callable[..., AbstractContextManager[Visitor]]
 
 
 @contextmanager

@@ -1,7 +1,7 @@
 // A batch: how its rows stand, and what each has found.
 
 import { faultCard, get } from "./api.js";
-import { amount, duration, h, unitText, words } from "./dom.js";
+import { amount, asWords, duration, h, unitText, words } from "./dom.js";
 import { sizesCard } from "./sizes_card.js";
 import { LIVE, ROWS, rowBadge } from "./words.js";
 
@@ -75,7 +75,7 @@ export function batchView(element, job) {
     if (known?.text === text) return known.line;
     const waits = row.status === "not_solved" && LIVE.includes(shown.state);
     const line = h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(waits ? WAITING : row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
-      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.explanation || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
+      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.status === "bad_input" ? row.explanation : asWords(row.explanation) || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
     const focused = known?.line.contains(document.activeElement);
     known?.line.replaceWith(line);
     if (focused) line.querySelector("a").focus();
@@ -123,7 +123,7 @@ export function batchView(element, job) {
   element.replaceChildren(h("section", { class: "card stack" }, h("h2", {}, "How the rows stand"), bar, legend, facts),
     h("section", { class: "card stack" }, h("div", { class: "heading" }, chosen, all), table, h("p", { class: "row" }, earlier, later)), sizesCard(job));
   view.show(job);
-  if (!looked) rows();
+  if (!looked) view.loaded = rows();
   return view;
 }
 

@@ -35,7 +35,7 @@ async function lists() {
     maySubmit() ? h("p", {}, h("a", { class: "button", href: "#bring" }, "Bring a table")) : null),
     h("section", { class: "card stack" }, h("h2", {}, "Tables that come with the families"), h("p", { class: "note" }, "Every row has a source, and says how far it can be trusted. A value that is not known stays empty."),
       h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tables that come with the families" }, h("table", {}, heads(["Table", "Rows", "Parts of"]),
-        h("tbody", {}, tables.map((table) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: `/catalogues?table=${table.name}` }, words(table.name))), h("td", { class: "right" }, amount(table.rows)), h("td", {}, table.families.length ? users(table.families.map((name) => titles.get(name) ?? words(name)).join(", ")) : h("span", { class: "note" }, "looked up by formulas, or for reference")))))))),
+        h("tbody", {}, tables.map((table) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: `/catalogues?table=${table.name}` }, words(table.name))), h("td", { class: "right" }, amount(table.rows)), h("td", {}, table.families.length ? users(table.families.map((name) => titles.get(name) ?? words(name)).join("; ")) : h("span", { class: "note" }, "looked up by formulas, or for reference")))))))),
     maySubmit() ? bringing(tables) : "");
   if (location.hash === "#bring") document.getElementById("bring")?.scrollIntoView();
 }

@@ -53,6 +53,9 @@ export function amount(value) {
 /** Return a name of the interface as words. */
 export const words = (name) => String(name).replaceAll("_", " ");
 
+/** Return a sentence of the engine as people read it: names in words, units as they are written. */
+export const asWords = (text) => words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
+
 /** Return a symbol with its subscript; nothing where there is none. */
 export function symbol(text) {
   if (!text) return null;

@@ -15,10 +15,11 @@ const MOST = 200, SHOWN = 14;
  * @param {HTMLElement} element
  * @param {object} job
  * @param {string} explorer address of the module that draws fronts, empty where there is none
+ * @param {(job: object, rank: number | null) => void} heard is told whose front is shown, and which design of it is chosen
  */
-export async function frontView(element, job, explorer) {
+export async function frontView(element, job, explorer, heard) {
   element.replaceChildren(h("p", { class: "note" }, "Loading the front …"));
-  if (explorer && (await explored(element, job, explorer))) return;
+  if (explorer && (await explored(element, job, explorer, heard))) return;
   const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
   const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
   const table = tableCard(job, record, page, objectives);
@@ -28,7 +29,7 @@ export async function frontView(element, job, explorer) {
 }
 
 /** Let the explorer draw; tell whether it could: else the page draws the front itself. */
-async function explored(element, job, explorer) {
+async function explored(element, job, explorer, heard) {
   const { files } = await get(`/jobs/${job.id}/files`);
   if (!files.some((file) => file.name === RECORD)) return false;
   let drawn;
@@ -45,23 +46,25 @@ async function explored(element, job, explorer) {
     const text = [told.explorer, told.moved].filter(Boolean).join("&");
     history.replaceState(null, "", text ? `#${text}` : location.pathname);
   };
-  const page = { job, record, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other) => { shown = other; } };
+  const page = { job, record, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other) => { shown = other; heard(shown, null); } };
   const endings = [...new Set(files.map((file) => /^design_\d+(.+)$/.exec(file.name)?.[1]).filter(Boolean))];
   const digits = files.map((file) => /^design_(\d+)/.exec(file.name)?.[1].length).find(Boolean) ?? 2;
-  let shown = job, strip = null;
+  let shown = job, strip = null, ready = null;
   mount(slot, record, {
     heading: false,
     state: page.state,
     onState: (text) => { told.explorer = text; tell(); },
+    onSelect: (design) => heard(shown, design?.rank ?? null),
     downloads: (design) => endings.map((ending) => {
       const name = `design_${String(design.rank).padStart(digits, "0")}${ending}`;
       return { label: name, href: `${API}/jobs/${shown.id}/files/${name}`, download: name };
     }),
     ...(maySubmit() && job.kind === "synthesis" ? {
-      whatIf: (place, handle) => whatIf(place, handle, page).then((made) => { strip = made; }, () => place.setAttribute("hidden", "")),
+      whatIf: (place, handle) => { ready = whatIf(place, handle, page).then((made) => { strip = made; }, () => place.setAttribute("hidden", "")); },
       ways: (place) => strip?.ways(place),
     } : {}),
   });
+  await ready;
   return true;
 }
 

@@ -1,10 +1,11 @@
 // A job: watched while it is worked at, and what it has found.
 
-import { ask, faultCard, get, listen, maySubmit, post, sentence } from "./api.js";
+import { ask, faultCard, get, listen, maySubmit, sentence } from "./api.js";
 import { batchView } from "./batch_view.js";
 import { duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
 import { filesCard } from "./files_card.js";
+import { furtherCard } from "./further_card.js";
 import { hasView, kindView } from "./kind_views.js";
 import { nothingView } from "./nothing_view.js";
 import { sizesView } from "./sizes_card.js";
@@ -28,22 +29,24 @@ async function begin() {
     return;
   }
   place.replaceChildren(head, fault, below);
-  place.setAttribute("aria-busy", "false");
   get("/families").then(({ families }) => { titles = Object.fromEntries(families.map((family) => [family.name, family.title])); heading(); }, () => {});
   show();
 }
 
-function show() {
+/** Show a job; who waits for the page is told when all of it is there. */
+async function show() {
   heading();
+  place.setAttribute("aria-busy", "true");
   if (LIVE.includes(job.state)) {
     stop ??= listen([id], heard);
-    if (job.kind === "batch") content = batchView(below, job);
-    else content = watchView(below, job);
-    return;
+    content = job.kind === "batch" ? batchView(below, job) : watchView(below, job);
+    await content.loaded;
+  } else {
+    stop?.();
+    stop = content = null;
+    await ended();
   }
-  stop?.();
-  stop = content = null;
-  ended();
+  place.setAttribute("aria-busy", "false");
 }
 
 async function heard(kind, told) {
@@ -83,19 +86,17 @@ function heading() {
     live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
   ] : [];
   head.replaceChildren(
-    h("div", { class: "heading" }, h("h1", {}, titled(job)), h("div", { class: "row" }, buttons)),
+    h("div", { class: "heading" }, h("h1", {}, job.title), h("div", { class: "row" }, buttons)),
     h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took),
       job.parent ? h("a", { href: `/jobs/${job.parent}` }, "what it follows from") : null));
   document.title = `${live ? "… " : ""}${job.title} · clutchsynth`;
 }
 
-/** Return the title of a job; those that the service makes of a kind begin with a small letter. */
-const titled = ({ kind, title }) => (kind === "synthesis" || kind === "batch" ? title : title[0].toUpperCase() + title.slice(1));
-
 async function act(method, path, body) {
   fault.textContent = "";
   try {
-    job = await ask(method, `/jobs/${id}${path}`, body);
+    if (path === "/cancel") job = await get(`/jobs/${id}`); // it may have ended just now: then there is nothing to cancel
+    if (path !== "/cancel" || LIVE.includes(job.state)) job = await ask(method, `/jobs/${id}${path}`, body);
     if (path === "/resume") show();
     else if (path === "/cancel" && !LIVE.includes(job.state)) show();
     else heading();
@@ -140,13 +141,15 @@ async function ended() {
   const slot = h("div");
   below.replaceChildren(...parts, slot);
   try {
-    if (job.kind === "batch") batchView(slot, job);
+    const further = await furtherCard(job);
+    if (job.kind === "batch") await batchView(slot, job).loaded;
     else if (job.kind === "explain") await nothingView(slot, job, job);
     else if (job.kind === "synthesis" && job.summary?.outcome === "infeasible") await nothingView(slot, job, null);
-    else if (job.kind === "compare" || (job.kind === "synthesis" && job.summary?.designs)) await frontView(slot, job, place.dataset.explorer);
+    else if (job.kind === "compare" || (job.kind === "synthesis" && job.summary?.designs)) await frontView(slot, job, place.dataset.explorer, further.shown);
     else if (job.kind === "size_range" && job.summary?.variants) await sizesView(slot, job);
     else if (hasView(job)) await kindView(slot, job);
     else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
+    below.append(further.element);
     await filesCard(below, job);
   } catch (error) {
     slot.replaceChildren(faultCard(error, () => ended()));

@@ -89,13 +89,44 @@ async function whatIfView(job) {
 
 // ---- prices -----------------------------------------------------------------------------------------------------------
 
+/** Return the front that prices are of as the explorer has it; null where it is not there any more. */
+async function frontOf(job) {
+  try {
+    const asked = await get(`/jobs/${job.id}/request`);
+    return asked.family ? null : await get(`/jobs/${asked.of}/files/explorer.json`);
+  } catch {
+    return null;
+  }
+}
+
+/** Return how much one step of something is in its unit; nothing where it has none. */
+function stepsOf(front, share) {
+  const asked = new Map([...(front?.asked ?? []), ...(front?.assumed ?? [])].map((one) => [one.label, one]));
+  const limits = new Map((front?.limits ?? []).map((one, k) => [one.label, k]));
+  const objectives = new Map((front?.quantities ?? []).map((one, k) => [one.name, [one, k]]));
+  const designs = new Map((front?.designs ?? []).map((design) => [String(design.rank), design]));
+  const told = (value, unit) => (typeof value === "number" && unit ? `${signed(value)}\u00a0${unit}` : "");
+  return {
+    of(line, design) {
+      const known = line.kind === "limit" ? [designs.get(design)?.sides[limits.get(words(line.name))]?.[1], front?.limits[limits.get(words(line.name))]?.unit] : [asked.get(words(line.name))?.value, asked.get(words(line.name))?.unit];
+      return typeof known[0] === "number" ? told(share * known[0], known[1]) : "";
+    },
+    change(name, design, percents) {
+      const [quantity, k] = objectives.get(name) ?? [];
+      return quantity ? told((designs.get(design)?.v[k] * percents) / 100, quantity.unit) : "";
+    },
+  };
+}
+
 async function pricesView(job) {
-  const { rows } = await tableOf(job.id, "prices.csv");
-  const step = job.summary.step ?? "1 %";
+  const [{ rows }, front] = await Promise.all([tableOf(job.id, "prices.csv"), frontOf(job)]);
+  const step = String(job.summary.step ?? "1 %");
+  const moved = step.includes("%") ? parseFloat(step) : 100 * parseFloat(step); // per cent; prices are told for one
   const own = rows.filter((row) => row.status !== "no influence");
   const designs = [...new Set(own.map((row) => row.design))];
   const objectives = [...new Set(own.map((row) => row.objective))];
-  const change = (value) => (value === "" || value === undefined ? h("span", { class: "note" }, "not told") : Math.abs(Number(value)) < 5e-4 ? "0" : `${signed(Number(value))} %`);
+  const steps = stepsOf(front, moved / 100);
+  const change = (value, name, design) => (value === "" || value === undefined ? h("span", { class: "note" }, "not told") : Math.abs(Number(value)) < 5e-4 ? "0" : [`${signed(moved * Number(value))} %`, h("span", { class: "note in-unit" }, steps.change(name, design, moved * Number(value)))]);
   const view = (design) => {
     const lines = new Map();
     for (const row of own.filter((row) => row.design === design)) lines.set(row.quantity, { ...lines.get(row.quantity), name: row.quantity, kind: row.kind, [row.objective]: row });
@@ -104,10 +135,10 @@ async function pricesView(job) {
     const remark = (line) => [...new Set(objectives.map((name) => line[name]).filter((row) => row && row.status !== "confirmed").flatMap((row) => (row.reason || row.status).split("; ").map((text) => remarked(text, step))))].join("; ");
     if (!order.length) return h("p", {}, "Nothing that was asked has a price here: no limit holds this design back.");
     return folded(`Prices of design ${design}`, [
-      { title: "requirement or limit", words: true, cell: (line) => words(line.name) },
+      { title: "requirement or limit", words: true, cell: (line) => [words(line.name), h("span", { class: "note in-unit" }, steps.of(line, design))] },
       ...objectives.flatMap((name) => [
-        { title: `${words(name)}: ${step} more`, right: true, cell: (line) => change(line[name]?.up) },
-        { title: `${words(name)}: ${step} less`, right: true, cell: (line) => (line[name]?.down === "" || line[name]?.down === undefined ? change("") : change(String(-Number(line[name].down)))) },
+        { title: `${words(name)}: ${step} more`, right: true, cell: (line) => change(line[name]?.up, name, design) },
+        { title: `${words(name)}: ${step} less`, right: true, cell: (line) => (line[name]?.down === "" || line[name]?.down === undefined ? change("") : change(String(-Number(line[name].down)), name, design)) },
       ]),
       { title: "remark", long: true, cell: (line) => h("span", { class: "note" }, remark(line)) },
     ], order);

@@ -12,7 +12,7 @@ const address = new URLSearchParams(location.search);
 const SIZES = ["variable", "count"];
 
 // What is asked: the spec as stated, apart from what fields hold. `rest` has no field and is passed on.
-const study = { family: "", several: null, own: [], title: "", parent: null, options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
+const study = { family: "", several: null, own: [], title: "", options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
 // Where several families are compared, `several` holds their names, `own` the entries that say more than a name.
 let families = [], examples = [], declared = null, choice = null, fields = [], told = { ready: false, problems: [], read: {}, combinations: null };
 
@@ -41,7 +41,6 @@ async function fromJob(id) {
   const patch = location.hash.startsWith("#patch=") ? JSON.parse(decodeURIComponent(location.hash.slice(7))) : {};
   for (const [section, values] of Object.entries(patch)) request[section] = { ...request[section], ...values };
   take(request);
-  study.parent = id;
   study.title = patch && Object.keys(patch).length ? `${job.title}, changed`.slice(0, 200) : "";
 }
 
@@ -124,7 +123,6 @@ function familyCard() {
 function turn(family) {
   const known = study.values.requirements, limits = new Set(study.several || family === ANY ? Object.keys(known) : []);
   take({ family, requirements: Object.fromEntries(Object.entries(known).filter(([name]) => limits.has(name) && understood(family, name))) });
-  study.parent = null;
   redraw().then(() => form.querySelector(`input[value="${family}"]`)?.focus()).catch(show);
 }
 
@@ -187,7 +185,6 @@ const count = () => (study.objectives === null ? 0 : Array.isArray(study.objecti
 function body() {
   const own = { kind: study.several ? "compare" : "synthesis", request: spec() };
   if (study.title.trim()) own.title = study.title.trim();
-  if (study.parent) own.parent = study.parent;
   return own;
 }
 

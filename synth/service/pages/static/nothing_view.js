@@ -1,7 +1,7 @@
 // Nothing is feasible: what stands in the way, and what would help.
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
-import { h, unitText } from "./dom.js";
+import { asWords, h } from "./dom.js";
 import { LIVE, outcomeText, stageText } from "./words.js";
 
 /**
@@ -23,11 +23,9 @@ export async function nothingView(element, job, explaining) {
   why.append(h("h2", {}, "Nothing is feasible"),
     h("p", {}, record.certificate?.kind === "global" ? "This is proven: no combination of parts and sizes holds all limits." : "No design was found that holds all limits."),
     conflicts.length ? h("p", {}, "The nearest that was found misses:") : h("p", {}, sentence(told.message)),
-    h("ul", { class: "misses" }, conflicts.map((conflict) => h("li", {}, withUnits(conflict.sentence)))));
+    h("ul", { class: "misses" }, conflicts.map((conflict) => h("li", {}, asWords(conflict.sentence)))));
   await seek(ways, job);
 }
-
-const withUnits = (text) => text.replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`).replaceAll("_", " ");
 
 /**
  * @typedef {object} Ways
@@ -91,7 +89,7 @@ function tell(ways, job, found, how) {
     return h("a", { class: how.apply ? "button" : "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
   };
   ways.replaceChildren(h(how.heading, {}, "Ways out"), conflict,
-    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, withUnits(way.sentence)), proven(way)), apply(way))))
+    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, asWords(way.sentence)), proven(way)), apply(way))))
       : h("p", {}, found.feasible ? "All limits can hold together." : "No single change was found that helps."),
     found.interrupted ? h("p", { class: "note" }, `Interrupted: ${found.interrupted}`) : "");
 }

@@ -1,7 +1,7 @@
 // A row of a batch: what it asks, and the designs that it has found.
 
 import { faultCard, get, maySubmit, post, sentence } from "./api.js";
-import { amount, duration, h, symbol, unitText, words } from "./dom.js";
+import { amount, asWords, duration, h, symbol, unitText, words } from "./dom.js";
 import { plotOf } from "./plot.js";
 import { yamlText } from "./spec.js";
 import { count, rowBadge } from "./words.js";
@@ -71,7 +71,7 @@ function studyButton(row, question, request, designs, fault) {
 
 function outcome(row, designs, faults) {
   if (faults.length) return [h("section", { class: "card stack" }, h("h2", {}, "What is wrong"), h("ul", {}, faults.map((one) => h("li", { class: "fault" }, `${one.column || "The line"}: ${one.value === null ? "nothing stands there" : `got ${one.value}`}; expected ${one.expected}.`))))];
-  if (!designs.length) return [h("section", { class: "card stack" }, h("h2", {}, row.status === "infeasible" ? "Nothing is feasible" : "No designs"), h("p", {}, sentence(row.explanation || (row.status === "not_solved" ? "it has not been answered yet" : ""))))];
+  if (!designs.length) return [h("section", { class: "card stack" }, h("h2", {}, row.status === "infeasible" ? "Nothing is feasible" : "No designs"), h("p", {}, sentence(asWords(row.explanation) || (row.status === "not_solved" ? "it has not been answered yet" : ""))))];
   const proven = row.certificate === "global" && row.status === "optimal";
   return [h("section", { class: `card certificate ${proven ? "proven" : ""}` }, h("h2", {}, `${count(designs.length, "design")}, ${proven ? "proven" : "not proven to be the best"}`),
     h("p", {}, proven ? `No other design that this row allows is better in all objectives${row.gap ? `, to within ${amount(100 * row.gap)} %` : ""}.` : "They hold all limits; better ones may exist."))];

@@ -8,7 +8,7 @@ const FILTERS = [["All", []], ["Running", LIVE], ["Done", ["done"]], ["Not ended
 const PATIENCE = 250, MOST_WATCHED = 50;
 const place = document.getElementById("studies");
 const address = new URLSearchParams(location.search);
-const state = { text: address.get("q") ?? "", filter: Math.max(0, FILTERS.findIndex(([name]) => name === address.get("state"))), next: null, titles: {}, stop: null, asked: 0 };
+const state = { text: address.get("q") ?? "", filter: Math.max(0, FILTERS.findIndex(([name]) => name === address.get("state"))), followed: address.get("followed") === "yes", next: null, titles: {}, stop: null, asked: 0 };
 
 const rows = new Map(); // of the list, by job
 const list = h("ul", { class: "studies card" });
@@ -17,7 +17,12 @@ const more = h("button", { type: "button", hidden: true, onclick: () => load(tru
 const search = h("input", { type: "search", id: "search", placeholder: "Search a title", "aria-label": "Search a title", value: state.text, oninput: later });
 const filters = h("div", { class: "row", role: "group", "aria-label": "State" }, FILTERS.map(([name], index) =>
   h("button", { type: "button", class: "small", "aria-pressed": String(index === state.filter), onclick: () => choose(index) }, name)));
-const tools = h("div", { class: "tools row", hidden: true }, search, filters);
+const followed = h("button", { type: "button", class: "small", title: "Values of sliders, prices, ways out: what was asked of another study", "aria-pressed": String(state.followed), onclick: () => {
+  state.followed = !state.followed;
+  followed.setAttribute("aria-pressed", String(state.followed));
+  load();
+} }, "Also what followed");
+const tools = h("div", { class: "tools row", hidden: true }, search, filters, followed);
 
 let waiting;
 function later() {
@@ -35,9 +40,11 @@ function query(more) {
   const asked = new URLSearchParams();
   for (const name of FILTERS[state.filter][1]) asked.append("state", name);
   if (state.text) asked.set("q", state.text);
+  if (!state.followed) asked.set("follows", "false");
   const kept = new URLSearchParams();
   if (state.text) kept.set("q", state.text);
   if (state.filter) kept.set("state", FILTERS[state.filter][0]);
+  if (state.followed) kept.set("followed", "yes");
   history.replaceState(null, "", kept.size ? `?${kept}` : location.pathname);
   if (more) asked.set("cursor", state.next);
   return asked;
@@ -47,7 +54,8 @@ async function load(further = false) {
   const number = (state.asked += 1);
   const asked = query(further);
   try {
-    const pages = [await get(`/jobs?${asked}`)];
+    const [first] = await Promise.all([get(`/jobs?${asked}`), named]);
+    const pages = [first];
     if (!further) {
       asked.set("pinned", "true");
       pages.unshift(await get(`/jobs?${asked}`));
@@ -65,7 +73,7 @@ function show(pages, further) {
     list.replaceChildren();
   }
   for (const job of pages.flatMap((page) => page.jobs)) {
-    if (rows.has(job.id) || (job.kind === "explain" && job.parent)) continue; // it belongs to the study that it explains
+    if (rows.has(job.id)) continue;
     rows.set(job.id, new Row(job));
     list.append(rows.get(job.id).element);
   }
@@ -161,6 +169,5 @@ function offer(example) {
 document.addEventListener("visibilitychange", () => { if (!document.hidden) load(); });
 const named = get("/families").then(({ families }) => {
   state.titles = Object.fromEntries(families.map((family) => [family.name, family.title]));
-  for (const row of rows.values()) row.about.replaceChildren(...aboutOf(row.job));
 }, () => {});
 load();

@@ -43,7 +43,9 @@ export function outcomeText(job) {
   const found = facts.designs ? count(facts.designs, "design") : "";
   if (job.state === "stopped") return found ? `Stopped at a limit, ${found} kept` : "Stopped at a limit of time or memory";
   if (["rate", "near_equals"].includes(job.kind) && facts.sentence) return facts.sentence[0].toUpperCase() + facts.sentence.slice(1);
-  if (job.kind === "verify" && job.outcome) return words(job.outcome[0].toUpperCase() + job.outcome.slice(1));
+  if (job.kind === "prices" && facts.designs) return `Prices of ${facts.designs < facts.asked ? `${facts.designs} of ` : ""}${count(facts.asked ?? facts.designs, "design")}`;
+  if (job.kind === "report" && facts.files) return count(facts.files.length, "file");
+  if (job.kind === "verify" && job.outcome) return job.outcome === "holds" ? "Holds when it is checked again" : words(job.outcome[0].toUpperCase() + job.outcome.slice(1));
   if (job.kind === "whatif" && facts.steps) return `Designs at ${facts.feasible_steps} of ${count(facts.steps, "value")}`;
   if (job.outcome === "infeasible") return job.kind === "explain" ? count(facts.ways ?? 0, "way out", "ways out") : "Nothing is feasible";
   if (job.outcome === "not_solved") return "No answer within the time";
