@@ -16,7 +16,7 @@ const dropped = h("div", { class: "drop", ondragover: (event) => { event.prevent
   dropped.classList.remove("over");
   if (event.dataTransfer.files[0]) bring(event.dataTransfer.files[0]);
 } }, h("p", {}, "Drop a table here, or ", choose, file),
-h("p", { class: "note", id: "file-kinds" }, "CSV in UTF-8, or the first sheet of an Excel workbook. A heading is a name with its unit, such as ", h("code", {}, "load_torque [N*m]"), "; what other headings mean can be said here."));
+h("p", { class: "note", id: "file-kinds" }, "CSV as your spreadsheet writes it, or the first sheet of an Excel workbook. A heading is a name with its unit, such as ", h("code", {}, "load_torque [N*m]"), "; what other headings mean can be said here."));
 const fault = h("p", { class: "fault", role: "alert" });
 const columns = columnsCard(later);
 const first = h("section", { class: "card", hidden: true });
