@@ -36,7 +36,7 @@ BatchBody = Annotated[
 async def bring_file(
     principal: Submitter,
     context: Context,
-    file: Annotated[UploadFile, File(description="CSV in UTF-8, or an .xlsx workbook.")],
+    file: Annotated[UploadFile, File(description="CSV as spreadsheets write it, or an .xlsx workbook.")],
 ) -> UploadAnswer:
     """Keep a file for a day, to be asked as a batch; its content says what it is, not its name."""
     settings, shelf = context.settings, Shelf(context.store)
