@@ -204,30 +204,31 @@ class _Column:
     """What the numbers of a column look like."""
 
     def __init__(self) -> None:
-        self.numbers = True
+        self.numbers = self.others = 0
         self.certain = self.points = False
         self.doubtful: tuple[int, str] | None = None
 
     def add(self, line: int, cell: str) -> None:
         """Take another cell into account."""
-        if not self.numbers or not cell.strip():
+        if not cell.strip():
             return
         match = NUMBER.fullmatch(cell)
         number = match["number"] if match else ""
-        if match is None or number.count(",") > 1:
-            self.numbers = False
-        elif "," not in number:
+        known = "," not in number or any(form.fullmatch(number) for form in (DOUBTFUL, GROUPED, PLAIN))
+        if match is None or not known:
+            self.others += 1
+            return
+        self.numbers += 1
+        if "," not in number:
             self.points |= "." in number
         elif DOUBTFUL.fullmatch(number):
             self.doubtful = self.doubtful or (line, cell)
-        elif GROUPED.fullmatch(number) or PLAIN.fullmatch(number):
-            self.certain = True
         else:
-            self.numbers = False
+            self.certain = True
 
     def has_commas(self, where: str, title: str) -> bool:
         """Tell whether its numbers have decimal commas, beyond doubt."""
-        if not self.numbers or self.points:
+        if self.numbers <= self.others or self.points:
             return False  # text, or both signs: whoever reads the cells says what is wrong with one
         if self.certain or self.doubtful is None:
             return self.certain

@@ -69,6 +69,7 @@ def test_what_is_written_as_expected_is_not_told() -> None:
         (["-0,5 mm", "12"], ["-0.5 mm", "12"]),
         (["3,0e-3"], ["3.0e-3"]),
         (["core 0,5", "1,5"], ["core 0,5", "1,5"]),  # text
+        (["60,5", "80", "much", "120"], ["60.5", "80", "much", "120"]),  # one faulty cell says nothing of the others
         (["1,5", "2.5"], ["1,5", "2.5"]),  # both signs: whoever reads it says what is wrong
         (["4, 6, 8"], ["4, 6, 8"]),
         (["1,2,3"], ["1,2,3"]),

@@ -36,10 +36,11 @@ async function offer(element, job) {
     }
   } }, h("label", { for: "variants" }, "Number of sizes"), many, ask) : null;
   element.hidden = false;
-  element.replaceChildren(h("h2", {}, "Standard sizes"), h("p", { class: "note" }, "A batch gives every row its own best design. Which few designs would serve all rows, and what would that cost?"), form, fault,
-    jobs.length ? h("ul", { class: "stack" }, jobs.map((one) => h("li", { class: "row" }, badge(one), h("a", { href: `/jobs/${one.id}` }, sizesText(one))))) : null, slot);
+  const asked = jobs.length ? h("ul", { class: "stack" }, jobs.map((one) => h("li", { class: "row" }, badge(one), h("a", { href: `/jobs/${one.id}` }, sizesText(one))))) : null;
+  element.replaceChildren(...[h("h2", {}, "Standard sizes"), h("p", { class: "note" }, "A batch gives every row its own best design. Which few designs would serve all rows, and what would that cost?"), form, fault, asked, slot].filter(Boolean));
   const done = jobs.find((one) => one.state === "done");
-  if (done) slot.replaceChildren(await curveOf(done));
+  const drawn = done ? await excessOf(done) : null;
+  if (drawn) slot.replaceChildren(drawn);
   const live = jobs.filter((one) => LIVE.includes(one.state)).map((one) => one.id);
   if (live.length) listen(live, (kind) => { if (kind === "end") offer(element, job).catch(() => {}); });
 }
