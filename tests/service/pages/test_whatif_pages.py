@@ -133,6 +133,8 @@ def test_where_nothing_fits_the_ways_out_are_applied_in_place(sliders: Sliders) 
 def test_several_sliders_and_a_limit_on_what_was_found(sliders: Sliders) -> None:
     with sliders.page(f"/jobs/{sliders.front}") as page:
         page.get_by_role("button", name="Add another").click()
+        offered = page.locator(".knob option").evaluate_all("all => all.map((one) => one.value)")
+        assert set(DUTY) <= set(offered)  # in whatever unit they were asked
         second = page.locator(".knob").nth(1)
         second.locator("select").select_option("length<=")
         assert second.locator(".typed input").get_attribute("placeholder") == "no limit"

@@ -2,7 +2,7 @@
 
 import { amount, unitText, words } from "./dom.js";
 
-const NUMBER = /^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*([^\d\s].*?)?\s*$/i;
+const NUMBER = /^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s+((?:1\/)?[^\d\s].*?)|([^\d\s].*?))?\s*$/i; // 1/min begins with a digit
 const LIMIT = /^\s*(<=|>=)\s*(.+)$/;
 const OFFSET = /deg[CF]/; // units that no factor turns into others
 const STEPS = 60; // of a track, about
@@ -29,7 +29,7 @@ const SIGNS = { "<=": "at most", ">=": "at least" };
 export function quantity(value, declared) {
   if (typeof value === "number") return { number: value, unit: declared };
   const found = typeof value === "string" ? NUMBER.exec(value) : null;
-  return found ? { number: Number(found[1]), unit: found[2] ?? declared } : null;
+  return found ? { number: Number(found[1]), unit: found[2] ?? found[3] ?? declared } : null;
 }
 
 /**
