@@ -81,7 +81,9 @@ function follow(ways, job, explaining, how) {
 
 function tell(ways, job, found, how) {
   const proven = (way) => h("span", { class: `badge ${way.proven ? "good" : ""}` }, way.proven ? "proven" : "not proven to be the least");
-  const conflict = found.conflict.length ? h("p", {}, `Together these cannot hold: ${found.conflict.join(", ").replaceAll("_", " ")}${found.minimal ? "; each alone could" : ""}.`) : h("p", {}, sentence(found.message));
+  const excluded = found.conflict.join(", ").replaceAll("_", " ");
+  const several = `Together these cannot hold: ${excluded}${found.minimal ? "; without any one of them the others could" : ""}.`;
+  const conflict = h("p", {}, found.conflict.length > 1 ? several : found.conflict.length ? `This cannot hold, whatever is done about other limits: ${excluded}.` : sentence(found.message));
   const apply = (way) => {
     if (!maySubmit() || !Object.keys(way.patch ?? {}).length) return null;
     const own = how.apply?.(way.patch);
