@@ -11,7 +11,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 from synth.errors import InputError
 
@@ -27,6 +27,7 @@ NUMBER = re.compile(
 GROUPED = re.compile(r"\d{1,3}(?:[.\u00a0\u202f]\d{3})+,\d+")
 PLAIN = re.compile(r"\d+,\d+")
 DOUBTFUL = re.compile(r"[1-9]\d{0,2},\d{3}")
+THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:\.\d{3})+")  # where others have decimal commas
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class DelimitedText:
     delimiter: str
     first: int = 1
     commas: tuple[int, ...] = ()
-    titles: tuple[str, ...] = field(default=())
+    titles: tuple[str, ...] = ()
 
     def lines(self) -> Iterator[tuple[int, list[str]]]:
         """Return number in the file and cells of every line, numbers with decimal points.
@@ -195,9 +196,17 @@ def _with_commas(found: DelimitedText) -> DelimitedText:
     for line, cells in written:
         for column, cell in zip(columns, cells, strict=False):
             column.add(line, cell)
-    commas = [k for k, column in enumerate(columns) if column.has_commas(f"{found.name}, ", header[k])]
-    titles = tuple(header[k].strip() for k in commas)
-    return DelimitedText(found.name, found.text, found.encoding, found.delimiter, found.first, tuple(commas), titles)
+    commas = tuple(k for k, column in enumerate(columns) if column.has_commas())
+    for column, title in zip(columns, header, strict=True):
+        doubt = column.doubt(bool(commas))
+        if doubt is not None:
+            line, number = doubt
+            right = (
+                f"{number.replace(',', '.')} or {re.sub('[.,]', '', number)}, whichever is meant: both can be read here"
+            )
+            title = title.strip()
+            raise InputError(f"{found.name}, line {line}, column {title}", number, right, ("rows", line, title))
+    return replace(found, commas=commas, titles=tuple(header[k].strip() for k in commas))
 
 
 class _Column:
@@ -205,8 +214,9 @@ class _Column:
 
     def __init__(self) -> None:
         self.numbers = self.others = 0
-        self.certain = self.points = False
-        self.doubtful: tuple[int, str] | None = None
+        self.certain = self.points = False  # numbers whose comma, or point, is a decimal sign beyond doubt
+        self.commas: tuple[int, str] | None = None  # the first number whose comma may part thousands
+        self.thousands: tuple[int, str] | None = None  # the first whose points may
 
     def add(self, line: int, cell: str) -> None:
         """Take another cell into account."""
@@ -219,23 +229,26 @@ class _Column:
             self.others += 1
             return
         self.numbers += 1
-        if "," not in number:
+        if THOUSANDS.fullmatch(number):
+            self.thousands = self.thousands or (line, number)
+        elif "," not in number:
             self.points |= "." in number
         elif DOUBTFUL.fullmatch(number):
-            self.doubtful = self.doubtful or (line, cell)
+            self.commas = self.commas or (line, number)
         else:
             self.certain = True
 
-    def has_commas(self, where: str, title: str) -> bool:
-        """Tell whether its numbers have decimal commas, beyond doubt."""
-        if self.numbers <= self.others or self.points:
-            return False  # text, or both signs: whoever reads the cells says what is wrong with one
-        if self.certain or self.doubtful is None:
-            return self.certain
-        line, cell = self.doubtful
-        match = NUMBER.fullmatch(cell)
-        number = match["number"] if match else cell
-        right = f"{number.replace(',', '.')} or {number.replace(',', '')}, whichever is meant: both can be read here"
-        raise InputError(
-            f"{where}line {line}, column {title.strip()}", cell.strip(), right, ("rows", line, title.strip())
-        )
+    @property
+    def is_numeric(self) -> bool:
+        """Whether most of it is numbers."""
+        return self.numbers > self.others
+
+    def has_commas(self) -> bool:
+        """Tell whether its numbers have decimal commas and no points; what is wrong with both the reader says."""
+        return self.is_numeric and self.certain and not (self.points or self.thousands)
+
+    def doubt(self, elsewhere: bool) -> tuple[int, str] | None:
+        """Return line and number that can be read in two ways; ``elsewhere``: other columns have decimal commas."""
+        if not self.is_numeric or self.certain or self.points:
+            return None
+        return (self.thousands if elsewhere else None) if self.thousands else self.commas

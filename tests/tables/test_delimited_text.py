@@ -89,6 +89,14 @@ def test_what_may_be_meant_in_two_ways_is_asked_back(cells: str, asked: str) -> 
     assert refused.value.expected.startswith(asked)
 
 
+def test_points_may_part_thousands_where_other_columns_have_decimal_commas() -> None:
+    speeds = "n;torque;speed\n1;60,5;1.500\n2;80;{}\n"
+    with pytest.raises(InputError, match=r"rows.csv, line 2, column speed: got '1.500'; expected 1.500 or 1500"):
+        delimited_text(speeds.format("900").encode(), "rows.csv")
+    assert read(speeds.format("12.5").encode())[1] == ["1", "60.5", "1.500"]  # the other says which it is
+    assert read(speeds.replace("60,5", "60").format("900").encode())[1] == ["1", "60", "1.500"]  # no comma anywhere
+
+
 def test_a_delimiter_that_only_some_lines_have_is_none() -> None:
     assert read(b"name,note\nA,one; two\nB,three\n")[1] == ["A", "one; two"]
     assert read(b"a;b, c;d\n1;2;3\n")[0] == ["a", "b, c", "d"]
