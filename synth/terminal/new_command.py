@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -66,11 +67,10 @@ def new(
         print(f"to be filled in: {', '.join(left)}")
 
 
-def _answer(row: object) -> str:
+def _answer(row: Mapping[str, Any]) -> str:
     """Ask for a value until it is one; nothing leaves it to be filled in."""
     from synth.analysis.spec_template import stated_value
 
-    assert isinstance(row, dict)
     shown = f"{row['name']} ({row['symbol']}) in {row['unit']}: {row['text']}"
     while True:
         text = str(typer.prompt(shown, default="", show_default=False)).strip()

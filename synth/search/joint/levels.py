@@ -6,7 +6,7 @@ objectives could still be good has no cap; with the first objective capped outri
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -81,13 +81,16 @@ class LevelTree:
     def __init__(self, proof: LevelProof, tree: JointTree) -> None:
         self.proof, self.tree = proof, tree
 
-    def corners(self, level: int) -> np.ndarray:
-        """Return phi of the lower bounds of its open boxes that speak of a level."""
-        tree, form = self.tree, self.tree.form
-        boxes, questions = self.proof.clock.open_of(tree.left, tree.under_way), form.boxes.cells.trees[0]
-        holding = np.array([level in questions.rows(k) for k in range(len(questions))])
-        own = boxes.take(holding[boxes.cell[:, 0]])
-        return lowest(form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1])
+    def corners(self, levels: Iterable[int]) -> dict[int, np.ndarray | None]:
+        """Return, per level, phi of the lower bounds of its open boxes that speak of it."""
+        form, questions = self.tree.form, self.tree.form.boxes.cells.trees[0]
+        boxes = self.proof.clock.open_of(self.tree.left, self.tree.under_way)
+        phi = form.objectives.phi_of(boxes.bounds)[:, : SOUGHT + 1]
+        result: dict[int, np.ndarray | None] = {}
+        for level in levels:
+            holding = np.array([level in questions.rows(k) for k in range(len(questions))])
+            result[level] = lowest(phi[holding[boxes.cell[:, 0]]])
+        return result
 
     @property
     def extent(self) -> float:
@@ -208,10 +211,10 @@ class LevelProof:
         best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.room
         apart = np.flatnonzero(self.search.told_apart()).tolist()
         told: list[Level] = []
-        nothing_known: list[LevelTree | None] = [None]
-        for tree in self.trees or nothing_known:
-            corners: dict[int, np.ndarray | None] = dict.fromkeys(apart, np.empty((0, 2)))
-            corners |= {k: None if tree is None else tree.corners(k) for k in apart if self.unproven[k]}
+        unproven, closed = [k for k in apart if self.unproven[k]], np.empty((0, 2))
+        # Where no tree has begun nothing is known of what is open.
+        for still in [t.corners(unproven) for t in self.trees] or [dict.fromkeys(unproven)]:
+            corners = {k: still.get(k) if self.unproven[k] else closed for k in apart}
             told += levels_told(self.cutoffs, best, corners)
         proven = {float(level.within[CAPPED]): level for level in told if not len(level.corners)}
         still_open = [level for level in told if len(level.corners)]
