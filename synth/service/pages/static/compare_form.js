@@ -47,7 +47,7 @@ export function together(families, declarations) {
  * @param {{rows: object[]}} declaration
  * @param {string[]} asked names of requirements
  */
-export function misfit(family, declaration, asked) {
+function misfit(family, declaration, asked) {
   const strange = asked.filter((name) => !family.understands.includes(name));
   const lacking = declaration.rows.filter((row) => row.section === "needed" && !asked.includes(row.name)).map((row) => row.name);
   return [strange.length ? `does not know ${few(strange)}` : "", lacking.length ? `needs ${few(lacking)}` : ""].filter(Boolean).join("; ");

@@ -2,7 +2,7 @@
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { h } from "./dom.js";
-import { KINDS, LIVE, badge, count, outcomeText } from "./words.js";
+import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 
 const SHOWN = 5; // jobs before the rest is unfolded
 const MOST = 50; // jobs that are told

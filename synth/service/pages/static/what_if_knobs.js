@@ -89,7 +89,7 @@ function knob({ number, unit, bounds, ends, ...rest }) {
  * @param {number} high
  * @param {number | null} base
  */
-export function trackOf(low, high, base) {
+function trackOf(low, high, base) {
   const rough = (high - low) / STEPS, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 2.5, 5, 10].map((k) => k * power).find((k) => k >= rough * 0.999);
   const values = [];
