@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+NEAR = 0.005  # how much worse than the best in an objective is as good, when it is told what the others cost at most
+DEAR = 0.1  # of a scale: an end that costs more than so much beyond it, for no more than that share, is told to
+SAME = 12  # digits of scores
 DIGITS = 9  # of phi, to which designs are the same: solvers differ beyond them
 
 
@@ -69,16 +72,102 @@ def _distances(columns: np.ndarray, row: int) -> np.ndarray:
 
 
 @dataclass(frozen=True)
+class Scale:
+    """What objectives are measured by where designs are ranked: 0 at the ideal, 1 at the nadir.
+
+    The ideal is what is best in each objective. The nadir of an objective is the most that it must cost for another
+    one to be as good as it can be but for ``NEAR``, and at least what is as good as the ideal: an end of the front
+    that costs much for next to nothing does not stretch the scale.
+
+    Parameters
+    ----------
+    ideal, nadir : array (objectives,)
+        In SI, with their sign: smaller is better.
+    """
+
+    ideal: np.ndarray
+    nadir: np.ndarray
+
+    @staticmethod
+    def of(signed: np.ndarray) -> Scale:
+        """Return the scale of designs that are all there is to know of a front.
+
+        Parameters
+        ----------
+        signed : array (designs, objectives)
+        """
+        ideal, near = signed.min(axis=0), as_good(signed)
+        nadir = near.copy()
+        for k in range(signed.shape[1]):
+            np.maximum(nadir, signed[signed[:, k] <= near[k]].min(axis=0), out=nadir)
+        return Scale(ideal, nadir)
+
+    def begun_at(self, signed: np.ndarray) -> Scale:
+        """Return the same for designs that are listed: from what is best among them, at most to what they cost."""
+        own = Scale.of(signed)
+        return Scale(own.ideal, np.clip(self.nadir, own.ideal, own.nadir))
+
+    def told(self, objectives: Mapping[str, str]) -> dict[str, list[float]]:
+        """Return ideal and nadir of each objective in SI, as ``read`` takes them."""
+        ends = np.stack([self.ideal, self.nadir], axis=1) * signs_of(objectives)[:, None]
+        return dict(zip(objectives, ends.tolist(), strict=True))
+
+    @staticmethod
+    def read(told: Mapping[str, Sequence[float]], objectives: Mapping[str, str]) -> Scale:
+        """Return what ``told`` has told."""
+        ends = np.array([told[name] for name in objectives], dtype=float) * signs_of(objectives)[:, None]
+        return Scale(ends[:, 0], ends[:, 1])
+
+    @property
+    def span(self) -> np.ndarray:
+        """How far the ideal and the nadir are apart, per objective; 1 where they are the same."""
+        return np.where(self.nadir > self.ideal, self.nadir - self.ideal, 1.0)
+
+    def units(self, signed: np.ndarray) -> np.ndarray:
+        """Return where designs (designs, objectives) stand; an objective without a span tells nothing of them."""
+        return np.where(self.nadir > self.ideal, np.maximum(signed - self.ideal, 0.0) / self.span, 0.0)
+
+    def scores(self, signed: np.ndarray, weights: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Return the weighted distances of designs from the ideal."""
+        share = np.asarray(weights, dtype=float) / np.sum(weights)
+        scores: np.ndarray = np.sqrt(np.sum(share * self.units(signed) ** 2, axis=1))
+        return scores
+
+
+def as_good(signed: np.ndarray) -> np.ndarray:
+    """Return, per objective, up to where a design is as good as the best one.
+
+    What is surely positive may be worse by a share ``NEAR`` of itself, anything else by that share of its range.
+    """
+    best = signed.min(axis=0)
+    near: np.ndarray = best + NEAR * np.where(best > 0, best, np.ptp(signed, axis=0))
+    return near
+
+
+@dataclass(frozen=True)
 class Ranking:
-    """Order of the designs of a front (positions, best first), their scores and notes."""
+    """Order of the designs of a front (positions, best first), scores and notes, and what they are measured by."""
 
     order: list[int]
     scores: np.ndarray
     notes: list[str]
+    scale: Scale
+
+
+AT_A_PRICE = ", which costs much for little"
+
+
+def signs_of(objectives: Mapping[str, str]) -> np.ndarray:
+    """Return 1 for what is to be small and -1 for what is to be large."""
+    return np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
 
 
 def rank(
-    objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[float], complete: bool = False
+    objectives: Mapping[str, str],
+    values: np.ndarray,
+    weights: Sequence[float],
+    complete: bool = False,
+    scale: Scale | None = None,
 ) -> Ranking:
     """Rank designs by their weighted distance to the ideal point.
 
@@ -92,28 +181,29 @@ def rank(
         One per objective.
     complete : bool
         Whether there are no other non-dominated designs.
+    scale : Scale, optional
+        Of the whole front; by default that of the designs.
 
     Returns
     -------
     Ranking
     """
-    signs = np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
-    signed = values * signs
-    ideal, nadir = signed.min(axis=0), signed.max(axis=0)
-    unit = np.where(nadir > ideal, (signed - ideal) / np.where(nadir > ideal, nadir - ideal, 1.0), 0.0)
-    share = np.asarray(weights, dtype=float) / np.sum(weights)
-    scores = np.sqrt(np.sum(share * unit**2, axis=1))
-    keys = [*(np.round(signed[:, k], 15) for k in reversed(range(signed.shape[1]))), np.round(scores, 12)]
+    signed = values * signs_of(objectives)
+    scale = Scale.of(signed) if scale is None else scale.begun_at(signed)
+    unit, scores = scale.units(signed), np.round(scale.scores(signed, weights), SAME)
+    keys = [*(np.round(signed[:, k], 15) for k in reversed(range(signed.shape[1]))), scores]
     order = [int(k) for k in np.lexsort(keys)]
     notes: list[list[str]] = [[] for _ in order]
     if len(order) > 1:
         for k, (name, sense) in enumerate(objectives.items()):
             word = "smallest" if sense == "min" else "largest"
-            notes[int(np.argmin(signed[:, k]))].append(f"{word} {name}")
+            end = int(np.argmin(signed[:, k]))
+            dear = bool(np.any(np.delete(unit[end], k) > 1.0 + DEAR))
+            notes[end].append(f"{word} {name}" + (AT_A_PRICE if dear else ""))
         if len(order) > 2 and signed.shape[1] > 1:
             notes[int(np.argmin(unit.sum(axis=1)))].append("knee")
     elif signed.shape[1] == 1:
         notes[0].append("optimum")
     elif complete:
         notes[0].append("only non-dominated design")
-    return Ranking(order, scores, ["; ".join(n) for n in notes])
+    return Ranking(order, scores, ["; ".join(n) for n in notes], scale)

@@ -57,6 +57,10 @@ class ProofLimits:
         Relative width below which a variable is not split any more.
     same : float
         Relative. What is saved and agrees so far with what is computed again is the same.
+    nearly : float
+        Relative. How much worse than the best a design may be in an objective to tell what the others must cost then.
+    costly : float
+        On the scale of a ranking. An end of a front beyond it is told to cost much for little.
     noise : float
         In SI. The same of numbers that are zero but for rounding.
     widest_gap : float
@@ -86,6 +90,8 @@ class ProofLimits:
     snap: float = 1e-9
     thin: float = 1e-9
     same: float = 1e-9
+    nearly: float = 0.005
+    costly: float = 1.1
     noise: float = 1e-15
     widest_gap: float = 0.5
     narrowings: int = 3

@@ -217,6 +217,12 @@ class TreeLimits:
         the designs that a coarser cover would do with.
     fill : int
         To find all designs where fewer are chosen than were asked for, beside what was looked into before.
+    first_nodes : int
+        For the design that comes first, and for each of the ends that it is measured by.
+    first_share : float
+        Of its score, by which a design must come nearer to the ideal to be looked for.
+    first_gap : float
+        Within which the ends are found that it is measured by: much less than what ends may give away.
     tie : int
         To settle the next objective over all parts, where one objective leaves parts open.
     choices : int
@@ -265,6 +271,9 @@ class TreeLimits:
     rough: float = 0.5
     at_gap: float = 2.0
     fill: int = 100_000
+    first_nodes: int = 100_000
+    first_share: float = 1e-3
+    first_gap: float = 1e-4
     tie: int = 2_000
     choices: int = 4
     polishings: int = 3

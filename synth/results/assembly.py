@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from synth.feasibility import Status
-from synth.pareto import rank
+from synth.pareto import Scale, rank, signs_of
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame
 from synth.results.front import ParetoFront
@@ -19,7 +19,11 @@ from synth.results.statistics import SearchStatistics
 
 
 def ranked(
-    designs: Sequence[Design], objectives: Mapping[str, str], weights: Sequence[float], complete: bool = False
+    designs: Sequence[Design],
+    objectives: Mapping[str, str],
+    weights: Sequence[float],
+    complete: bool = False,
+    scale: Scale | None = None,
 ) -> tuple[list[int], list[Design]]:
     """Return designs in order of rank, with rank, score and note.
 
@@ -32,6 +36,8 @@ def ranked(
         One per objective.
     complete : bool
         Whether there are no other non-dominated designs.
+    scale : Scale, optional
+        Of the whole front; by default that of the designs.
 
     Returns
     -------
@@ -40,11 +46,26 @@ def ranked(
     """
     if not designs:
         return [], []
-    ranking = rank(objectives, np.array([[d.values[n] for n in objectives] for d in designs]), weights, complete)
+    ranking = rank(objectives, _objectives(designs, objectives), weights, complete, scale)
     return ranking.order, [
         replace(designs[k], rank=place, score=float(ranking.scores[k]), note=ranking.notes[k])
         for place, k in enumerate(ranking.order, start=1)
     ]
+
+
+def scale_of(designs: Sequence[Design], objectives: Mapping[str, str], scale: Scale | None = None) -> Scale | None:
+    """Return what designs are measured by where they are ranked; None where there is nothing to measure.
+
+    ``scale``: of the whole front, where that is known.
+    """
+    if not designs or len(objectives) < 2:
+        return None
+    signed = _objectives(designs, objectives) * signs_of(objectives)
+    return Scale.of(signed) if scale is None else scale.begun_at(signed)
+
+
+def _objectives(designs: Sequence[Design], objectives: Mapping[str, str]) -> np.ndarray:
+    return np.array([[d.values[n] for n in objectives] for d in designs])
 
 
 def front_of(
@@ -58,6 +79,7 @@ def front_of(
     complete: bool,
     explanation: LeastInfeasible | None = None,
     interrupted: str = "",
+    scale: Scale | None = None,
 ) -> ParetoFront:
     """Return the front of a question that was searched; its status follows from designs and certificate.
 
@@ -77,6 +99,8 @@ def front_of(
         Why there is no design.
     interrupted : str
         What stopped the search; nothing where it was finished.
+    scale : Scale, optional
+        What the designs are measured by; by default what they tell themselves.
     """
     if designs:
         status = Status.OPTIMAL if certificate.kind == "global" else Status.FEASIBLE
@@ -93,4 +117,5 @@ def front_of(
         settings=settings,
         interrupted=interrupted,
         question=question,
+        scale=scale_of(designs, frame.objectives, scale),
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
+from synth.pareto import Scale
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
@@ -36,7 +37,8 @@ LEADING = 6  # columns of the table before those that say what a design is
 class ParetoFront:
     """The ranked non-dominated designs for one requirement.
 
-    ``question`` is the instance it answers, ``record`` and ``folder`` what it was read from: of these three a front
+    ``scale`` is what its designs are measured by where they are ranked (of two objectives or more), ``question`` the
+    instance it answers, ``record`` and ``folder`` what it was read from: of these three a front
     that was just computed has the first, one that was loaded the others.
     """
 
@@ -49,6 +51,7 @@ class ParetoFront:
     explanation: LeastInfeasible | None
     settings: SettingsRecord
     interrupted: str = ""
+    scale: Scale | None = None
     question: Any = field(default=None, repr=False, compare=False)
     record: Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
     folder: Path | None = field(default=None, repr=False, compare=False)
@@ -318,6 +321,7 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         "statistics": plain(front.statistics),
         "explanation": plain(front.explanation),
         "parts": rows,
+        **({"scale": front.scale.told(frame.objectives)} if front.scale is not None else {}),
         **({"calculation": calculation} if calculation else {}),
         "designs": [design_record(d) for d in front.designs],
     }

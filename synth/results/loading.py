@@ -9,6 +9,7 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import read_json
 from synth.output_folder import settle
+from synth.pareto import Scale
 from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
@@ -120,6 +121,7 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         explanation=LeastInfeasible.read(content["explanation"]),
         settings=SettingsRecord.read(content["settings"]),
         interrupted=content["interrupted"],
+        scale=Scale.read(content["scale"], frame.objectives) if "scale" in content else None,
         record=content,
         folder=folder,
     )

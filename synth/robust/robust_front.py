@@ -13,7 +13,7 @@ from synth.question.instance import Instance
 from synth.question.settings import LEAST_SECONDS, Progress
 from synth.question.uncertainty import LIMITS, Uncertainty
 from synth.results import Design, ParetoFront
-from synth.results.assembly import ranked
+from synth.results.assembly import ranked, scale_of
 from synth.results.ratings import DesignRating, RatingCounts
 from synth.robust.rating import Rater
 from synth.robust.uncertainty import check_rows
@@ -161,5 +161,5 @@ def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
     if not kept:
         # Nothing says that there is no robust design; there is none here that anything could be proven of.
         certificate = replace(front.certificate, kind="heuristic", gap=None, resolution={}, units={})
-        return replace(front, designs=[], complete=False, status=Status.NOT_SOLVED, certificate=certificate)
-    return replace(front, designs=kept, complete=False)
+        return replace(front, designs=[], scale=None, complete=False, status=Status.NOT_SOLVED, certificate=certificate)
+    return replace(front, designs=kept, complete=False, scale=scale_of(kept, chosen))

@@ -10,6 +10,7 @@ import numpy as np
 
 from synth.analysis.designs import make_frame, offered
 from synth.feasibility import Status
+from synth.pareto import Scale
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.results.least_infeasible import LeastInfeasible
@@ -47,14 +48,15 @@ def settled_designs(
         known = {"status": Status.OPTIMAL, "gap": state.task.settings.gap}
     more = [{**known, "alternatives": a, "elasticity": c} for a, c in zip(alternatives, costs, strict=True)]
     designs = _records(state, frame, settled, more)
-    return ranked(designs, state.task.chosen, weights, state.proof.complete)[1]
+    return ranked(designs, state.task.chosen, weights, state.proof.complete, _scale(state))[1]
 
 
 def designs_as_found(state: FrontState, frame: Frame, weights: Sequence[float]) -> list[Design]:
     """Return the designs of the front as they are when the search is stopped."""
     found = distinct(state.form.points.as_they_are(state.front), state.task.m, state.task.tuning)
     nothing: Mapping[str, Any] = {"status": Status.FEASIBLE, "gap": None, "alternatives": (), "elasticity": {}}
-    return ranked(_records(state, frame, found, [nothing] * len(found)), state.task.chosen, weights)[1]
+    records = _records(state, frame, found, [nothing] * len(found))
+    return ranked(records, state.task.chosen, weights, scale=_scale(state))[1]
 
 
 def further_designs(state: FrontState, candidates: Sequence[Candidate]) -> list[Design]:
@@ -63,6 +65,11 @@ def further_designs(state: FrontState, candidates: Sequence[Candidate]) -> list[
     designs = settled_designs(state, frame, [1.0] * state.task.m, candidates)
     state.front = [*state.front, *candidates]
     return designs
+
+
+def _scale(state: FrontState) -> Scale | None:
+    """Return what the designs of the front are measured by; None where it is not known."""
+    return None if state.scored is None else state.scored.scale
 
 
 def _records(
@@ -132,6 +139,7 @@ def front_found(
         complete=state.proof.complete,
         explanation=explanation,
         interrupted=interrupted,
+        scale=_scale(state),
     )
 
 

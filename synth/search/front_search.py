@@ -22,6 +22,7 @@ from synth.search.least_infeasible import explain_infeasible
 from synth.search.proven_gap import Bound, LevelBound
 from synth.search.stages.choosing import choose_designs
 from synth.search.stages.covering import cover_front
+from synth.search.stages.first_by_rank import find_first, first_is_listed
 from synth.search.stages.first_designs import bound_everything, find_first_designs
 from synth.search.stages.one_best import find_extremes
 from synth.search.stages.stopping import stop_early
@@ -168,6 +169,10 @@ def choose_and_report(state: FrontState, frame: Frame, weights: Sequence[float])
     if state.task.m > 1:
         with state.progress.stage("front"):
             choose_designs(state)
+        with state.progress.stage("first"):
+            find_first(state, weights)
+            if not first_is_listed(state):
+                choose_designs(state)
     if not state.proof.closed:
         claim_no_less(state)
     state.counters.solves_to_find, state.reporting = state.form.counters.nlp_solves, True

@@ -21,6 +21,7 @@ from synth.search.formulation import Formulation
 from synth.search.given_front import GivenFront
 from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.levels import Cutoffs, LevelProof
+from synth.search.nearest_ideal import ScoredFront
 from synth.search.proven_gap import Bound, Level, LevelBound
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.search.shown_designs import ShownDesigns
@@ -242,6 +243,7 @@ class FrontState:
         self.pool: Boxes = self.form.boxes.nothing()  # the boxes that may hold a feasible design
         self.rule = self.cover_at_gap(None)
         self.front: list[Candidate] = []
+        self.scored: ScoredFront | None = None  # how its designs are ranked, once that is known
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.given = GivenFront.nothing(task.m)
         self.by_levels = False  # whether a front at once has turned out to cost too much

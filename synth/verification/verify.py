@@ -46,6 +46,7 @@ from synth.special import expanded
 from synth.units import format_quantity
 from synth.verification.contradictions import contradiction
 from synth.verification.pareto_regions import uncovered
+from synth.verification.ranking import ranking_faults
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
@@ -217,7 +218,8 @@ class VerificationRun:
             if not np.isfinite(self.signed).all():
                 self.find("an objective of a design has no value")
                 return False
-            self._ranking()
+            for fault in ranking_faults(self.front, self.signed, self.limits):
+                self.find(fault)
             self._dominance()
         self._numbers()
         if front.certificate.kind != "global":
@@ -382,48 +384,6 @@ class VerificationRun:
             self.find(f"{label}: gap {percent(design.gap)} is above what the certificate claims")
 
     # -- the front -----------------------------------------------------------------------------
-
-    def _ranking(self) -> None:
-        """Rank again: weighted distance to the ideal in normalised objectives."""
-        designs, frame = self.front.designs, self.front.frame
-        if [d.rank for d in designs] != list(range(1, len(designs) + 1)):
-            self.find("ranks are not 1, 2, 3, ... in the order of the designs")
-        weights = self.front.settings.get("weights", {})
-        shares = np.array([float(weights.get(name, 1.0)) for name in frame.objectives])
-        low, high = self.signed.min(axis=0), self.signed.max(axis=0)
-        unit = (self.signed - low) / np.where(high > low, high - low, 1.0)
-        scores = np.sqrt((unit**2 * shares).sum(axis=1) / shares.sum())
-        for design, score in zip(designs, scores, strict=True):
-            if design.score is None or abs(design.score - score) > self.limits.same:
-                self.find(f"design {design.rank}: score {design.score}, ranked again it is {score}")
-        if np.any(np.diff(scores) < -self.limits.same):
-            self.find("the designs are not in the order of their scores")
-        self._notes(unit, low, high)
-
-    def _notes(self, unit: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
-        """Every remark stands at one design, and that one deserves it."""
-        designs, frame = self.front.designs, self.front.frame
-        deserving: dict[str, np.ndarray] = {}
-        reach = self.limits.same * np.maximum(np.abs(low), np.abs(high))
-        if len(designs) > 1:
-            for k, (name, sense) in enumerate(frame.objectives.items()):
-                word = "smallest" if sense == "min" else "largest"
-                deserving[f"{word} {name}"] = self.signed[:, k] <= low[k] + reach[k]
-            if len(designs) > 2 and len(frame.objectives) > 1:
-                total = unit.sum(axis=1)
-                deserving["knee"] = total <= total.min() + self.limits.same
-        elif len(frame.objectives) == 1:
-            deserving["optimum"] = np.ones(1, dtype=bool)
-        elif self.front.complete:
-            deserving["only non-dominated design"] = np.ones(1, dtype=bool)
-        told = [[note for note in d.note.split("; ") if note] for d in designs]
-        for word, right in deserving.items():
-            at = [k for k, notes in enumerate(told) if word in notes]
-            if len(at) != 1 or not right[at[0]]:
-                self.find(f"the note {word!r} is not at the design that deserves it")
-        for design, notes in zip(designs, told, strict=True):
-            if strange := [note for note in notes if note not in deserving]:
-                self.find(f"design {design.rank}: note {strange[0]!r} means nothing here")
 
     def _dominance(self) -> None:
         reach = self.limits.same * np.abs(self.signed)

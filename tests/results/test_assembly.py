@@ -27,7 +27,7 @@ def front() -> ParetoFront:
 def test_designs_are_ranked_as_the_search_has_ranked_them(front: ParetoFront) -> None:
     chosen, mixed = dict(front.frame.objectives), front.designs[::-1]
     blank = [replace(d, rank=None, score=None, note="") for d in mixed]
-    order, designs = ranked(blank, chosen, [1.0] * len(chosen), front.complete)
+    order, designs = ranked(blank, chosen, [1.0] * len(chosen), front.complete, front.scale)
     assert designs == front.designs
     assert [mixed[k] for k in order] == front.designs
     assert ranked([], chosen, [1.0, 1.0]) == ([], [])

@@ -54,7 +54,7 @@ def test_what_is_not_offered_here_is_no_idea(designs: list[Design], more: dict[s
 
 
 def test_ideas_are_solved_again_for_the_new_question(designs: list[Design]) -> None:
-    heavier = question("30 kN")
+    heavier = question("90 kN")
     search = heavier.search().state
     assert warm_start(search.form, search.rule, designs, np.random.default_rng(0))
     known = search.form.archive

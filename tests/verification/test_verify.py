@@ -537,7 +537,7 @@ def test_what_contradicts_itself_is_said_in_one_sentence(saved, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.growth", "VerificationRun._ranking"]
+    "place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.growth", "ranking_faults"]
 )
 @pytest.mark.parametrize("fault", [KeyError, TypeError, ValueError, AttributeError, IndexError])
 def test_a_fault_of_the_check_is_not_taken_for_one_of_the_front(place, fault, saved, monkeypatch):

@@ -93,7 +93,12 @@ def _closed_together(state: FrontState, k: int, plain: Formulation) -> float | N
 
 
 def better_in(
-    state: FrontState, k: int, fixed_cutoffs: np.ndarray, start: Candidate, node_limit: int
+    state: FrontState,
+    k: int,
+    fixed_cutoffs: np.ndarray,
+    start: Candidate,
+    node_limit: int,
+    finest: float = np.inf,
 ) -> Candidate | None:
     """Return the best design in one objective that is found with few boxes; nothing is proven of it.
 
@@ -107,9 +112,11 @@ def better_in(
         Known already.
     node_limit : int
         Boxes that may be looked into.
+    finest : float
+        A gap that it shall be found within, where it is smaller than that of the search.
     """
     state.counters.scalar_problems += 1
-    return _best_within(state, k, fixed_cutoffs, start, node_limit)[0]
+    return _best_within(state, k, fixed_cutoffs, start, node_limit, finest=finest)[0]
 
 
 def _best_within(
@@ -119,13 +126,14 @@ def _best_within(
     start: Candidate | None,
     node_limit: float,
     together: bool = False,
+    finest: float = np.inf,
 ) -> tuple[Candidate | None, TreeOutcome, float]:
     """Return the best design found with so many boxes, how the search ended, and the tolerance it had.
 
     ``together``: boxes are bounded by all limits together as well, as long as it looks as if that will close.
     """
     sizes = None if start is None else np.abs(start.phi)
-    tolerance = float(state.form.objectives.tolerance(state.task.settings.gap, sizes)[k])
+    tolerance = float(state.form.objectives.tolerance(min(state.task.settings.gap, finest), sizes)[k])
     found, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit, together)
     while found is not None and outcome.closed:
         # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.pareto import extremes, spread_subset
+from synth.pareto import spread_subset
 from synth.search.archive import Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState
 from synth.search.pruning import NonImprovement
 from synth.search.stages.levels import prove_levels, proven_by_levels
-from synth.search.stages.spreading import different, spread
+from synth.search.stages.spreading import different, leading, spread
 from synth.search.stages.trees import close_open_boxes
 
 
@@ -53,7 +53,7 @@ def _worth_proving(state: FrontState) -> list[Candidate]:
     proven = np.flatnonzero(proven_by_levels(state, phi)).tolist()
     if len(state.given.phi) or not proven:
         return spread(state, state.front, points)
-    return [state.front[int(k)] for k in spread_subset(phi, points, [*extremes(phi), *proven])]
+    return [state.front[int(k)] for k in spread_subset(phi, points, [*leading(state, phi), *proven])]
 
 
 def _staircase(state: FrontState) -> NonImprovement:

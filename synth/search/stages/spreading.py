@@ -19,9 +19,9 @@ def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[C
     """
     m = state.task.m
     phi = np.array([c.phi[:m] for c in designs]).reshape(len(designs), m)
-    kept, ends = state.given.places(phi, state.task.tuning.tolerances.rounded), extremes(phi)
+    kept, ends = state.given.places(phi, state.task.tuning.tolerances.rounded), leading(state, phi)
     if not kept:
-        return [designs[int(k)] for k in spread_subset(phi, most)]
+        return [designs[int(k)] for k in spread_subset(phi, most, ends)]
     if not state.proof.closed:
         return [designs[int(k)] for k in spread_subset(phi, most, [*kept, *ends])]
     # What is proven speaks of the best in each objective: they come before designs that were given.
@@ -29,6 +29,12 @@ def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[C
     if len(some) >= most:
         return [designs[int(some[k])] for k in spread_subset(phi[some], most)]
     return [designs[int(k)] for k in spread_subset(phi, most, some.tolist())]
+
+
+def leading(state: FrontState, phi: np.ndarray) -> list[int]:
+    """Return the positions of designs that are listed in any case: the best in each objective, and the first one."""
+    ends = extremes(phi)
+    return ends if state.scored is None or not len(phi) else list(dict.fromkeys([*ends, state.scored.best(phi)]))
 
 
 def different(state: FrontState, designs: Sequence[Candidate]) -> list[Candidate]:

@@ -316,7 +316,8 @@ class _Run:
 
 def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     """Return a front with other weights: the designs are the same, their order is not."""
-    _, designs = ranked(front.designs, question.chosen, list(question.weights.values()))
+    weights = list(question.weights.values())
+    _, designs = ranked(front.designs, question.chosen, weights, front.complete, front.scale)
     return replace(front, designs=designs, settings=replace(front.settings, **question.record()))
 
 

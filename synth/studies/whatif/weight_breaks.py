@@ -48,7 +48,8 @@ def _leader(front: ParetoFront, name: str) -> Leader:
 
     def leader(weight: float) -> Design | None:
         own = [weight if n == name else weights[n] for n in names]
-        return front.designs[rank(front.frame.objectives, values, own).order[0]] if any(own) else None
+        order = rank(front.frame.objectives, values, own, scale=front.scale).order if any(own) else []
+        return front.designs[order[0]] if order else None
 
     return leader
 

@@ -1,0 +1,81 @@
+"""The design that comes first: looked for on its own, so that it does not depend on how many others are listed.
+
+Nothing of it is proven but what is proven of every design listed: that none improves it in all objectives. That none
+comes nearer to the ideal is as far searched as the boxes allow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.pareto import Scale, as_good
+from synth.search.branch_and_bound import branch_and_bound
+from synth.search.front_state import FrontState
+from synth.search.nearest_ideal import NearestIdeal, ScoredFront
+from synth.search.polishing import polish_extremes
+from synth.search.stages.one_best import better_in
+
+
+def find_first(state: FrontState, weights: Sequence[float]) -> None:
+    """Measure the front by its ends, and look for the design that comes nearest to the ideal.
+
+    Parameters
+    ----------
+    state : FrontState
+        Designs go into the archive of its formulation.
+    weights : list of float
+        Of the objectives.
+    """
+    form, limits = state.form, state.task.limits
+    state.scored = ScoredFront(_scale(state), np.asarray(weights, dtype=float), form.objectives)
+    rule = NearestIdeal(state.scored, limits.first_share, form.archive)
+    if not rule.least:
+        return
+    state.begin_tree(None)
+    outcome = branch_and_bound(
+        form, state.pool, rule, state.clock, state.rng, min(limits.first_nodes, state.node_limit)
+    )
+    state.counters.nodes += outcome.looked
+    state.end_tree()
+
+
+def first_is_listed(state: FrontState) -> bool:
+    """Tell whether the design that comes first is one of those that are listed."""
+    m, rounded = state.task.m, state.task.tuning.tolerances.rounded
+    phi = state.form.archive.phi[:, :m]
+    scored = state.scored
+    if scored is None or not len(state.front):
+        return True
+    first = phi[scored.best(phi)]
+    return bool(np.any(np.all(state.phi_listed() <= first + rounded, axis=1)))
+
+
+def _scale(state: FrontState) -> Scale:
+    """Return the scale of the front: what is best in each objective, and what the others must cost then."""
+    form, m = state.form, state.task.m
+    for k in range(m):
+        _least_in(state, k, np.full(len(form.goals), np.inf))
+    polish_extremes(form, m, float(state.rule.tolerance.max()))
+    known = form.objectives.values_of(form.archive.phi[:, :m])
+    ideal, nadir = known.min(axis=0), as_good(known)
+    near = form.objectives.phi_of(nadir[None, :])[0]
+    for k in range(m):
+        cutoffs = np.full(len(form.goals), np.inf)
+        cutoffs[k] = near[k]
+        for j in range(m):
+            if j != k:
+                nadir[j] = max(nadir[j], _least_in(state, j, cutoffs))
+    return Scale(ideal, nadir)
+
+
+def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
+    """Return the least signed value of an objective that is found within cutoffs, which some known design keeps."""
+    form, limits = state.form, state.task.limits
+    phi = form.archive.phi
+    within = np.flatnonzero(np.all(phi <= cutoffs, axis=1))
+    start = form.archive[int(within[np.argmin(phi[within, k])])]
+    if start.phi[k] > phi[:, k].min() or not np.isfinite(cutoffs).any():
+        start = better_in(state, k, cutoffs, start, limits.first_nodes, limits.first_gap) or start
+    return float(form.objectives.signed(k, start.phi[k]))
