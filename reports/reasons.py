@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from reports.screen_numbers import words
 from synth.results import Design, ParetoFront
 
 BINDING = 0.999  # a limit used more than this decides something
@@ -38,27 +39,40 @@ def why(front: ParetoFront, design: Design) -> str:
     """
     objectives = front.frame.objectives
     clauses = [
-        f"{'smallest' if sense == 'min' else 'largest'} {name}"
+        f"{'smallest' if sense == 'min' else 'largest'} {words(name)}{dear(design, name)}"
         for name, sense in objectives.items()
         if _is_best(front, design, name, sense)
     ]
     if "knee" in design.note:
         clauses.insert(0, "knee of the front")
+    if design.rank == 1 and len(front.designs) > 2 and len(objectives) > 1:
+        clauses.insert(0, "nearest to the best")
     others = [d for d in front.designs if d is not design]
     if len(objectives) == 2 and others:
         clauses.append(_between(front, design))
     elif len(objectives) > 2 and others:
         nearest = min(others, key=lambda d: _distance(front, design, d))
         clauses.append(f"against #{nearest.rank} next to it {_comparison(design, nearest, list(objectives))}")
-    binding = [
-        name
-        for name, used in design.utilisation.items()
-        if used is not None and used >= BINDING and front.frame.limit_senses[name] != "equal"
-    ]
-    clauses.append(f"at the limit of {', '.join(binding)}" if binding else "no limit is reached")
+    limits = binding(design)
+    clauses.append(f"at the limit of {', '.join(map(words, limits))}" if limits else "no limit is reached")
     if design.alternatives:
         clauses.append(f"{len(design.alternatives)} others with the same objectives")
     return "; ".join(clause for clause in clauses if clause)
+
+
+def binding(design: Design) -> list[str]:
+    """Return the limits that a design reaches."""
+    return [
+        name
+        for name, used in design.utilisation.items()
+        if used is not None and used >= BINDING and design.frame.limit_senses[name] != "equal"
+    ]
+
+
+def dear(design: Design, name: str) -> str:
+    """Return that being best in an objective costs a design much for little, where its note says so."""
+    _, found, more = next((n for n in design.note.split("; ") if f" {name}," in n), "").partition(f" {name}")
+    return more if found else ""
 
 
 def _is_best(front: ParetoFront, design: Design, name: str, sense: str) -> bool:
@@ -88,10 +102,10 @@ def _comparison(design: Design, other: Design, names: Sequence[str]) -> str:
         mine, theirs = design.objectives[name], other.objectives[name]
         difference = mine - theirs
         if abs(difference) <= EQUAL * max(abs(mine), abs(theirs)):
-            parts.append(f"the same {name}")
+            parts.append(f"the same {words(name)}")
             continue
         size = f"{significant(100 * abs(difference / theirs), 2)} % " if theirs else ""
-        parts.append(f"{size}{'more' if difference > 0 else 'less'} {name}")
+        parts.append(f"{size}{'more' if difference > 0 else 'less'} {words(name)}")
     return " and ".join(parts) if len(parts) < 3 else ", ".join(parts)
 
 

@@ -123,6 +123,17 @@ def declare_size(
 
 def declare_objectives(d: Declaration, *, scope: Scope) -> None:
     """Declare the objectives of all centrifugal clutches, and those of what is around them where the scope asks."""
+    d.headline(
+        "outer_diameter",
+        "mass",
+        "length",
+        "friction_surfaces",
+        "contact_speed",
+        "engagement_band",
+        "clamp_force",
+        "lining_pressure",
+        sized_by="torque_worn" if "torque_worn" in d.limits else "torque_at_full_speed",
+    )
     d.objective("outer_diameter")
     d.objective("mass")
     if scope.whole:

@@ -225,6 +225,16 @@ class ConeClutch(DesignProblem):
         self._declare_objectives(d, scope=scope)
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "cone_half_angle",
+            "actuation_force",
+            "surface_pressure",
+            "temperature_rise",
+            sized_by="torque_capacity",
+        )
         d.objective("mass")
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work"):

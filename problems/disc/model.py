@@ -119,6 +119,16 @@ class DiscClutch(DesignProblem):
         disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
         disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=pack_size)
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "discs",
+            "actuation_force",
+            "surface_pressure",
+            "temperature_rise",
+            sized_by="worn_torque_capacity",
+        )
         d.objective("mass")
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work", "disc_inertia"):

@@ -65,6 +65,17 @@ class ElectromagneticClutch(DesignProblem):
             self._declare_disc(d, scope=scope)
         else:
             self._declare_multi_plate(d, scope=scope)
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "friction_surfaces",
+            "coil_power",
+            "surface_pressure",
+            "peak_temperature_rise",
+            "coil_temperature_rise",
+            sized_by="torque_capacity",
+        )
         # Least power asks for ever larger magnets; with the rules of practice the supply limits it, and size counts.
         d.objective("coil_power", default=not scope.rules)
         d.objective("mass")

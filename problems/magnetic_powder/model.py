@@ -405,6 +405,15 @@ class MagneticPowderClutch(DesignProblem):
                 linkage=circuit.linkage(unknowns.flux_density),
                 slip_heat=slip_heat,
             )
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "coil_power",
+            "slip_heat",
+            "coil_temperature_rise",
+            sized_by="torque_capacity",
+        )
         # Least power asks for ever larger bodies; with the rules of practice the supply limits it, and mass counts.
         d.objective("coil_power", default=not scope.rules)
         d.objective("input_inertia")

@@ -216,6 +216,16 @@ class MultiPlateClutch(DesignProblem):
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
         # With the rules of practice a pump presses as hard as its piston allows; least force is then no aim.
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "friction_surfaces",
+            "actuation_force",
+            "surface_pressure",
+            "peak_temperature_rise",
+            sized_by="torque_capacity",
+        )
         d.objective("mass")
         d.objective("actuation_force", default=not scope.rules)
         d.objective("length", default=scope.rules)

@@ -419,6 +419,7 @@ class RollerCoupling(DesignProblem):
                 float_radius=loads.float_radius,
             )
         self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
+        d.headline("outer_diameter", "mass", "length", "hertz_pressure", "pin_stress", "efficiency")
         for name in ("outer_diameter", "mass"):
             d.objective(name)
         d.objective("pin_force", default=False)

@@ -278,6 +278,16 @@ class ActuatedWrapSpringClutch(DesignProblem):
             "lies above Goodman's line",
             source=f"Goodman; {NOT_IN_S2}",
         )
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "wire_stress",
+            "contact_pressure",
+            "actuator_torque",
+            "wrap_angle",
+            sized_by="closing_torque",
+        )
         # By the rules of practice the energising torque is bounded, and what is left to ask for is a small clutch.
         d.objective("mass")
         d.objective("actuator_torque", default=rules is None)

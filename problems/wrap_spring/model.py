@@ -288,6 +288,16 @@ class WrapSpringClutch(DesignProblem):
             bending=bending,
             stress=stress,
         )
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "wire_stress",
+            "contact_pressure",
+            "drag_torque",
+            "temperature_rise",
+            sized_by="closing_torque",
+        )
         # By the rules of practice the drag is bounded, and what is left to ask for is a small clutch.
         d.objective("mass")
         d.objective("drag_torque", default=rules is None)

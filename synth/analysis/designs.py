@@ -42,6 +42,8 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
         limit_units={x.name: x.unit for x in instance.constraints},
         limit_senses={x.name: x.sense for x in instance.constraints},
         restated=_restated(instance),
+        headline=d.headlines.shown,
+        sized_by=d.headlines.sized_by,
     )
 
 

@@ -265,6 +265,14 @@ class NextRowRecord:
 
 
 @dataclass(frozen=True)
+class Headline:
+    """What people decide by: quantities in the order of a table, and the limit by which a design is sized."""
+
+    shown: tuple[str, ...] = ()
+    sized_by: str = ""
+
+
+@dataclass(frozen=True)
 class Limit:
     """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
 

@@ -17,6 +17,7 @@ from synth.declaration.records import (
     Count,
     DeclarationError,
     Derived,
+    Headline,
     Limit,
     NextRowRecord,
     Objective,
@@ -280,6 +281,7 @@ class Declaration:
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
         self.advices: list[Advice] = []
+        self.headlines = Headline()
         self.late: dict[str, tuple[str, ...]] = {}
         self._symbols: dict[str, str] = {}
 
@@ -653,6 +655,18 @@ class Declaration:
             )
         self.objectives[name] = Objective(name, sense, default, resolution)
 
+    def headline(self, *names: str, sized_by: str = "") -> None:
+        """Name what people decide by, in the order of a table of designs; objectives that were chosen stand before.
+
+        Parameters
+        ----------
+        *names : str
+            Variables, counts and derived quantities; those that an option does without are left out.
+        sized_by : str
+            The limit whose sides are what a design carries and what it is sized for.
+        """
+        self.headlines = Headline(names, sized_by)
+
     def refuse(self, code: str, when: Any, message: str) -> None:
         """Refuse input (or leave out rows) for which ``when`` holds."""
         self.refusals.append(Refusal(code, ca.SX(when), message))
@@ -690,6 +704,10 @@ class Declaration:
                 raise DeclarationError(
                     f"{self.problem}: objective {objective.name} is no variable, count or derived quantity"
                 )
+        shown, sized_by = self.headlines.shown, self.headlines.sized_by
+        self.headlines = Headline(
+            tuple(name for name in shown if name in known), sized_by if sized_by in self.limits else ""
+        )
         for derived in self.derived.values():
             for guard in derived.needs:
                 if guard not in self.limits or not self.limits[guard].guard:

@@ -44,7 +44,9 @@ class PartRow(Mapping[str, Any]):
 class Frame:
     """What the designs of one front share: how to show them and how to state them again.
 
-    ``restated`` holds what a DESIGN.yaml must repeat so that a check sees the same question: limits, catalogs.
+    ``restated`` holds what a DESIGN.yaml must repeat so that a check sees the same question: limits, catalogs;
+    ``headline`` names what people decide by beside the objectives, ``sized_by`` the limit whose sides are what a design
+    carries and what it is sized for.
     """
 
     family: str
@@ -59,6 +61,8 @@ class Frame:
     limit_units: Mapping[str, str]
     limit_senses: Mapping[str, str]
     restated: Mapping[str, Any] = field(default_factory=dict)
+    headline: tuple[str, ...] = ()
+    sized_by: str = ""
 
 
 class DesignSteps(dict[str, float]):

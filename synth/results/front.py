@@ -312,6 +312,8 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         "limit_units": dict(frame.limit_units),
         "limit_senses": dict(frame.limit_senses),
         "restated": plain(frame.restated),
+        **({"headline": list(frame.headline)} if frame.headline else {}),
+        **({"sized_by": frame.sized_by} if frame.sized_by else {}),
         "settings": dict(front.settings),
         "versions": installed_versions(),
         "status": front.status.value,

@@ -108,6 +108,8 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         limit_units=content["limit_units"],
         limit_senses=content["limit_senses"],
         restated=dict(content["restated"]),
+        headline=tuple(content.get("headline", ())),
+        sized_by=content.get("sized_by", ""),
     )
     rows = content["parts"]
     designs = [_design_from_json(frame, d, rows) for d in content["designs"]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -209,6 +210,7 @@ def run(
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
     ] = None,
     quiet: Quiet = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Show what the search did as well.")] = False,
 ) -> None:
     """Search the designs for a spec, show them ranked, and save them in a folder that is named."""
     begun = time.monotonic()
@@ -243,7 +245,7 @@ def run(
         files["explanation.txt"] = explanation_text(front)
     target = None if folder is None else save_result(folder, files, FRONT, bool(front.interrupted))
     if not quiet:
-        _show(front, files, every)
+        _show(front, files, every, verbose)
         tell_written(target, folder, _listed(files))
     if front.interrupted:
         raise typer.Exit(STOPPED)
@@ -454,12 +456,15 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
             raise typer.Exit(STOPPED) from None
 
 
-def _show(front: ParetoFront, files: Mapping[str, str], every: bool) -> None:
+def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bool) -> None:
+    from synth.results.calculation import CALCULATION, Calculation
     from synth.terminal.console import output, print_outcome
 
     console = output()
     if front.designs:
-        (report("table") or _plain_table)(front, console, every)
+        told = json.loads(files[CALCULATION]) if CALCULATION in files else None
+        calculation = None if told is None else Calculation.from_json(told)
+        (report("table") or _plain_table)(front, console, every, calculation)
     explanation = files.get("explanation.txt", "")
     if "robust" in front.statistics and (front.designs or not explanation):
         from synth.terminal.robust_console import print_robust
@@ -467,7 +472,7 @@ def _show(front: ParetoFront, files: Mapping[str, str], every: bool) -> None:
         print_robust(front, console)
     if explanation:
         print(explanation, end="")
-    print_outcome(front, console)
+    print_outcome(front, console, verbose)
 
 
 def _listed(files: Mapping[str, str]) -> list[str]:
@@ -480,7 +485,10 @@ def _listed(files: Mapping[str, str]) -> list[str]:
     return shown
 
 
-def _plain_table(front: ParetoFront, console: Any, every: bool) -> None:
+def _plain_table(front: ParetoFront, console: Any, every: bool, calculation: Any) -> None:
+    """Print objectives alone, and what is to be said of the first design, where reports are not installed."""
     names = list(front.frame.objectives)
     table = front.to_frame() if every else front.to_frame().head(10)
     print(table.iloc[:, [0, 1, *range(6, 6 + len(names))]].to_string(index=False))
+    for remark in (*front.designs[0].advice, *front.designs[0].not_checked):
+        print(f"remark on #1: {remark}")

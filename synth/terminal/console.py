@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+import os
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -30,8 +32,15 @@ if TYPE_CHECKING:
     from synth.results.verification import Verification
     from synth.studies.infeasibility.explanation import Explanation
 
+NARROWEST = 40  # that a line may be asked to be
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
+STATISTICS = {  # what the numbers of a search are called
+    "nlp_solves": "continuous problems solved",
+    "nlp_solves_to_find": "of these until all designs were found",
+    "scalar_problems": "searches for one best design",
+    "outer_trials": "combinations drawn at random",
+}
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
 
 
@@ -52,10 +61,16 @@ def output() -> Console:
 def console_on(stream: Any, width: int | None = None) -> Console:
     """Return a console that shows text as it is; where no terminal is, lines end at a fixed width."""
     if width is None and not stream.isatty():
-        width = WIDTH
+        width = _asked_width()
     if isinstance(stream, PlainStream):
         stream = stream.stream  # colours are the console's own
     return PlainConsole(file=stream, width=width, markup=False, highlight=False, emoji=False)
+
+
+def _asked_width() -> int:
+    """Return how wide lines are where no terminal says it: as COLUMNS asks, which may be set to anything."""
+    asked = os.environ.get("COLUMNS", "")
+    return max(int(asked), NARROWEST) if asked.isascii() and asked.isdigit() else WIDTH
 
 
 def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
@@ -391,8 +406,16 @@ def explanation_text(front: ParetoFront) -> str:
     return buffer.getvalue()
 
 
-def print_outcome(front: ParetoFront, console: Console) -> None:
-    """Print how far the front is proven, what the search did, and the remarks on the leading design."""
+def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -> None:
+    """Print how far the front is proven, and what was left out of the search.
+
+    Parameters
+    ----------
+    front : ParetoFront
+    console : rich.console.Console
+    verbose : bool
+        Print also what the search did, in numbers.
+    """
     console.print()
     if front.interrupted:
         kept = "the designs found so far are shown and saved" if front.designs else "no design was found until then"
@@ -405,18 +428,18 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
         console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
     few = len(front.designs) < len(front.frame.objectives) and not front.complete
     if front.designs and few:
-        best = list(front.frame.objectives)[: len(front.designs)]
+        best = [name.replace("_", " ") for name in front.frame.objectives][: len(front.designs)]
         console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
     if front.complete and front.designs:
-        console.print("the front is complete: beyond that gap no other non-dominated design exists")
-    for line in statistics_lines(front.statistics):
-        console.print(line)
-    if front.designs:
-        leader = front.designs[0]
-        for name, row in leader.next_rows.items():
-            console.print(f"next in the tables for #{leader.rank}: {name} {row}")
-        for remark in (*leader.advice, *leader.not_checked):
-            console.print(f"remark on #{leader.rank}: {remark}")
+        console.print("the front is complete: beyond that gap there is no other design that none beats in everything")
+    left_out = front.statistics.get("rows_left_out", ())
+    if verbose:
+        for line in statistics_lines(front.statistics):
+            console.print(line)
+    elif left_out:
+        slots = Counter(row["slot"] for row in left_out)
+        rows = ", ".join(f"{count} of {slot}" for slot, count in slots.items())
+        console.print(f"rows left out although they were offered: {rows} (--verbose tells why)")
 
 
 def print_verification(verification: Verification, console: Console) -> None:
@@ -432,11 +455,11 @@ def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:
     Examples
     --------
     >>> statistics_lines({"combinations": 12000, "nlp_solves": 31, "seconds": {"trace": 0.5, "tree": 1.25}})
-    ['combinations 12 000, nlp solves 31', 'seconds: trace 0.5, tree 1.25']
+    ['combinations 12 000, continuous problems solved 31', 'seconds: trace 0.5, tree 1.25']
     """
     plain, lines = [], []
     for key, value in statistics.items():
-        name = key.replace("_", " ")
+        name = STATISTICS.get(key, key.replace("_", " "))
         if isinstance(value, Mapping):
             if value:
                 lines.append(f"{name}: " + ", ".join(f"{k} {_brief(v)}" for k, v in value.items()))

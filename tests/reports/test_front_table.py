@@ -60,13 +60,13 @@ def test_why_names_best_knee_neighbours_and_binding_limits() -> None:
     light, middle, weak = design(2, 10, 2000), design(1, 12, 1500, 0.9995, "knee"), design(3, 20, 1000)
     shown = front(middle, light, weak)
     assert why(shown, middle) == (
-        "knee of the front; between #2 and #3: 25 % less actuation_force than #2, 40 % less mass than #3; "
-        "at the limit of jerk"
+        "nearest to the best; knee of the front; between #2 and #3: 25 % less actuation force than #2, "
+        "40 % less mass than #3; at the limit of jerk"
     )
     assert why(shown, light) == (
-        "smallest mass; 17 % less mass and 33 % more actuation_force than #1 next to it; no limit is reached"
+        "smallest mass; 17 % less mass and 33 % more actuation force than #1 next to it; no limit is reached"
     )
-    assert why(shown, weak).startswith("smallest actuation_force; 67 % more mass and 33 % less actuation_force than #1")
+    assert why(shown, weak).startswith("smallest actuation force; 67 % more mass and 33 % less actuation force than #1")
 
 
 def test_why_with_an_objective_to_be_made_large() -> None:
@@ -74,13 +74,13 @@ def test_why_with_an_objective_to_be_made_large() -> None:
     light, middle, heavy = (design(k, *x, frame=frame) for k, x in enumerate([(10, 1000), (12, 1500), (20, 2000)], 1))
     shown = front(light, middle, heavy, frame=frame)
     # Gained over the lighter one: mass; over the heavier one: force.
-    assert "between #1 and #3: 20 % more mass than #1, 25 % less actuation_force than #3" in why(shown, middle)
+    assert "between #1 and #3: 20 % more mass than #1, 25 % less actuation force than #3" in why(shown, middle)
     assert why(shown, heavy).startswith("largest mass;")
 
 
 def test_why_of_a_single_design_and_of_many_objectives() -> None:
     alone = design(1, 10, 2000)
-    assert why(front(alone), alone) == "smallest mass; smallest actuation_force; no limit is reached"
+    assert why(front(alone), alone) == "smallest mass; smallest actuation force; no limit is reached"
     frame = replace(FRAME, objectives={"mass": "min", "actuation_force": "min", "friction_surfaces": "min"})
 
     def triple(rank: int, mass: float, force: float, surfaces: float) -> Design:
@@ -89,7 +89,7 @@ def test_why_of_a_single_design_and_of_many_objectives() -> None:
 
     one, two, three = triple(1, 10, 2000, 10), triple(2, 11, 1900, 10), triple(3, 30, 900, 4)
     sentence = why(front(one, two, three, frame=frame), two)
-    assert "against #1 next to it 10 % more mass, 5 % less actuation_force, the same friction_surfaces" in sentence
+    assert "against #1 next to it 10 % more mass, 5 % less actuation force, the same friction surfaces" in sentence
 
 
 @pytest.mark.parametrize("width", [40, 60, 100])
@@ -100,7 +100,7 @@ def test_the_table_fits_the_width_and_loses_nothing(width: int) -> None:
     output = stream.getvalue()
     assert max(len(line) for line in output.splitlines()) <= width
     assert "…" not in output
-    for cell in ("258.1", "2000.1", "[kg]", "[mm]", "#10", "2 more with --all"):
+    for cell in ("258.1", "2 000", "[kg]", "[mm]", "#10", "2 more with --all", "no limit"):
         assert cell in output
     assert "#11" not in output.split("#1:")[0]
 
@@ -111,6 +111,28 @@ def test_all_designs_on_request() -> None:
     print_front(front(*designs), Console(file=stream, width=100, markup=False, highlight=False), every=True)
     assert "#12:" in stream.getvalue()
     assert "--all" not in stream.getvalue()
+
+
+def test_what_people_decide_by_stands_beside_the_objectives() -> None:
+    frame = replace(FRAME, headline=("mass", "friction_surfaces"), sized_by="torque")
+    shown = [
+        replace(design(k, 10 + k, 2000 / k, used, frame=frame), limits={"torque": (330.0 + k, 300.0)}, advice=(told,))
+        for k, used, told in ((1, 1.0, "warm: keep it cool"), (2, 0.5, "cold: no matter"))
+    ]
+    stream = io.StringIO()
+    print_front(front(*shown, frame=frame), Console(file=stream, width=100, markup=False, highlight=False))
+    output = stream.getvalue()
+    head, first = output.split("#1", 1)
+    assert "reserve of torque" in " ".join(head.split()) or "reserve" in head
+    assert first.splitlines()[0].split() == ["11", "2", "000", "10.3", "10", "jerk"]
+    # Sizes that no column tells, and remarks, stand with the design that they concern.
+    assert "    other sizes: ring outer diameter 258.1 mm\n    remark: keep it cool\n#2: " in output
+    assert "no matter" not in output
+
+
+def test_an_end_that_costs_much_for_little_is_told_to() -> None:
+    ends = [design(1, 10, 1000), design(2, 9.99, 3000, note="smallest mass, which costs much for little")]
+    assert why(front(*ends), ends[1]).startswith("smallest mass, which costs much for little; 0.1 % less mass")
 
 
 @pytest.mark.parametrize(
