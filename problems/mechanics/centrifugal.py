@@ -53,7 +53,7 @@ __all__ = [
     "weight_thickness",
 ]
 
-STANDARD_GRAVITY = 9.80665  # m/s2
+STANDARD_GRAVITY = 9.80665  # [m/s2]
 # What a clutch has beyond the two surfaces that the thickness of all plates is for: engineering practice.
 FURTHER_PLATE = 6e-3  # plate between two friction discs [m]
 FURTHER_CORE = 2e-3  # core of a friction disc [m]

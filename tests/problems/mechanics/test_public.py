@@ -5,6 +5,7 @@ Arguments are those of the doctests. What a function takes beside numbers is tol
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import dataclasses
 import doctest
@@ -13,6 +14,7 @@ import io
 import re
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -21,14 +23,20 @@ import pytest
 from scipy.special import lambertw
 
 import problems.mechanics
-from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, Formula, formula, formulas, modules
+from problems.mechanics import Quantity
+from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, UNIT, Entry, Formula, formula, formulas, modules
 from tests.problems.formula_checks import DIMENSION
 
 ca.GlobalOptions.setNumpyMode(-1)
 
+pytestmark = pytest.mark.slow
 FORMULAS = formulas()
 every_formula = pytest.mark.parametrize("f", FORMULAS, ids=lambda f: f"{f.module}.{f.name}")
-UNITS = {*DIMENSION, "rad", "rad/s", "rad/s3", "ohm", "m2/s2", "Wb/A", "W/A2", "N m s", "SI"}
+OF_OTHERS = {"rad": "-", "rad/s": "1/s", "rad/s3": "1/s3"}
+DIMENSIONS = {**DIMENSION, "m/s2": (0, 1, -2, 0), "ohm": (1, 2, -3, 0, -2), "N m s": DIMENSION["kg m2/s"]}
+DIMENSIONS |= {"Wb/A": (1, 2, -2, 0, -2), "W/A2": (1, 2, -3, 0, -2)}
+UNITS = {*DIMENSIONS, *OF_OTHERS, "SI"}  # SI: each of many by its own
+NOT_QUANTITIES = ("str", "int", "callable", "StartupRun")  # first words of the types of arguments without a unit
 
 
 def calls(f: Formula) -> list[inspect.BoundArguments]:
@@ -59,31 +67,25 @@ def flat(value: Any) -> list[Any]:
 # ---- what is told ---------------------------------------------------------------------------------------------------
 
 
+def defined(source: str) -> set[str]:
+    """Return what a module defines at its top, without what starts with an underscore."""
+    names: list[str] = []
+    for node in ast.parse(source).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.append(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names += [n.id for target in targets for n in ast.walk(target) if isinstance(n, ast.Name)]
+    return {name for name in names if not name.startswith("_")}
+
+
 def test_what_has_no_underscore_is_promised_and_nothing_else() -> None:
-    folder = {info.__name__.rsplit(".", 1)[1] for info in modules()}
-    files = {path.stem for path in _folder().glob("*.py")} - {"__init__"}
-    assert folder == files
-    for module in modules():
-        own = {
-            name
-            for name, value in vars(module).items()
-            if not name.startswith("_") and (name.isupper() or getattr(value, "__module__", "") == module.__name__)
-        }
-        aliases = {"Ramp", "DriverTorque"} & set(vars(module))
-        borrowed = {
-            n for n in own if not re.search(rf"^(?:def|class) {n}\b|^.*\b{n}\b.* = |^    {n},", _source(module), re.M)
-        }
-        assert own - borrowed | aliases == set(module.__all__), module.__name__
-
-
-def _folder() -> Any:
-    from pathlib import Path
-
-    return Path(problems.mechanics.__file__).parent
-
-
-def _source(module: Any) -> str:
-    return inspect.getsource(module)
+    assert defined("a: int = 1\n_b = 2\nC, D = 1, 2\ndef f():\n    g = 1\nclass _H: ...") == {"a", "C", "D", "f"}
+    folder = Path(problems.mechanics.__file__).parent
+    promised = {module.__name__.rsplit(".", 1)[1]: module for module in modules()}
+    assert set(promised) == {path.stem for path in folder.glob("*.py")} - {"__init__"}
+    for name, module in promised.items():
+        assert defined((folder / f"{name}.py").read_text(encoding="utf-8")) == set(module.__all__), name
 
 
 @every_formula
@@ -98,13 +100,11 @@ def faults(f: Formula) -> list[str]:
     told = [name.lstrip("*") for entry in f.entries for name in entry.names]
     found += [] if told == list(inspect.signature(f.function).parameters) else ["arguments"]
     for entry in f.entries:
-        if entry.type not in ("str", "callable", "StartupRun", "str, table or callable", "int", "int, optional"):
+        if not entry.type.startswith(NOT_QUANTITIES):
             found += [] if entry.units and set(entry.units) <= UNITS else [f"unit of {', '.join(entry.names)}"]
-    returned = re.findall(r"\[([^\]]+)\]", f.returns)
-    no_number = inspect.signature(f.function).return_annotation in ("StartupPhases", "StartupRun", "SwitchingRun")
-    a_verdict = "True where" in f.returns
-    alike = f.name == "larger"
-    if not (no_number or a_verdict or alike):
+    returned = UNIT.findall(f.returns)
+    a_record = "Quantity" not in (kind := str(inspect.signature(f.function).return_annotation)) and kind != "float"
+    if not (a_record or "True where" in f.returns or f.returns == "The larger."):
         found += [] if returned and set(returned) <= UNITS else ["unit of the result"]
     found += [] if len(f.source) > 5 else ["source"]
     examples = doctest.DocTestParser().get_examples(f.examples)
@@ -113,7 +113,7 @@ def faults(f: Formula) -> list[str]:
 
 
 def test_a_docstring_that_lacks_something_is_noticed() -> None:
-    def poor(force: Any, arm: Any) -> Any:
+    def poor(force: Any, arm: Any) -> Quantity:
         """Torque.
 
         Parameters
@@ -198,6 +198,51 @@ def test_formulas_are_used_without_casadi() -> None:
     assert done.stdout == "[]\n"
     with pytest.raises(AttributeError, match="no attribute 'friction_radius'"):
         _ = problems.mechanics.friction_radius
+
+
+# ---- the units are those of what is computed -------------------------------------------------------------------------
+
+CONSTANT = re.compile(r"^([A-Z_0-9]+) = .*  # .*\[(.+?)\]", re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "f", [f for f in FORMULAS if f.takes != NUMBERS and UNIT.search(f.returns)], ids=lambda f: f"{f.module}.{f.name}"
+)
+def test_the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) -> None:
+    module = sys.modules[f"problems.mechanics.{f.module}"]
+    rng = np.random.default_rng(0)
+    for _ in range(3):
+        scale = rng.uniform(0.5, 2.0, 5)
+        factor = {unit: float(np.prod(scale[: len(e)] ** np.array(e))) for unit, e in DIMENSIONS.items()}
+        factor |= {unit: factor[other] for unit, other in OF_OTHERS.items()}
+        for bound in calls(f):
+            base = varied(f, bound, (SYMBOLS, ARRAYS))
+            told = {n.lstrip("*"): unit for e in f.entries for n, unit in zip(e.names, units_of(e), strict=True)}
+            expected = [float(x) * factor[u] for x, u in zip(called(f, bound, base), results_of(f), strict=True)]
+            with pytest.MonkeyPatch.context() as patch:
+                for name, unit in CONSTANT.findall(inspect.getsource(module)):
+                    patch.setattr(module, name, getattr(module, name) * factor[unit])
+                scaled = {n: [x * factor[told[n]] for x in xs] for n, xs in base.items()}
+                found = [float(x) for x in called(f, bound, scaled)]
+            np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def units_of(entry: Entry) -> list[str]:
+    """Return the unit of each name: one for all, or one each."""
+    return entry.units if len(entry.units) == len(entry.names) else entry.units[:1] * len(entry.names) or [""]
+
+
+def results_of(f: Formula) -> list[str]:
+    """Return the units of a result: of a tuple all that are told, else the first."""
+    told = UNIT.findall(f.returns)
+    return told if str(inspect.signature(f.function).return_annotation).startswith("tuple") else told[:1]
+
+
+def test_a_unit_that_is_wrong_is_noticed() -> None:
+    right = next(f for f in FORMULAS if f.name == "friction_radius")
+    test = test_the_result_scales_as_its_unit_when_arguments_and_constants_do
+    with pytest.raises(AssertionError):
+        test(dataclasses.replace(right, returns="r [m2]."))
 
 
 # ---- the equation is what is computed -------------------------------------------------------------------------------
