@@ -10,13 +10,14 @@ come from the formula itself. Every declaration is checked by a test on samples.
 from __future__ import annotations
 
 import functools
+import inspect
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-import casadi as ca
 import numpy as np
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -140,11 +141,17 @@ def special(
         function = SpecialFunction(name, existing, tuple(elasticity), curvature, above)
         TABLE[function.name] = function
 
+        parameters = inspect.signature(formula)
+
         @functools.wraps(formula)
-        def call(*arguments: Any) -> Any:
+        def call(*arguments: Any, **named: Any) -> Any:
+            if named:
+                arguments = parameters.bind(*arguments, **named).args
             calls = _calls.get()
-            if calls is None or not any(isinstance(a, ca.SX) for a in arguments):
+            if calls is None or not any(_is_symbol(a) for a in arguments):
                 return existing(*arguments)
+            import casadi as ca
+
             # A symbol of its own keeps CasADi from taking the value apart when it simplifies.
             symbol = ca.SX.sym(f"{formula.__name__}#{len(calls)}")
             calls.append(SpecialCall(function, tuple(ca.SX(a) for a in arguments), symbol))
@@ -153,6 +160,12 @@ def special(
         return call  # type: ignore[return-value]
 
     return decorate
+
+
+def _is_symbol(value: Any) -> bool:
+    """Tell whether a value is a symbol, without importing CasADi for numbers: formulas are used without it, too."""
+    casadi = sys.modules.get("casadi")
+    return casadi is not None and isinstance(value, casadi.SX)
 
 
 def _where_above(formula: Callable[..., Any], first: int, second: int) -> Callable[..., Any]:
@@ -164,7 +177,7 @@ def _where_above(formula: Callable[..., Any], first: int, second: int) -> Callab
     @functools.wraps(formula)
     def existing(*arguments: Any) -> Any:
         value = formula(*arguments)
-        if any(isinstance(a, ca.SX) for a in arguments):
+        if any(_is_symbol(a) for a in arguments):
             return value
         return np.where(arguments[first] >= arguments[second], value, np.nan)
 
@@ -184,6 +197,8 @@ def recorded() -> Iterator[list[SpecialCall]]:
 
 def expanded(expression: Any, calls: Sequence[SpecialCall]) -> Any:
     """Return an expression with the formulas of special functions in place of their symbols."""
+    import casadi as ca
+
     result = ca.SX(expression)
     for call in reversed(calls):
         if ca.depends_on(result, call.symbol):  # most calls stand elsewhere, and formulas are long

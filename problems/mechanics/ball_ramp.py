@@ -17,11 +17,22 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "clamp_force",
+    "clamp_speed_ratio",
+    "faster_clamp_force",
+    "radius_at_speed",
+    "rest_reaction",
+    "travel_at_speed",
+]
+
 
 def rest_reaction(
     preload: Quantity, centrifugal_force: Quantity, ratio: Quantity, efficiency: Quantity = 1.0
 ) -> Quantity:
-    """Radial reaction of the inner rest while the balls lie on it, F_2 = F_R0/(i eta) - F_C.
+    """Radial reaction of the inner rest while the balls lie on it.
+
+    Equation: F_2 = F_R0/(i eta) - F_C
 
     Parameters
     ----------
@@ -32,7 +43,7 @@ def rest_reaction(
     ratio : scalar, array or symbol
         Transmission of the ramp i [-].
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i [-]: eta_out going out, eta_in coming in.
+        Axial force over F_C i, eta [-]: eta_out going out, eta_in coming in.
 
     Returns
     -------
@@ -62,7 +73,9 @@ def travel_at_speed(
     rate: Quantity,
     efficiency: Quantity = 1.0,
 ) -> Quantity:
-    """Travel of the plate in regime 2, x = (k r0 - F_R0)/(s - k i) with k = m omega**2 i eta.
+    """Travel of the plate in regime 2.
+
+    Equation: x = (k r0 - F_R0)/(s - k i), with k = m omega**2 i eta
 
     Parameters
     ----------
@@ -79,7 +92,7 @@ def travel_at_speed(
     rate : scalar, array or symbol
         Rate of the springs s [N/m].
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i [-]: eta_out going out, eta_in coming in.
+        Axial force over F_C i, eta [-]: eta_out going out, eta_in coming in.
 
     Returns
     -------
@@ -115,7 +128,9 @@ def radius_at_speed(
     rate: Quantity,
     efficiency: Quantity = 1.0,
 ) -> Quantity:
-    """Radius of the balls in regime 2, r = (F_R0 - s r0/i)/(k - s/i) with k = m omega**2 i eta.
+    """Radius of the balls in regime 2.
+
+    Equation: r = (F_R0 - s r0/i)/(k - s/i), with k = m omega**2 i eta
 
     Parameters
     ----------
@@ -132,7 +147,7 @@ def radius_at_speed(
     rate : scalar, array or symbol
         Rate of the springs s [N/m].
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i [-]: eta_out going out, eta_in coming in.
+        Axial force over F_C i, eta [-]: eta_out going out, eta_in coming in.
 
     Returns
     -------
@@ -155,7 +170,9 @@ def radius_at_speed(
 
 
 def clamp_force(gain: Quantity, speed: Quantity, contact_speed: Quantity) -> Quantity:
-    """Clamp force above the contact speed, F_N = g (omega**2 - omega_contact**2).
+    """Clamp force above the contact speed.
+
+    Equation: F_N = g (omega**2 - omega_contact**2)
 
     Parameters
     ----------
@@ -164,7 +181,7 @@ def clamp_force(gain: Quantity, speed: Quantity, contact_speed: Quantity) -> Qua
     speed : scalar, array or symbol
         Speed of the flyweight carrier omega [rad/s].
     contact_speed : scalar, array or symbol
-        Speed at which the plates touch [rad/s].
+        Speed at which the plates touch omega_contact [rad/s].
 
     Returns
     -------
@@ -190,7 +207,9 @@ def clamp_force(gain: Quantity, speed: Quantity, contact_speed: Quantity) -> Qua
 
 
 def clamp_speed_ratio(spring_force: Quantity, clamp_force: Quantity) -> Quantity:
-    """Speed of a clamp force over the contact speed, sqrt(1 + F_N/F_R1).
+    """Speed of a clamp force over the contact speed.
+
+    Equation: omega/omega_contact = sqrt(1 + F_N/F_R1)
 
     Parameters
     ----------
@@ -219,18 +238,20 @@ def clamp_speed_ratio(spring_force: Quantity, clamp_force: Quantity) -> Quantity
 
 
 def faster_clamp_force(clamp_force: Quantity, gain: Quantity, speed: Quantity, faster: Quantity) -> Quantity:
-    """Clamp force at a higher speed, F_N + g (omega2**2 - omega**2).
+    """Clamp force at a higher speed.
+
+    Equation: F_N2 = F_N + g (omega2**2 - omega**2)
 
     Parameters
     ----------
     clamp_force : scalar, array or symbol
-        Clamp force at some speed [N].
+        Clamp force at some speed F_N [N].
     gain : scalar, array or symbol
-        Axial force over the square of the speed at r1 [kg m].
+        Axial force over the square of the speed at r1, g [kg m].
     speed : scalar, array or symbol
         Speed of the flyweight carrier omega [rad/s].
     faster : scalar, array or symbol
-        A higher speed [rad/s].
+        A higher speed omega2 [rad/s].
 
     Returns
     -------

@@ -14,7 +14,46 @@ import numpy as np
 from problems.mechanics import Quantity
 from synth.special import special
 
-STANDARD_GRAVITY = 9.80665  # m/s2
+__all__ = [
+    "COVER",
+    "FURTHER_CORE",
+    "FURTHER_PLATE",
+    "STANDARD_GRAVITY",
+    "axial_force",
+    "axial_gain",
+    "ball_pressure",
+    "ball_set_mass",
+    "centrifugal_force",
+    "clutch_inertia",
+    "contact_loss",
+    "engagement_energy",
+    "force_for_torque",
+    "further_discs_mass",
+    "gravity_ratio",
+    "inward_efficiency",
+    "lining_area",
+    "lining_pressure",
+    "lining_radius",
+    "orbit_radius",
+    "outside_diameter",
+    "outward_efficiency",
+    "overall_length",
+    "plates_mass",
+    "ramp_angle",
+    "ramp_gain",
+    "ramp_normal_force",
+    "release_ratio",
+    "rim_stress",
+    "series_rate",
+    "set_rate",
+    "speed_for_force",
+    "speed_ratio",
+    "spring_bow_load",
+    "spring_force",
+    "weight_thickness",
+]
+
+STANDARD_GRAVITY = 9.80665  # [m/s2]
 # What a clutch has beyond the two surfaces that the thickness of all plates is for: engineering practice.
 FURTHER_PLATE = 6e-3  # plate between two friction discs [m]
 FURTHER_CORE = 2e-3  # core of a friction disc [m]
@@ -25,7 +64,9 @@ COVER = 5e-3  # cover over the flyweights [m]
 
 
 def centrifugal_force(mass: Quantity, radius: Quantity, speed: Quantity) -> Quantity:
-    """Centrifugal force of all flyweights together, F_C = m r omega**2.
+    """Centrifugal force of all flyweights together.
+
+    Equation: F_C = m r omega**2
 
     Parameters
     ----------
@@ -56,7 +97,9 @@ def centrifugal_force(mass: Quantity, radius: Quantity, speed: Quantity) -> Quan
 
 
 def orbit_radius(rest_radius: Quantity, ratio: Quantity, travel: Quantity) -> Quantity:
-    """Radius of the flyweights after some travel, r = r0 + i x.
+    """Radius of the flyweights after some travel.
+
+    Equation: r = r0 + i x
 
     Parameters
     ----------
@@ -65,7 +108,7 @@ def orbit_radius(rest_radius: Quantity, ratio: Quantity, travel: Quantity) -> Qu
     ratio : scalar, array or symbol
         Transmission i = dr/dx [-].
     travel : scalar, array or symbol
-        Axial travel x [m]; for a lever with i as its arm the angle [rad].
+        Axial travel x [m]; for a lever with i as its arm its angle in rad.
 
     Returns
     -------
@@ -87,7 +130,9 @@ def orbit_radius(rest_radius: Quantity, ratio: Quantity, travel: Quantity) -> Qu
 
 
 def ramp_angle(ratio: Quantity) -> Quantity:
-    """Angle of a ramp from the shaft axis, alpha = arctan(i).
+    """Angle of a ramp from the shaft axis.
+
+    Equation: alpha = arctan(i)
 
     Parameters
     ----------
@@ -114,7 +159,9 @@ def ramp_angle(ratio: Quantity) -> Quantity:
 
 
 def contact_loss(ball_friction: Quantity, ratio: Quantity) -> Quantity:
-    """Share that friction at the balls takes, c_b = mu_b (i + sqrt(1 + i**2)).
+    """Share that friction at the balls takes.
+
+    Equation: c_b = mu_b (i + sqrt(1 + i**2))
 
     Parameters
     ----------
@@ -150,7 +197,9 @@ def contact_loss(ball_friction: Quantity, ratio: Quantity) -> Quantity:
 
 
 def outward_efficiency(loss: Quantity) -> Quantity:
-    """Axial force over F_C i while the balls move out, eta_out = 1/(1 + c_b).
+    """Axial force over F_C i while the balls move out.
+
+    Equation: eta_out = 1/(1 + c_b)
 
     Parameters
     ----------
@@ -177,7 +226,9 @@ def outward_efficiency(loss: Quantity) -> Quantity:
 
 
 def inward_efficiency(loss: Quantity) -> Quantity:
-    """Axial force over F_C i while the balls move in, eta_in = 1/(1 - c_b).
+    """Axial force over F_C i while the balls move in.
+
+    Equation: eta_in = 1/(1 - c_b)
 
     Parameters
     ----------
@@ -209,7 +260,9 @@ def inward_efficiency(loss: Quantity) -> Quantity:
 
 @special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def ramp_gain(ratio: Quantity, ball_friction: Quantity) -> Quantity:
-    """Axial over centrifugal force of balls that move out, i eta_out = i/(1 + mu_b (i + sqrt(1 + i**2))).
+    """Axial over centrifugal force of balls that move out.
+
+    Equation: i eta_out = i/(1 + mu_b (i + sqrt(1 + i**2)))
 
     Parameters
     ----------
@@ -242,7 +295,9 @@ def ramp_gain(ratio: Quantity, ball_friction: Quantity) -> Quantity:
 
 
 def release_ratio(loss: Quantity) -> Quantity:
-    """Speed at which balls let go over that at which they took hold, sqrt(eta_out/eta_in).
+    """Speed at which balls let go over that at which they took hold.
+
+    Equation: omega_release/omega_contact = sqrt((1 - c_b)/(1 + c_b))
 
     Parameters
     ----------
@@ -274,7 +329,9 @@ def release_ratio(loss: Quantity) -> Quantity:
 
 
 def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quantity = 1.0) -> Quantity:
-    """Axial force that the flyweights exert, F = F_C i eta.
+    """Axial force that the flyweights exert.
+
+    Equation: F = F_C i eta
 
     Parameters
     ----------
@@ -283,7 +340,7 @@ def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quanti
     ratio : scalar, array or symbol
         Transmission i = dr/dx [-].
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i: eta_out going out, eta_in coming in [-].
+        Axial force over F_C i, eta [-]: eta_out going out, eta_in coming in.
 
     Returns
     -------
@@ -305,7 +362,9 @@ def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quanti
 
 
 def axial_gain(mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0) -> Quantity:
-    """Axial force over the square of the speed, g = m i eta r.
+    """Axial force over the square of the speed.
+
+    Equation: g = m i eta r
 
     Parameters
     ----------
@@ -316,7 +375,7 @@ def axial_gain(mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficien
     ratio : scalar, array or symbol, optional
         Transmission i = dr/dx [-]; 1 for a force at the flyweights themselves.
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i [-].
+        Axial force over F_C i, eta [-].
 
     Returns
     -------
@@ -340,7 +399,9 @@ def axial_gain(mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficien
 def speed_for_force(
     force: Quantity, mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0
 ) -> Quantity:
-    """Speed at which the flyweights exert a force, omega = sqrt(F/(m i eta r)).
+    """Speed at which the flyweights exert a force.
+
+    Equation: omega = sqrt(F/(m i eta r))
 
     Parameters
     ----------
@@ -353,7 +414,7 @@ def speed_for_force(
     ratio : scalar, array or symbol, optional
         Transmission i = dr/dx [-]; 1 for a force at the flyweights themselves.
     efficiency : scalar, array or symbol, optional
-        Axial force over F_C i [-].
+        Axial force over F_C i, eta [-].
 
     Returns
     -------
@@ -380,18 +441,20 @@ def speed_for_force(
 
 
 def speed_ratio(force: Quantity, radius: Quantity, other_force: Quantity, other_radius: Quantity) -> Quantity:
-    """Ratio of two speeds of the same flyweights, sqrt(F r_other/(F_other r)).
+    """Ratio of two speeds of the same flyweights.
+
+    Equation: omega/omega_other = sqrt(F r_other/(F_other r))
 
     Parameters
     ----------
     force : scalar, array or symbol
-        Axial force at the one speed [N].
+        Axial force at the one speed F [N].
     radius : scalar, array or symbol
-        Radius of the flyweights there [m].
+        Radius of the flyweights there r [m].
     other_force : scalar, array or symbol
-        Axial force at the other speed [N].
+        Axial force at the other speed F_other [N].
     other_radius : scalar, array or symbol
-        Radius there [m].
+        Radius there r_other [m].
 
     Returns
     -------
@@ -413,7 +476,9 @@ def speed_ratio(force: Quantity, radius: Quantity, other_force: Quantity, other_
 
 
 def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Quantity:
-    """Mass of all balls, n_b rho_b pi d_b**3/6.
+    """Mass of all balls.
+
+    Equation: m = n_b rho_b pi d_b**3/6
 
     Parameters
     ----------
@@ -444,7 +509,9 @@ def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Qua
 
 
 def weight_thickness(mass: Quantity, count: Quantity, density: Quantity, width: Quantity) -> Quantity:
-    """Side of a square weight, t_w = sqrt(m/(n_w rho b_w)).
+    """Side of a square weight.
+
+    Equation: t_w = sqrt(m/(n_w rho b_w))
 
     Parameters
     ----------
@@ -477,14 +544,16 @@ def weight_thickness(mass: Quantity, count: Quantity, density: Quantity, width: 
 
 
 def gravity_ratio(rest_radius: Quantity, start_speed: Quantity) -> Quantity:
-    """Centrifugal acceleration over gravity where the flyweights start, r0 omega**2/g.
+    """Centrifugal acceleration over gravity where the flyweights start.
+
+    Equation: q = r0 omega**2/g, with g = 9.80665 m/s2
 
     Parameters
     ----------
     rest_radius : scalar, array or symbol
         Radius of the flyweight centres at rest r0 [m].
     start_speed : scalar, array or symbol
-        Speed at which the flyweights leave their rest [rad/s].
+        Speed at which the flyweights leave their rest omega [rad/s].
 
     Returns
     -------
@@ -509,7 +578,9 @@ def gravity_ratio(rest_radius: Quantity, start_speed: Quantity) -> Quantity:
 
 
 def set_rate(count: Quantity, rate: Quantity) -> Quantity:
-    """Rate of a spring set, s = N k.
+    """Rate of a spring set.
+
+    Equation: s = N k
 
     Parameters
     ----------
@@ -538,14 +609,16 @@ def set_rate(count: Quantity, rate: Quantity) -> Quantity:
 
 
 def spring_force(rate: Quantity, deflection: Quantity) -> Quantity:
-    """Force of a spring or a spring set, F = s delta.
+    """Force of a spring or a spring set.
+
+    Equation: F = s delta
 
     Parameters
     ----------
     rate : scalar, array or symbol
         Rate s of the set, or k of one spring [N/m].
     deflection : scalar, array or symbol
-        Deflection from the free length [m]: preload deflection, more what the parts have travelled.
+        Deflection from the free length delta [m]: preload deflection, more what the parts have travelled.
 
     Returns
     -------
@@ -567,7 +640,9 @@ def spring_force(rate: Quantity, deflection: Quantity) -> Quantity:
 
 
 def series_rate(first: Quantity, second: Quantity) -> Quantity:
-    """Rate of two spring sets in series, 1/(1/s1 + 1/s2).
+    """Rate of two spring sets in series.
+
+    Equation: s = 1/(1/s1 + 1/s2)
 
     Parameters
     ----------
@@ -599,7 +674,9 @@ def series_rate(first: Quantity, second: Quantity) -> Quantity:
 
 
 def lining_radius(inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
-    """Friction radius of a worn-in lining, r_f = (r_i + r_o)/2.
+    """Friction radius of a worn-in lining.
+
+    Equation: r_f = (r_i + r_o)/2
 
     Parameters
     ----------
@@ -628,7 +705,9 @@ def lining_radius(inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
 
 
 def lining_pressure(force: Quantity, inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
-    """Pressure at the inner edge of a worn-in lining, p = F_N/(2 pi r_i (r_o - r_i)).
+    """Pressure at the inner edge of a worn-in lining.
+
+    Equation: p = F_N/(2 pi r_i (r_o - r_i))
 
     Parameters
     ----------
@@ -660,7 +739,9 @@ def lining_pressure(force: Quantity, inner_radius: Quantity, outer_radius: Quant
 
 
 def lining_area(surfaces: Quantity, inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
-    """Area of all friction surfaces, A = z_f pi (r_o**2 - r_i**2).
+    """Area of all friction surfaces.
+
+    Equation: A = z_f pi (r_o**2 - r_i**2)
 
     Parameters
     ----------
@@ -691,7 +772,9 @@ def lining_area(surfaces: Quantity, inner_radius: Quantity, outer_radius: Quanti
 
 
 def force_for_torque(torque: Quantity, friction: Quantity, surfaces: Quantity, friction_radius: Quantity) -> Quantity:
-    """Axial force that a torque needs, F_N = M/(mu z_f r_f).
+    """Axial force that a torque needs.
+
+    Equation: F_N = M/(mu z_f r_f)
 
     Parameters
     ----------
@@ -724,12 +807,14 @@ def force_for_torque(torque: Quantity, friction: Quantity, surfaces: Quantity, f
 
 
 def engagement_energy(inertia: Quantity, speed: Quantity) -> Quantity:
-    """Heat of one engagement, Q = J omega**2/2.
+    """Heat of one engagement.
+
+    Equation: Q = J omega**2/2
 
     Parameters
     ----------
     inertia : scalar, array or symbol
-        Driven inertia J_load [kg m2].
+        Driven inertia J [kg m2].
     speed : scalar, array or symbol
         Speed that it is brought to omega [rad/s].
 
@@ -757,7 +842,9 @@ def engagement_energy(inertia: Quantity, speed: Quantity) -> Quantity:
 
 
 def ramp_normal_force(centrifugal_force: Quantity, ratio: Quantity) -> Quantity:
-    """Force of a ball across the ramp, Q = F_C sqrt(1 + i**2).
+    """Force of a ball across the ramp.
+
+    Equation: Q = F_C sqrt(1 + i**2)
 
     Parameters
     ----------
@@ -786,7 +873,9 @@ def ramp_normal_force(centrifugal_force: Quantity, ratio: Quantity) -> Quantity:
 
 
 def ball_pressure(normal_force: Quantity, ball_diameter: Quantity, contact_modulus: Quantity) -> Quantity:
-    """Peak pressure of a ball on a flat ramp, p0 = (6 Q (E*)**2/(pi**3 R**2))**(1/3).
+    """Peak pressure of a ball on a flat ramp.
+
+    Equation: p0 = (24 Q (E*)**2/(pi**3 d_b**2))**(1/3)
 
     Parameters
     ----------
@@ -822,12 +911,14 @@ def ball_pressure(normal_force: Quantity, ball_diameter: Quantity, contact_modul
 def outside_diameter(lining_reach: Quantity, flyweight_reach: Quantity) -> Quantity:
     """Outside diameter over linings and flyweights, twice the larger reach.
 
+    Equation: D = 2 max(R_l, R_w)
+
     Parameters
     ----------
     lining_reach : scalar, array or symbol
-        Outer radius of the lining and the rim around it [m].
+        Outer radius of the lining and the rim around it R_l [m].
     flyweight_reach : scalar, array or symbol
-        Outermost radius of the flyweights and the wall around them [m].
+        Outermost radius of the flyweights and the wall around them R_w [m].
 
     Returns
     -------
@@ -849,7 +940,9 @@ def outside_diameter(lining_reach: Quantity, flyweight_reach: Quantity) -> Quant
 
 
 def plates_mass(density: Quantity, diameter: Quantity, hub_radius: Quantity, thickness: Quantity) -> Quantity:
-    """Mass of all plates as one ring, rho pi (D**2/4 - r_hub**2) t.
+    """Mass of all plates as one ring.
+
+    Equation: m = rho pi (D**2/4 - r_hub**2) t
 
     Parameters
     ----------
@@ -860,7 +953,7 @@ def plates_mass(density: Quantity, diameter: Quantity, hub_radius: Quantity, thi
     hub_radius : scalar, array or symbol
         Inner radius r_hub [m].
     thickness : scalar, array or symbol
-        Steel thickness that all plates together amount to [m].
+        Steel thickness that all plates together amount to, t [m].
 
     Returns
     -------
@@ -892,8 +985,10 @@ def further_discs_mass(
 ) -> Quantity:
     """Mass of all friction discs beyond the first and of the plates between them.
 
-    Each adds a plate of 6 mm as wide as the lining, a core of 2 mm down to the hub and two linings:
-    m = (z_f/2 - 1) pi [rho 6 mm (r_o**2 - r_i**2) + rho 2 mm (r_o**2 - r_hub**2) + 2 rho_l t_l (r_o**2 - r_i**2)].
+    Equation: m = pi (z_f/2 - 1) ((0.006 rho + 2 rho_l t_l) (r_o**2 - r_i**2) + 0.002 rho (r_o**2 - r_hub**2)), with r_i
+        = q r_o
+
+    Each adds a plate of 6 mm as wide as the lining, a core of 2 mm down to the hub and two linings.
 
     Parameters
     ----------
@@ -902,7 +997,7 @@ def further_discs_mass(
     surfaces : scalar, array or symbol
         Friction surfaces z_f, two for each disc [-].
     ring_ratio : scalar, array or symbol
-        r_i/r_o of the lining [-]; the ratio, because limits bound it whatever the outer radius is.
+        Inner over outer radius of the lining, q = r_i/r_o [-]; the ratio, because limits bound it whatever r_o is.
     outer_radius, hub_radius : scalar, array or symbol
         r_o, r_hub [m].
     lining_density, lining_thickness : scalar, array or symbol
@@ -936,7 +1031,9 @@ def overall_length(
     travel: Quantity,
     flyweight_width: Quantity,
 ) -> Quantity:
-    """Length of the clutch, t_plates + (z_f/2 - 1)(8 mm + 2 t_l) + travel + flyweights + 5 mm.
+    """Length of the clutch.
+
+    Equation: L = t_plates + (z_f/2 - 1) (0.008 + 2 t_l) + x + b_w + 0.005
 
     Parameters
     ----------
@@ -947,9 +1044,9 @@ def overall_length(
     lining_thickness : scalar, array or symbol
         Of one lining t_l [m].
     travel : scalar, array or symbol
-        Way along the axis for which there must be room [m].
+        Way along the axis for which there must be room x [m].
     flyweight_width : scalar, array or symbol
-        Flyweights along the axis [m].
+        Flyweights along the axis b_w [m].
 
     Returns
     -------
@@ -980,12 +1077,14 @@ def clutch_inertia(
     spring_mass: Quantity,
     spring_radius: Quantity,
 ) -> Quantity:
-    """Inertia of plates, flyweights and springs, m_d (D**2/4 + r_hub**2)/2 + m r**2 + m_s r_s**2.
+    """Inertia of plates, flyweights and springs.
+
+    Equation: J = m_d (D**2/4 + r_hub**2)/2 + m r**2 + m_s r_s**2
 
     Parameters
     ----------
     plates_mass : scalar, array or symbol
-        Mass of the plates [kg].
+        Mass of the plates m_d [kg].
     diameter : scalar, array or symbol
         Outside diameter D [m].
     hub_radius : scalar, array or symbol
@@ -993,11 +1092,11 @@ def clutch_inertia(
     flyweight_mass : scalar, array or symbol
         m [kg].
     flyweight_radius : scalar, array or symbol
-        Outermost radius of the flyweight centres [m].
+        Outermost radius of the flyweight centres r [m].
     spring_mass : scalar, array or symbol
-        Mass of all springs [kg].
+        Mass of all springs m_s [kg].
     spring_radius : scalar, array or symbol
-        Radius on which they stand [m].
+        Radius on which they stand r_s [m].
 
     Returns
     -------
@@ -1029,6 +1128,8 @@ def spring_bow_load(
 ) -> Quantity:
     """Load across a spring that turns with the clutch: its active coils' own centrifugal force.
 
+    Equation: F = rho (pi d**2/4) (pi D n) r omega**2
+
     Parameters
     ----------
     density : scalar, array or symbol
@@ -1040,7 +1141,7 @@ def spring_bow_load(
     active_coils : scalar, array or symbol
         n [-].
     radius : scalar, array or symbol
-        Radius on which the spring stands [m].
+        Radius on which the spring stands r [m].
     speed : scalar, array or symbol
         omega [rad/s].
 
@@ -1065,14 +1166,16 @@ def spring_bow_load(
 
 
 def rim_stress(density: Quantity, radius: Quantity, speed: Quantity) -> Quantity:
-    """Hoop stress of a thin rim that turns freely, rho (omega r)**2.
+    """Hoop stress of a thin rim that turns freely.
+
+    Equation: sigma = rho (omega r)**2
 
     Parameters
     ----------
     density : scalar, array or symbol
         Density of the rim rho [kg/m3].
     radius : scalar, array or symbol
-        Radius of the rim [m].
+        Radius of the rim r [m].
     speed : scalar, array or symbol
         omega [rad/s].
 

@@ -18,18 +18,38 @@ from __future__ import annotations
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "band_squared",
+    "clamp_angle",
+    "clamp_flyweight_force",
+    "clamp_spring_force",
+    "contact_angle",
+    "gradual_radius",
+    "growth",
+    "plate_force",
+    "retraction_force",
+    "return_force",
+    "rod_force",
+    "speed_squared",
+    "travel_angle",
+    "travel_flyweight_force",
+    "travel_spring_force",
+]
+
 # -- both levers -----------------------------------------------------------------------------------
 
 
 def contact_angle(contact_travel: Quantity, plate_arm: Quantity) -> Quantity:
-    """Lever angle at which the plate meets the disc, phi1 = x0/l.
+    """Lever angle at which the plate meets the disc.
+
+    Equation: phi1 = x0/l
 
     Parameters
     ----------
     contact_travel : scalar, array or symbol
         Gap between plate and disc at rest x0 [m].
     plate_arm : scalar, array or symbol
-        Arm that moves the plate: l_r of the rod, l_p of the reversed lever [m].
+        Arm that moves the plate l [m]: l_r of the rod, l_p of the reversed lever.
 
     Returns
     -------
@@ -54,7 +74,9 @@ def contact_angle(contact_travel: Quantity, plate_arm: Quantity) -> Quantity:
 def travel_spring_force(
     preload: Quantity, rate: Quantity, spring_arm: Quantity, rod_arm: Quantity, angle: Quantity
 ) -> Quantity:
-    """Spring force while the plate travels, F_R = F_R0 + s (l_s - l_r) phi.
+    """Spring force while the plate travels.
+
+    Equation: F_R = F_R0 + s (l_s - l_r) phi
 
     Parameters
     ----------
@@ -91,7 +113,9 @@ def travel_spring_force(
 def clamp_spring_force(
     preload: Quantity, rate: Quantity, spring_arm: Quantity, contact_travel: Quantity, angle: Quantity
 ) -> Quantity:
-    """Spring force from contact on, F_R = F_R0 + s (l_s phi - x0).
+    """Spring force from contact on.
+
+    Equation: F_R = F_R0 + s (l_s phi - x0)
 
     Parameters
     ----------
@@ -128,7 +152,9 @@ def clamp_spring_force(
 def travel_flyweight_force(
     spring_force: Quantity, spring_arm: Quantity, rod_arm: Quantity, flyweight_arm: Quantity
 ) -> Quantity:
-    """Centrifugal force that holds the lever while the rod is taut, F_C = F_R (l_s - l_r)/l_c.
+    """Centrifugal force that holds the lever while the rod is taut.
+
+    Equation: F_C = F_R (l_s - l_r)/l_c
 
     Parameters
     ----------
@@ -163,7 +189,9 @@ def travel_flyweight_force(
 
 
 def clamp_flyweight_force(spring_force: Quantity, spring_arm: Quantity, flyweight_arm: Quantity) -> Quantity:
-    """Centrifugal force that holds a spring force without the rod, F_C = F_R l_s/l_c.
+    """Centrifugal force that holds a spring force without the rod.
+
+    Equation: F_C = F_R l_s/l_c
 
     Parameters
     ----------
@@ -194,7 +222,9 @@ def clamp_flyweight_force(spring_force: Quantity, spring_arm: Quantity, flyweigh
 def rod_force(
     flyweight_force: Quantity, spring_force: Quantity, spring_arm: Quantity, rod_arm: Quantity, flyweight_arm: Quantity
 ) -> Quantity:
-    """Force in the rod while it unloads at contact, F_rod = (F_R1 l_s - F_C l_c)/l_r.
+    """Force in the rod while it unloads at contact.
+
+    Equation: F_rod = (F_R1 l_s - F_C l_c)/l_r
 
     The plate is pressed with what the rod no longer holds back, F_N = F_R1 - F_rod.
 
@@ -231,7 +261,9 @@ def rod_force(
 
 
 def retraction_force(preload: Quantity, spring_arm: Quantity, rod_arm: Quantity) -> Quantity:
-    """Force at the spring's arm that brings the lever home at standstill, F_R0 (1 - l_r/l_s).
+    """Force at the spring's arm that brings the lever home at standstill.
+
+    Equation: F = F_R0 (1 - l_r/l_s)
 
     Parameters
     ----------
@@ -271,7 +303,7 @@ def travel_angle(
 ) -> Quantity:
     """Lever angle at a speed between start and contact, for a lever that does not snap.
 
-    phi = (m r0 omega**2 l_c - F_R0 D)/(s D**2 - m omega**2 l_c**2) with D = l_s - l_r.
+    Equation: phi = (m r0 omega**2 l_c - F_R0 D)/(s D**2 - m omega**2 l_c**2), with D = l_s - l_r
 
     Parameters
     ----------
@@ -326,7 +358,7 @@ def clamp_angle(
 ) -> Quantity:
     """Lever angle at a speed between the free rod (disc 1 lifting) and the stop, for a lever that does not snap.
 
-    phi = (m r0 omega**2 l_c - (F_R0 - s x0) l_s)/(s l_s**2 - m omega**2 l_c**2).
+    Equation: phi = (m r0 omega**2 l_c - (F_R0 - s x0) l_s)/(s l_s**2 - m omega**2 l_c**2)
 
     Parameters
     ----------
@@ -373,7 +405,9 @@ def clamp_angle(
 
 
 def return_force(preload: Quantity, rate: Quantity, travel: Quantity) -> Quantity:
-    """Force of the springs that draw the plate back, F_ret = F_ret0 + s_ret x.
+    """Force of the springs that draw the plate back.
+
+    Equation: F_ret = F_ret0 + s_ret x
 
     Parameters
     ----------
@@ -402,7 +436,9 @@ def return_force(preload: Quantity, rate: Quantity, travel: Quantity) -> Quantit
 
 
 def plate_force(flyweight_force: Quantity, flyweight_arm: Quantity, plate_arm: Quantity) -> Quantity:
-    """Force of the short leg on the plate, P = F_C l_c/l_p.
+    """Force of the short leg on the plate.
+
+    Equation: P = F_C l_c/l_p
 
     Parameters
     ----------
@@ -435,7 +471,9 @@ def plate_force(flyweight_force: Quantity, flyweight_arm: Quantity, plate_arm: Q
 
 
 def gradual_radius(deflection: Quantity, flyweight_arm: Quantity, resisting_arm: Quantity) -> Quantity:
-    """Least rest radius at which a phase of the motion is gradual, delta l_c/l.
+    """Least rest radius at which a phase of the motion is gradual.
+
+    Equation: r0 = delta l_c/l
 
     While a lever moves against a spring, F_C grows with r omega**2 and the spring force with the angle. The lever
     follows the speed step by step only if the spring gains more than the radius does: s l**2 r >= F l l_c at the start
@@ -449,7 +487,7 @@ def gradual_radius(deflection: Quantity, flyweight_arm: Quantity, resisting_arm:
     flyweight_arm : scalar, array or symbol
         l_c [m].
     resisting_arm : scalar, array or symbol
-        Arm at which the spring resists: l_s - l_r or l_p while the plate travels, l_s or l_p while it clamps [m].
+        Arm at which the spring resists l [m]: l_s - l_r or l_p while the plate travels, l_s or l_p while it clamps.
 
     Returns
     -------
@@ -475,12 +513,14 @@ def gradual_radius(deflection: Quantity, flyweight_arm: Quantity, resisting_arm:
 
 
 def growth(start: Quantity, arm: Quantity, angle: Quantity) -> Quantity:
-    """Growth of a length that an arm makes longer, 1 + l phi/x.
+    """Growth of a length that an arm makes longer.
+
+    Equation: q = 1 + l phi/x
 
     Parameters
     ----------
     start : scalar, array or symbol
-        Length before: deflection of the springs, or radius of the flyweights [m].
+        Length before x [m]: deflection of the springs, or radius of the flyweights.
     arm : scalar, array or symbol
         Arm l [m].
     angle : scalar, array or symbol
@@ -506,7 +546,9 @@ def growth(start: Quantity, arm: Quantity, angle: Quantity) -> Quantity:
 
 
 def speed_squared(force: Quantity, mass: Quantity, radius: Quantity) -> Quantity:
-    """Square of the speed at which the flyweights pull with a force, omega**2 = F_C/(m r).
+    """Square of the speed at which the flyweights pull with a force.
+
+    Equation: omega**2 = F_C/(m r)
 
     Parameters
     ----------
@@ -537,7 +579,9 @@ def speed_squared(force: Quantity, mass: Quantity, radius: Quantity) -> Quantity
 
 
 def band_squared(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quantity = 0.0) -> Quantity:
-    """Square of the speed at the stop over that at contact, (F2/F1)/((r2/r1) (1 - l_r/l_s)).
+    """Square of the speed at the stop over that at contact.
+
+    Equation: (omega_stop/omega_contact)**2 = q_F/(q_r (1 - q_l))
 
     Both speeds are sqrt(F_C/(m r)); mass and arm of the flyweights cancel, and so does the rate of the springs where
     the same springs resist at contact and at the stop.
@@ -545,11 +589,11 @@ def band_squared(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quant
     Parameters
     ----------
     force_ratio : scalar, array or symbol
-        Force at the stop over force at contact: of the springs, or of the short leg on the plate [-].
+        Force at the stop over force at contact q_F [-]: of the springs, or of the short leg on the plate.
     radius_ratio : scalar, array or symbol
-        Radius of the flyweights at the stop over that at contact [-].
+        Radius of the flyweights at the stop over that at contact q_r [-].
     rod_ratio : scalar, array or symbol, optional
-        l_r/l_s of a lever with a rod; it is taut at contact and slack at the stop [-].
+        Of a lever with a rod q_l = l_r/l_s [-]; it is taut at contact and slack at the stop.
 
     Returns
     -------

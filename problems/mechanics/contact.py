@@ -14,18 +14,30 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "barrel_contact_pressure",
+    "contact_modulus",
+    "ellipticity",
+    "line_contact_half_width",
+    "line_contact_pressure",
+    "point_contact_half_length",
+    "point_contact_pressure",
+]
+
 
 def contact_modulus(
     first_modulus: Quantity, first_poisson: Quantity, second_modulus: Quantity, second_poisson: Quantity
 ) -> Quantity:
-    """Modulus of a contact, 1/E* = (1 - nu1**2)/E1 + (1 - nu2**2)/E2.
+    """Modulus of a contact.
+
+    Equation: E* = 1/((1 - nu1**2)/E1 + (1 - nu2**2)/E2)
 
     Parameters
     ----------
-    first_modulus, second_modulus : scalar, array or symbol
-        E1, E2 [Pa].
-    first_poisson, second_poisson : scalar, array or symbol
-        nu1, nu2 [-].
+    first_modulus, first_poisson : scalar, array or symbol
+        E1 [Pa], nu1 [-].
+    second_modulus, second_poisson : scalar, array or symbol
+        E2 [Pa], nu2 [-].
 
     Returns
     -------
@@ -49,7 +61,9 @@ def contact_modulus(
 def line_contact_pressure(
     normal_force: Quantity, contact_modulus: Quantity, contact_length: Quantity, roller_radius: Quantity
 ) -> Quantity:
-    """Peak pressure of a cylindrical roller on a flat guide, sqrt(F_n E*/(pi l R)).
+    """Peak pressure of a cylindrical roller on a flat guide.
+
+    Equation: p_H = sqrt(F_n E*/(pi l R))
 
     Parameters
     ----------
@@ -84,7 +98,9 @@ def line_contact_pressure(
 def line_contact_half_width(
     normal_force: Quantity, contact_modulus: Quantity, contact_length: Quantity, roller_radius: Quantity
 ) -> Quantity:
-    """Half width of the contact strip, sqrt(4 F_n R/(pi l E*)).
+    """Half width of the contact strip.
+
+    Equation: a_H = sqrt(4 F_n R/(pi l E*))
 
     Parameters
     ----------
@@ -118,9 +134,10 @@ def line_contact_half_width(
 def point_contact_half_length(
     normal_force: Quantity, contact_modulus: Quantity, roller_radius: Quantity, crown_radius: Quantity
 ) -> Quantity:
-    """Half length of the contact ellipse of a crowned roller along its axis, (3 k**2 e F_n R/(pi E*))**(1/3).
+    """Half length of the contact ellipse of a crowned roller along its axis.
 
-    1/R = 1/R_x + 1/R_y, k = 1.0339 (R_y/R_x)**0.6360, e = 1.0003 + 0.5968 R_x/R_y.
+    Equation: a_y = (3 k**2 e F_n R/(pi E*))**(1/3), with R = 1/(1/R_x + 1/R_y), k = 1.0339 (R_y/R_x)**0.636, e = 1.0003
+        + 0.5968 R_x/R_y
 
     Parameters
     ----------
@@ -154,12 +171,14 @@ def point_contact_half_length(
 
 
 def ellipticity(radius_share: Quantity) -> Quantity:
-    """Long over short axis of the contact ellipse, k = 1.0339 (R_x/R_y)**-0.636.
+    """Long over short axis of the contact ellipse.
+
+    Equation: k = 1.0339 q**(-0.636)
 
     Parameters
     ----------
     radius_share : scalar, array or symbol
-        Radius of the roller over that of its crown R_x/R_y [-], at most 1.
+        Radius of the roller over that of its crown, q = R_x/R_y [-], at most 1.
 
     Returns
     -------
@@ -183,7 +202,10 @@ def ellipticity(radius_share: Quantity) -> Quantity:
 def point_contact_pressure(
     normal_force: Quantity, contact_modulus: Quantity, roller_radius: Quantity, crown_radius: Quantity
 ) -> Quantity:
-    """Peak pressure of a crowned roller on a flat guide, 3 F_n k/(2 pi a_y**2).
+    """Peak pressure of a crowned roller on a flat guide.
+
+    Equation: p_H = 3 F_n k/(2 pi a_y**2), with k = 1.0339 (R_y/R_x)**0.636, a_y = point_contact_half_length(F_n, E*,
+        R_x, R_y)
 
     Parameters
     ----------
@@ -224,6 +246,8 @@ def barrel_contact_pressure(
     barrel_radius: Quantity,
 ) -> Quantity:
     """Peak pressure under a closed chain of barrel rollers in a cylindrical guide, line contact of F_n/k each.
+
+    Equation: p_H = sqrt(F_n E*/(k pi l R))
 
     Parameters
     ----------

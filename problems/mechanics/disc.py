@@ -13,13 +13,34 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "COVER_LEAST",
+    "COVER_RATIO",
+    "HOTTEST_PLATE_SHARE",
+    "SPRING_RATIO",
+    "SPRING_ROOM",
+    "clutch_length",
+    "core_inertia",
+    "cover_mass",
+    "cover_thickness",
+    "diaphragm_spring_mass",
+    "disc_inertia",
+    "hub_mass",
+    "lining_inertia",
+    "pressure_plate_mass",
+    "surface_count",
+    "worn_pressure",
+]
+
 # The linings insulate, so that the metal takes the heat. The pressure plate of a single disc meets one surface of two;
 # of a twin disc the intermediate plate is the hottest and meets two of four.
-HOTTEST_PLATE_SHARE = 0.5
+HOTTEST_PLATE_SHARE = 0.5  # of the work of an engagement, that enters the hottest plate
 
 
 def surface_count(discs: Quantity) -> Quantity:
-    """Friction surface pairs of lined discs, z = 2 n_d.
+    """Friction surface pairs of lined discs.
+
+    Equation: z = 2 n_d
 
     Parameters
     ----------
@@ -44,7 +65,9 @@ def surface_count(discs: Quantity) -> Quantity:
 
 
 def pressure_plate_mass(density: Quantity, thickness: Quantity, ring_area: Quantity) -> Quantity:
-    """Mass of a pressure plate as wide as the friction ring, rho t A1.
+    """Mass of a pressure plate as wide as the friction ring.
+
+    Equation: m = rho t_p A1
 
     Parameters
     ----------
@@ -75,16 +98,18 @@ def pressure_plate_mass(density: Quantity, thickness: Quantity, ring_area: Quant
 
 
 def lining_inertia(density: Quantity, thickness: Quantity, mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Moment of inertia of the two linings of a disc, rho t pi (r2**4 - r1**4).
+    """Moment of inertia of the two linings of a disc.
+
+    Equation: J = rho t pi dm**4 c (1 + c**2)/2
 
     Uses r2**4 - r1**4 = dm**4 c (1 + c**2)/2.
 
     Parameters
     ----------
     density : scalar, array or symbol
-        Density of the lining [kg/m3].
+        Density of the lining rho [kg/m3].
     thickness : scalar, array or symbol
-        Thickness of one lining [m].
+        Thickness of one lining t [m].
     mean_diameter : scalar, array or symbol
         dm [m].
     ring_ratio : scalar, array or symbol
@@ -110,7 +135,9 @@ def lining_inertia(density: Quantity, thickness: Quantity, mean_diameter: Quanti
 
 
 def core_inertia(density: Quantity, thickness: Quantity, outer_radius: Quantity, hub_radius: Quantity) -> Quantity:
-    """Moment of inertia of the core of a disc, rho t pi (r2**4 - r_hub**4)/2.
+    """Moment of inertia of the core of a disc.
+
+    Equation: J = rho t_core pi (r2**4 - r_hub**4)/2
 
     Parameters
     ----------
@@ -141,14 +168,16 @@ def core_inertia(density: Quantity, thickness: Quantity, outer_radius: Quantity,
 
 
 def disc_inertia(discs: Quantity, lining: Quantity, core: Quantity) -> Quantity:
-    """Moment of inertia of the discs on the driven shaft, n_d (J_lining + J_core).
+    """Moment of inertia of the discs on the driven shaft.
+
+    Equation: J_disc = n_d (J_lining + J_core)
 
     Parameters
     ----------
     discs : scalar, array or symbol
         n_d [-].
     lining, core : scalar, array or symbol
-        Both linings and the core of one disc [kg m2].
+        Of one disc both linings J_lining and the core J_core [kg m2].
 
     Returns
     -------
@@ -170,20 +199,22 @@ def disc_inertia(discs: Quantity, lining: Quantity, core: Quantity) -> Quantity:
 def clutch_length(
     discs: Quantity, lining_thickness: Quantity, core_thickness: Quantity, plate_thickness: Quantity, gap: Quantity
 ) -> Quantity:
-    """Length of the released clutch, n_d (2 t_lining + t_core + t_p) + z gap.
+    """Length of the released clutch.
+
+    Equation: L = n_d (2 t_lining + t_core + t_p) + 2 n_d gap
 
     Parameters
     ----------
     discs : scalar, array or symbol
         n_d [-].
     lining_thickness : scalar, array or symbol
-        One lining [m].
+        One lining t_lining [m].
     core_thickness : scalar, array or symbol
         t_core [m].
     plate_thickness : scalar, array or symbol
         Pressure plate t_p [m].
     gap : scalar, array or symbol
-        Release gap per surface [m].
+        Release gap per surface, gap [m].
 
     Returns
     -------
@@ -205,7 +236,9 @@ def clutch_length(
 
 
 def worn_pressure(force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity, radius: Quantity) -> Quantity:
-    """Pressure of a worn-in lining at a radius, p = F/(2 pi r (r2 - r1)).
+    """Pressure of a worn-in lining at a radius.
+
+    Equation: p = F/(2 pi r dm c)
 
     Parameters
     ----------
@@ -237,13 +270,16 @@ def worn_pressure(force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity
     return force / (2 * np.pi * radius * mean_diameter * ring_ratio)
 
 
-COVER_LEAST, COVER_RATIO = 3e-3, 60.0  # least thickness of a cover [m], outside diameter over thickness: practice
+COVER_LEAST = 3e-3  # least thickness of a cover [m]: practice
+COVER_RATIO = 60.0  # outside diameter over thickness of a cover: practice
 SPRING_RATIO = 90.0  # ring diameter over thickness of a diaphragm spring: practice
 SPRING_ROOM = 0.12  # length of a dished diaphragm spring with its bearing over ring diameter: practice
 
 
 def cover_thickness(diameter: Quantity) -> Quantity:
-    """Thickness of the pressed cover, t_c = max(3 mm, D/60).
+    """Thickness of the pressed cover, 3 mm at least.
+
+    Equation: t_c = max(0.003, D/60)
 
     Parameters
     ----------
@@ -268,7 +304,9 @@ def cover_thickness(diameter: Quantity) -> Quantity:
 
 
 def hub_mass(density: Quantity, discs: Quantity, hub_radius: Quantity, shaft_diameter: Quantity) -> Quantity:
-    """Mass of the hubs of the discs, as long as the shaft is thick, n_d rho pi (r_hub**2 - (d_s/2)**2) d_s.
+    """Mass of the hubs of the discs, as long as the shaft is thick.
+
+    Equation: m = n_d rho pi (r_hub**2 - (d_s/2)**2) d_s
 
     Parameters
     ----------
@@ -301,7 +339,9 @@ def hub_mass(density: Quantity, discs: Quantity, hub_radius: Quantity, shaft_dia
 
 
 def cover_mass(density: Quantity, diameter: Quantity, length: Quantity) -> Quantity:
-    """Mass of the cover, a ring face of 60 % of the disc and a shell, rho t_c (0.6 pi D**2/4 + pi D L).
+    """Mass of the cover, a ring face of 60 % of the disc and a shell.
+
+    Equation: m = rho t_c (0.6 pi D**2/4 + pi D L), with t_c = max(0.003, D/60)
 
     Parameters
     ----------
@@ -330,7 +370,9 @@ def cover_mass(density: Quantity, diameter: Quantity, length: Quantity) -> Quant
 
 
 def diaphragm_spring_mass(density: Quantity, outer_radius: Quantity) -> Quantity:
-    """Mass of a diaphragm spring, three quarters of a disc of 0.9 r2, rho pi 0.75 (0.9 r2)**2 2 r2/90.
+    """Mass of a diaphragm spring, three quarters of a disc of 0.9 r2.
+
+    Equation: m = rho pi 0.75 (0.9 r2)**2 (2 r2/90)
 
     Parameters
     ----------

@@ -33,14 +33,42 @@ from problems.mechanics.ring import friction_radius, mean_diameter, ring_ratio
 from synth.errors import InputError
 from synth.special import special
 
-GUIDE_SERIES = ("geometric", "exponential_form", "lipka", "exponential_K", "exact")
+__all__ = [
+    "GUIDE_SERIES",
+    "RELATION_VARIABLES",
+    "contact_force",
+    "damped_guide_number",
+    "exponential_k_error",
+    "first_phase_push_force",
+    "guarded_damping",
+    "guide_jams",
+    "guide_number",
+    "guide_number_of_effectiveness",
+    "guide_ratio",
+    "legacy_plate_limit",
+    "plate_torque",
+    "solve_relation",
+    "sum_exact",
+    "sum_exponential_k",
+    "sum_geometric",
+    "sum_lipka",
+    "surface_limit_exponential",
+    "surface_limit_geometric",
+    "surface_limit_lipka",
+    "torque_asymptote",
+    "torque_sum_factor",
+]
+
+GUIDE_SERIES = ("geometric", "exponential_form", "lipka", "exponential_K", "exact")  # names of the sum factors
 
 # Added to S so that E stays finite for frictionless guides; it changes E by less than 1e-10 of its value.
 _TINY_GUIDE_NUMBER = 1e-12
 
 
 def guide_ratio(mu: Quantity, mu_guide: Quantity, friction_radius: Quantity, spline_radius: Quantity) -> Quantity:
-    """Guide friction of one kind of plate, kappa = mu mu1 r/radius; at kappa >= 1 the plate jams.
+    """Guide friction of one kind of plate; at kappa >= 1 the plate jams.
+
+    Equation: kappa = mu mu1 r/R
 
     Parameters
     ----------
@@ -49,7 +77,7 @@ def guide_ratio(mu: Quantity, mu_guide: Quantity, friction_radius: Quantity, spl
     friction_radius : scalar, array or symbol
         r [m].
     spline_radius : scalar, array or symbol
-        Mean spline radius, a of inner or b of outer plates [m].
+        Mean spline radius R [m], a of inner or b of outer plates.
 
     Returns
     -------
@@ -77,7 +105,9 @@ def guide_number(
     inner_spline_radius: Quantity,
     outer_spline_radius: Quantity,
 ) -> Quantity:
-    """Guide number, S = mu mu1 r (a + b)/(a b).
+    """Guide number.
+
+    Equation: S = mu mu1 r (a + b)/(a b)
 
     Parameters
     ----------
@@ -106,7 +136,9 @@ def guide_number(
 
 
 def damped_guide_number(guide_number: Quantity) -> Quantity:
-    """Constant of the continuous pack, K = S/(1 + S).
+    """Constant of the continuous pack.
+
+    Equation: K = S/(1 + S)
 
     Parameters
     ----------
@@ -133,6 +165,8 @@ def damped_guide_number(guide_number: Quantity) -> Quantity:
 def guarded_damping(guide_number: Quantity) -> Quantity:
     """Constant of the continuous pack as the series use it, K of S + 1e-12, so that S may be 0.
 
+    Equation: K = (S + 1e-12)/(1 + S + 1e-12)
+
     Parameters
     ----------
     guide_number : scalar, array or symbol
@@ -157,7 +191,9 @@ def guarded_damping(guide_number: Quantity) -> Quantity:
 
 @special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
-    """Sum factor of the geometric series, E = (1 - (1+S)**-z)/S; z for S = 0.
+    """Sum factor of the geometric series; z for S = 0.
+
+    Equation: E = (1 - (1 + S)**-z)/S
 
     Parameters
     ----------
@@ -188,7 +224,9 @@ def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
 
 @special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def sum_lipka(surfaces: Quantity, guide_number: Quantity) -> Quantity:
-    """Sum factor with ln(1+S) replaced by S, E = (1 - exp(-z S))/S; z for S = 0.
+    """Sum factor with ln(1+S) replaced by S; z for S = 0.
+
+    Equation: E = (1 - exp(-z S))/S
 
     Parameters
     ----------
@@ -218,7 +256,9 @@ def sum_lipka(surfaces: Quantity, guide_number: Quantity) -> Quantity:
 
 
 def sum_exponential_k(surfaces: Quantity, guide_number: Quantity) -> Quantity:
-    """Sum factor of the continuous pack, E = (1 - exp(-z K))/K with K = S/(1+S); z for S = 0.
+    """Sum factor of the continuous pack; z for S = 0.
+
+    Equation: E = (1 - exp(-z K))/K, with K = S/(1 + S)
 
     Parameters
     ----------
@@ -249,7 +289,9 @@ def sum_exponential_k(surfaces: Quantity, guide_number: Quantity) -> Quantity:
 
 @special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0))
 def sum_exact(surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
-    """Sum factor of the plate-by-plate balance, E = (1 - exp(-z (artanh kappa_a + artanh kappa_b)))/S.
+    """Sum factor of the plate-by-plate balance.
+
+    Equation: E = (1 - exp(-z (artanh(kappa_a) + artanh(kappa_b))))/(kappa_a + kappa_b)
 
     Every plate hands the friction torque of both its faces to its guide. The closed form is for even z.
 
@@ -283,6 +325,9 @@ def sum_exact(surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) 
 
 def torque_sum_factor(series: str, surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
     """Sum factor E of a chosen series.
+
+    Equation: E = sum_lipka(z, S) if lipka else sum_exponential_k(z, S) if exponential_K else sum_exact(z, kappa_a,
+        kappa_b) if exact else sum_geometric(z, S), with S = kappa_a + kappa_b
 
     Parameters
     ----------
@@ -332,7 +377,10 @@ def _twice_artanh(inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
 def contact_force(
     series: str, force: Quantity, surface: Quantity, inner_ratio: Quantity, outer_ratio: Quantity
 ) -> Quantity:
-    """Contact force on surface j counted from the actuator, F_j = F0 (E(j) - E(j-1)).
+    """Contact force on surface j counted from the actuator.
+
+    Equation: F_j = F0 (E_j - E_i), with E_j = torque_sum_factor(series, j, kappa_a, kappa_b), E_i =
+        torque_sum_factor(series, j - 1, kappa_a, kappa_b)
 
     Parameters
     ----------
@@ -385,14 +433,16 @@ def contact_force(
 def plate_torque(mu: Quantity, friction_radius: Quantity, *contact_forces: Quantity) -> Quantity:
     """Torque that one plate hands to its spline, mu r times the contact forces on its faces.
 
+    Equation: M = mu r sum(F_j)
+
     Parameters
     ----------
     mu : scalar, array or symbol
-        Friction between plates [-].
+        Friction between plates mu [-].
     friction_radius : scalar, array or symbol
         r [m].
     *contact_forces : scalar, array or symbol
-        Force on each rubbing face [N].
+        Force on each rubbing face F_j [N].
 
     Returns
     -------
@@ -416,7 +466,9 @@ def plate_torque(mu: Quantity, friction_radius: Quantity, *contact_forces: Quant
 def torque_asymptote(
     force: Quantity, mu_guide: Quantity, inner_spline_radius: Quantity, outer_spline_radius: Quantity
 ) -> Quantity:
-    """Torque that no number of plates can exceed, F0 a b/(mu1 (a + b)), whatever mu, r and z.
+    """Torque that no number of plates can exceed, whatever mu, r and z.
+
+    Equation: M = F0 a b/(mu1 (a + b))
 
     Parameters
     ----------
@@ -448,7 +500,9 @@ def torque_asymptote(
 
 
 def exponential_k_error(surfaces: Quantity, guide_number: Quantity) -> Quantity:
-    """Relative error of eq. (10) against eq. (5), (1+S)(1 - exp(-K z))/(1 - (1+S)**-z) - 1.
+    """Relative error of eq. (10) against eq. (5).
+
+    Equation: error = (1 + S) (1 - exp(-K z))/(1 - (1 + S)**-z) - 1, with K = S/(1 + S)
 
     Parameters
     ----------
@@ -475,7 +529,9 @@ def exponential_k_error(surfaces: Quantity, guide_number: Quantity) -> Quantity:
 
 
 def legacy_plate_limit(guide_number: Quantity) -> Quantity:
-    """Plate limit of the three-term series, sqrt2/K: surfaces beyond which more torque is lost than gained.
+    """Plate limit of the three-term series: surfaces beyond which more torque is lost than gained.
+
+    Equation: z = sqrt(2)/K, with K = S/(1 + S)
 
     Kept for comparison with S0; the cautious limit is :func:`surface_limit_geometric`.
 
@@ -511,6 +567,9 @@ def first_phase_push_force(
 ) -> Quantity:
     """Force that closes the gaps of the first plates, against weight and torque friction in the guides.
 
+    Equation (recursion): N_j = (mu1 G_j + (1 + kappa_j) N_(j+1))/(1 - kappa_j), at the actuator mu1 G_0 + (1 + kappa_0)
+        N_1
+
     Plates 0, I, 1, II, ... alternate inner and outer. The last one pushed, p, needs
     N_p = mu1 G_p/(1 - kappa_p); further forward N_j = (mu1 G_j + (1 + kappa_j) N_(j+1))/(1 - kappa_j), and the
     actuator mu1 G_0 + (1 + kappa_0) N_1. Shaft horizontal; weight and torque friction are added as
@@ -519,9 +578,9 @@ def first_phase_push_force(
     Parameters
     ----------
     weights : sequence of scalars, arrays or symbols
-        Weights of the plates from the actuator on, first an inner one [N].
+        Weights of the plates from the actuator on, first an inner one G_0, G_1, ... [N].
     mu, mu_guide : scalar, array or symbol
-        Friction between plates and in the guides [-].
+        Friction between plates mu and in the guides mu1 [-].
     friction_radius : scalar, array or symbol
         r [m].
     inner_spline_radius, outer_spline_radius : scalar, array or symbol
@@ -555,16 +614,18 @@ def first_phase_push_force(
 
 
 def guide_jams(mu: Quantity, mu_guide: Quantity, friction_radius: Quantity, spline_radius: Quantity) -> Quantity:
-    """Whether a plate jams in its guide, mu mu1 r >= radius.
+    """Whether a plate jams in its guide.
+
+    Equation: jams = mu mu1 r >= R
 
     Parameters
     ----------
     mu, mu_guide : scalar, array or symbol
-        Friction between plates and in the guides [-].
+        Friction between plates mu and in the guides mu1 [-].
     friction_radius : scalar, array or symbol
         r [m].
     spline_radius : scalar, array or symbol
-        Mean spline radius of the plate [m].
+        Mean spline radius of the plate R [m].
 
     Returns
     -------
@@ -603,7 +664,9 @@ def _scaled_limit(start: Quantity) -> Quantity:
 
 
 def surface_limit_exponential(guide_number: Quantity, threshold: float = 0.5) -> Quantity:
-    """Surfaces beyond which E/z of eq. (10) falls below a threshold, K z = 1/eta + W0(-exp(-1/eta)/eta).
+    """Surfaces beyond which E/z of eq. (10) falls below a threshold.
+
+    Equation: z = (1/eta + W0(-exp(-1/eta)/eta))/K, with K = S/(1 + S)
 
     Numeric only.
 
@@ -636,6 +699,8 @@ def surface_limit_exponential(guide_number: Quantity, threshold: float = 0.5) ->
 def surface_limit_lipka(guide_number: Quantity, threshold: float = 0.5) -> Quantity:
     """Surfaces beyond which E/z of eq. (5'') falls below a threshold. Numeric only.
 
+    Equation: z = (1/eta + W0(-exp(-1/eta)/eta))/S
+
     Parameters
     ----------
     guide_number : scalar or array
@@ -665,7 +730,7 @@ def surface_limit_lipka(guide_number: Quantity, threshold: float = 0.5) -> Quant
 def surface_limit_geometric(guide_number: Quantity, threshold: float = 0.5) -> Quantity:
     """Surfaces beyond which E/z of eq. (5) falls below a threshold: the limit to use. Numeric only.
 
-    With L = ln(1+S) and q = L/(eta S): z = (q + W0(-q exp(-q)))/L.
+    Equation: z = (q + W0(-q exp(-q)))/L, with L = ln(1 + S), q = L/(eta S)
 
     Parameters
     ----------
@@ -696,6 +761,8 @@ def surface_limit_geometric(guide_number: Quantity, threshold: float = 0.5) -> Q
 
 def guide_number_of_effectiveness(effectiveness: float, surfaces: float, series: str = "geometric") -> float:
     """Guide number S at which E/z takes a value: what a surface-count factor c_z stands for. Numeric only.
+
+    Equation (implicit): E(z, S)/z = effectiveness
 
     Parameters
     ----------
@@ -759,7 +826,9 @@ RELATION_VARIABLES = (
 
 
 def solve_relation(unknown: str, series: str = "geometric", **known: float) -> float:
-    """Solve M = mu F0 r E(z, S) for any one of its nine variables. Numeric only.
+    """Solve the torque of a pack for any one of its nine variables. Numeric only.
+
+    Equation (implicit): M = mu F0 r E(z, S)
 
     The nine are inner_radius r1, outer_radius r2, inner_spline_radius a, outer_spline_radius b, mu, mu_guide mu1,
     surfaces z (real), force F0 and torque M. The torque rises with all of them but mu_guide, so

@@ -13,14 +13,31 @@ import numpy as np
 from problems.mechanics import Quantity
 from synth.special import special
 
+__all__ = [
+    "adiabatic_rise",
+    "allowed_work_at_rate",
+    "cycle_time",
+    "flash_rise",
+    "hourly_heat",
+    "mean_temperature_rise",
+    "peak_rise_per_work",
+    "peak_temperature_rise",
+    "power_density",
+    "single_heat",
+    "specific_hourly_heat",
+    "thermal_time_constant",
+]
+
 
 def cycle_time(switching_rate: Quantity) -> Quantity:
-    """Time from one engagement to the next, t_c = 1/rate.
+    """Time from one engagement to the next.
+
+    Equation: t_c = 1/f
 
     Parameters
     ----------
     switching_rate : scalar, array or symbol
-        Engagements per second [1/s].
+        Engagements per second f [1/s].
 
     Returns
     -------
@@ -40,14 +57,16 @@ def cycle_time(switching_rate: Quantity) -> Quantity:
 
 
 def hourly_heat(friction_work: Quantity, switching_rate: Quantity) -> Quantity:
-    """Mean heat flow of repeated engagements, W times rate.
+    """Mean heat flow of repeated engagements, their work times their rate.
+
+    Equation: P = W f
 
     Parameters
     ----------
     friction_work : scalar, array or symbol
         Work per engagement W [J].
     switching_rate : scalar, array or symbol
-        Engagements per second [1/s].
+        Engagements per second f [1/s].
 
     Returns
     -------
@@ -67,14 +86,16 @@ def hourly_heat(friction_work: Quantity, switching_rate: Quantity) -> Quantity:
 
 
 def specific_hourly_heat(friction_work: Quantity, switching_rate: Quantity, area: Quantity) -> Quantity:
-    """Mean heat flux into the friction surfaces, w = W rate/A.
+    """Mean heat flux into the friction surfaces.
+
+    Equation: w = W f/A
 
     Parameters
     ----------
     friction_work : scalar, array or symbol
         Work per engagement W [J].
     switching_rate : scalar, array or symbol
-        Engagements per second [1/s].
+        Engagements per second f [1/s].
     area : scalar, array or symbol
         All friction surfaces A [m2].
 
@@ -96,7 +117,9 @@ def specific_hourly_heat(friction_work: Quantity, switching_rate: Quantity, area
 
 
 def single_heat(friction_work: Quantity, area: Quantity) -> Quantity:
-    """Friction work per engagement and area, Q_A = W/A.
+    """Friction work per engagement and area.
+
+    Equation: Q_A = W/A
 
     Parameters
     ----------
@@ -125,7 +148,9 @@ def single_heat(friction_work: Quantity, area: Quantity) -> Quantity:
 
 
 def power_density(slip_power: Quantity, area: Quantity) -> Quantity:
-    """Friction power per area, q = P/A.
+    """Friction power per area.
+
+    Equation: q = P/A
 
     Parameters
     ----------
@@ -156,18 +181,20 @@ def power_density(slip_power: Quantity, area: Quantity) -> Quantity:
 def mean_temperature_rise(
     friction_work: Quantity, switching_rate: Quantity, heat_transfer: Quantity, cooled_area: Quantity
 ) -> Quantity:
-    """Mean rise over ambient of a body heated at every engagement, W rate/(h A).
+    """Mean rise over ambient of a body heated at every engagement.
+
+    Equation: dT = W f/(h A)
 
     Parameters
     ----------
     friction_work : scalar, array or symbol
         Work per engagement W [J].
     switching_rate : scalar, array or symbol
-        Engagements per second [1/s].
+        Engagements per second f [1/s].
     heat_transfer : scalar, array or symbol
         Surface coefficient h [W/(m2 K)].
     cooled_area : scalar, array or symbol
-        Surface that gives off heat [m2].
+        Surface that gives off heat A [m2].
 
     Returns
     -------
@@ -189,7 +216,9 @@ def mean_temperature_rise(
 
 
 def thermal_time_constant(heat_capacity: Quantity, heat_transfer: Quantity, cooled_area: Quantity) -> Quantity:
-    """Time constant of a lumped body, tau = C/(h A).
+    """Time constant of a lumped body.
+
+    Equation: tau = C/(h A)
 
     Parameters
     ----------
@@ -198,7 +227,7 @@ def thermal_time_constant(heat_capacity: Quantity, heat_transfer: Quantity, cool
     heat_transfer : scalar, array or symbol
         Surface coefficient h [W/(m2 K)].
     cooled_area : scalar, array or symbol
-        Surface that gives off heat [m2].
+        Surface that gives off heat A [m2].
 
     Returns
     -------
@@ -226,7 +255,9 @@ def peak_temperature_rise(
     heat_transfer: Quantity,
     cooled_area: Quantity,
 ) -> Quantity:
-    """Rise over ambient just after an engagement, in steady repetition, (W/C)/(1 - exp(-t_c/tau)).
+    """Rise over ambient just after an engagement, in steady repetition.
+
+    Equation: dT = (W/C)/(1 - exp(-t_c/tau)), with t_c = 1/f, tau = C/(h A)
 
     Written with expm1, because t_c is often much shorter than tau; at a low rate it is the single adiabatic rise W/C.
 
@@ -235,13 +266,13 @@ def peak_temperature_rise(
     friction_work : scalar, array or symbol
         Work per engagement W [J].
     switching_rate : scalar, array or symbol
-        Engagements per second, 1/t_c [1/s].
+        Engagements per second f [1/s].
     heat_capacity : scalar, array or symbol
         C [J/K].
     heat_transfer : scalar, array or symbol
         Surface coefficient h [W/(m2 K)].
     cooled_area : scalar, array or symbol
-        Surface that gives off heat [m2].
+        Surface that gives off heat A [m2].
 
     Returns
     -------
@@ -266,18 +297,20 @@ def peak_temperature_rise(
 def peak_rise_per_work(
     switching_rate: Quantity, heat_capacity: Quantity, heat_transfer: Quantity, cooled_area: Quantity
 ) -> Quantity:
-    """Peak temperature rise in steady repetition per joule of an engagement, 1/(C (1 - exp(-t_c/tau))).
+    """Peak temperature rise in steady repetition per joule of an engagement.
+
+    Equation: dT/W = 1/(C (1 - exp(-t_c/tau))), with t_c = 1/f, tau = C/(h A)
 
     Parameters
     ----------
     switching_rate : scalar, array or symbol
-        Engagements per second, 1/t_c [1/s].
+        Engagements per second f [1/s].
     heat_capacity : scalar, array or symbol
         C [J/K].
     heat_transfer : scalar, array or symbol
         Surface coefficient h [W/(m2 K)].
     cooled_area : scalar, array or symbol
-        Surface that gives off heat [m2].
+        Surface that gives off heat A [m2].
 
     Returns
     -------
@@ -300,7 +333,9 @@ def peak_rise_per_work(
 
 
 def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quantity, share: Quantity = 1.0) -> Quantity:
-    """Rise of a body that takes a share of the work without losing heat, share W/(m c_p).
+    """Rise of a body that takes a share of the work without losing heat.
+
+    Equation: dT = x W/(m c_p)
 
     Parameters
     ----------
@@ -311,7 +346,7 @@ def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quant
     specific_heat : scalar, array or symbol
         c_p [J/(kg K)].
     share : scalar, array or symbol
-        Part of W that enters the body [-]; 1/2 for the hottest pressure plate of a single or twin disc.
+        Part of W that enters the body x [-]; 1/2 for the hottest pressure plate of a single or twin disc.
 
     Returns
     -------
@@ -335,7 +370,9 @@ def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quant
 def flash_rise(
     heat_flux: Quantity, slip_time: Quantity, conductivity: Quantity, density: Quantity, specific_heat: Quantity
 ) -> Quantity:
-    """Largest surface rise under a flux that falls linearly to zero, (2 sqrt2/3) q0 sqrt(t_s/pi)/e, at t_s/2.
+    """Largest surface rise under a flux that falls linearly to zero, at half the time.
+
+    Equation: dT = (2 sqrt(2)/3) q0 sqrt(t_s/pi)/e, with e = sqrt(k rho c)
 
     Parameters
     ----------
@@ -371,7 +408,9 @@ def flash_rise(
 
 
 def allowed_work_at_rate(single_work: Quantity, transition_rate: Quantity, switching_rate: Quantity) -> Quantity:
-    """Work per engagement allowed at a switching rate, Q = Q_E (1 - exp(-S_hu/S_h)).
+    """Work per engagement allowed at a switching rate.
+
+    Equation: Q = Q_E (1 - exp(-S_hu/S_h))
 
     Parameters
     ----------

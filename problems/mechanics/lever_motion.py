@@ -17,8 +17,20 @@ import numpy as np
 from problems.mechanics import Quantity, centrifugal
 from problems.mechanics import centrifugal_levers as levers
 
+__all__ = [
+    "CLAMP",
+    "CONTACT",
+    "REST",
+    "STOP",
+    "TRAVEL",
+    "Borders",
+    "Motion",
+    "ReversedLever",
+    "RodLever",
+]
+
 REST, TRAVEL, CONTACT, CLAMP, STOP = range(5)
-ROUNDING = 1e-12
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -36,7 +48,7 @@ class Borders:
     def snaps(self) -> bool:
         """Whether the lever jumps through a phase."""
         start, contact, free, stop = self.speeds
-        return start > contact * (1 + ROUNDING) or free > stop * (1 + ROUNDING)
+        return start > contact * (1 + _ROUNDING) or free > stop * (1 + _ROUNDING)
 
 
 @dataclass(frozen=True)

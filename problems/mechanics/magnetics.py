@@ -17,6 +17,37 @@ from problems.mechanics import Quantity
 from synth.errors import InputError
 from synth.special import special
 
+__all__ = [
+    "COPPER_COEFFICIENT",
+    "COPPER_DENSITY",
+    "COPPER_REFERENCE",
+    "COPPER_RESISTIVITY",
+    "MU_0",
+    "UNIT_HEAT_TRANSFER",
+    "UNIT_SPEED",
+    "coil_resistance",
+    "coil_temperature_rise",
+    "cold_copper_loss",
+    "copper_fill",
+    "copper_mass",
+    "current_rise_time",
+    "cylinder_surface",
+    "flux_density_at",
+    "froehlich_field",
+    "gap_field",
+    "heat_transfer_in_motion",
+    "hot_copper_loss",
+    "iron_field",
+    "iron_reluctivity",
+    "larger",
+    "pole_force",
+    "resistance_ratio",
+    "resistance_rise",
+    "runaway_loss",
+    "time_constant",
+    "turns",
+]
+
 MU_0 = 4e-7 * np.pi  # magnetic constant [V s/(A m)]
 COPPER_RESISTIVITY = 1.72e-8  # at 20 degC [ohm m]
 COPPER_COEFFICIENT = 0.00393  # of the resistance at 20 degC [1/K]
@@ -31,7 +62,9 @@ UNIT_SPEED = 1.0  # [m/s]
 
 
 def gap_field(flux_density: Quantity, relative_permeability: Quantity = 1.0) -> Quantity:
-    """Magnetic field in a gap, B/(mu0 mu_r); times the length of the gap it is the ampere-turns that the gap needs.
+    """Magnetic field in a gap; times the length of the gap it is the ampere-turns that the gap needs.
+
+    Equation: H = B/(mu0 mu_r), with mu0 = 4e-7 pi V s/(A m)
 
     Parameters
     ----------
@@ -61,6 +94,8 @@ def gap_field(flux_density: Quantity, relative_permeability: Quantity = 1.0) -> 
 
 def froehlich_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
     """Magnetic field in iron after Froehlich, the formula of :func:`iron_field`, which a step names.
+
+    Equation: H = a_fe B/(1 - B/B_s)
 
     Parameters
     ----------
@@ -92,7 +127,9 @@ def froehlich_field(flux_density: Quantity, iron_reluctance: Quantity, iron_satu
 
 @special((1.0, np.inf), (1.0, 1.0), (-np.inf, 0.0), curvature="log-convex", above=(2, 0))
 def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
-    """Magnetic field in iron after Froehlich, a_fe B/(1 - B/B_s).
+    """Magnetic field in iron after Froehlich.
+
+    Equation: H = a_fe B/(1 - B/B_s)
 
     Parameters
     ----------
@@ -123,7 +160,9 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
 
 
 def iron_reluctivity(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
-    """Field over flux density of iron after Froehlich, H/B = a_fe/(1 - B/B_s).
+    """Field over flux density of iron after Froehlich.
+
+    Equation: H/B = a_fe/(1 - B/B_s)
 
     Parameters
     ----------
@@ -156,10 +195,12 @@ def iron_reluctivity(flux_density: Quantity, iron_reluctance: Quantity, iron_sat
 def larger(first: Quantity, second: Quantity) -> Quantity:
     """Return the larger of two: of two flux densities in series, or of two radii outside.
 
+    Equation: x = max(x1, x2)
+
     Parameters
     ----------
     first, second : scalar, array or symbol
-        Two of one kind, for example B of two sections [T].
+        Two of one kind x1, x2, for example the flux densities of two sections [T].
 
     Returns
     -------
@@ -179,14 +220,16 @@ def larger(first: Quantity, second: Quantity) -> Quantity:
 
 
 def pole_force(flux_density: Quantity, area: Quantity) -> Quantity:
-    """Pull of a pole face across an air gap, B**2 A/(2 mu0).
+    """Pull of a pole face across an air gap.
+
+    Equation: F = B**2 A/(2 mu0), with mu0 = 4e-7 pi V s/(A m)
 
     Parameters
     ----------
     flux_density : scalar, array or symbol
         B in the gap [T].
     area : scalar, array or symbol
-        All pole faces together [m2].
+        All pole faces together A [m2].
 
     Returns
     -------
@@ -211,6 +254,8 @@ def flux_density_at(
     ampere_turns: float, excitation: Callable[[np.ndarray], np.ndarray], highest: float, steps: int = 200
 ) -> float:
     """Flux density that some ampere-turns give: the inverse of a rising magnetisation curve, by bisection.
+
+    Equation (implicit): NI(B) = NI
 
     Numeric only, for curves and checks; in a design problem the flux density is the unknown.
 
@@ -262,7 +307,9 @@ def flux_density_at(
 
 
 def turns(winding_factor: Quantity, window_area: Quantity, wire_diameter: Quantity) -> Quantity:
-    """Return the turns that a window holds, k_wind A_w/d_o**2; a real number.
+    """Return the turns that a window holds; a real number.
+
+    Equation: N = k_wind A_w/d_o**2
 
     Parameters
     ----------
@@ -293,7 +340,9 @@ def turns(winding_factor: Quantity, window_area: Quantity, wire_diameter: Quanti
 
 
 def copper_fill(copper_area: Quantity, wire_diameter: Quantity) -> Quantity:
-    """Copper per square that a wire takes, a_w/d_o**2.
+    """Copper per square that a wire takes.
+
+    Equation: k = a_w/d_o**2
 
     Parameters
     ----------
@@ -320,7 +369,9 @@ def copper_fill(copper_area: Quantity, wire_diameter: Quantity) -> Quantity:
 
 
 def coil_resistance(mean_radius: Quantity, turns: Quantity, copper_area: Quantity) -> Quantity:
-    """Resistance of a round coil at 20 degC, rho 2 pi r_c N/a_w.
+    """Resistance of a round coil at 20 degC.
+
+    Equation: R20 = rho 2 pi r_c N/a_w, with rho = 1.72e-8 ohm m
 
     Parameters
     ----------
@@ -353,7 +404,9 @@ def coil_resistance(mean_radius: Quantity, turns: Quantity, copper_area: Quantit
 def cold_copper_loss(
     ampere_turns: Quantity, bore_radius: Quantity, height: Quantity, length: Quantity, copper_share: Quantity
 ) -> Quantity:
-    """Copper loss at 20 degC, I**2 R20 = rho 2 pi r_c NI**2/(k h_c l_m) with r_c = r_s + h_c/2.
+    """Copper loss of a coil at 20 degC.
+
+    Equation: P20 = rho 2 pi r_c NI**2/(k h_c l_m), with r_c = r_s + h_c/2, rho = 1.72e-8 ohm m
 
     The number of turns cancels: only the copper in the window counts.
 
@@ -389,7 +442,9 @@ def cold_copper_loss(
 
 
 def resistance_ratio(temperature: Quantity) -> Quantity:
-    """Resistance of copper over that at 20 degC, 1 + alpha (T - 293.15 K).
+    """Resistance of copper over that at 20 degC.
+
+    Equation: R/R20 = 1 + alpha (T - 293.15), with alpha = 0.00393 1/K
 
     Parameters
     ----------
@@ -414,14 +469,16 @@ def resistance_ratio(temperature: Quantity) -> Quantity:
 
 
 def copper_mass(mean_radius: Quantity, copper_section: Quantity) -> Quantity:
-    """Mass of the copper of a round coil, rho 2 pi r_c N a_w.
+    """Mass of the copper of a round coil.
+
+    Equation: m = rho 2 pi r_c A_cu, with rho = 8960 kg/m3
 
     Parameters
     ----------
     mean_radius : scalar, array or symbol
         r_c [m].
     copper_section : scalar, array or symbol
-        N a_w, all turns together [m2].
+        Copper of all turns together, A_cu = N a_w [m2].
 
     Returns
     -------
@@ -444,7 +501,9 @@ def copper_mass(mean_radius: Quantity, copper_section: Quantity) -> Quantity:
 
 
 def cylinder_surface(outer_radius: Quantity, length: Quantity) -> Quantity:
-    """Outside of a closed cylinder, 2 pi R (L + R).
+    """Outside of a closed cylinder.
+
+    Equation: A = 2 pi R (L + R)
 
     Parameters
     ----------
@@ -473,7 +532,9 @@ def cylinder_surface(outer_radius: Quantity, length: Quantity) -> Quantity:
 def heat_transfer_in_motion(
     still: Quantity, coefficient: Quantity, driver_speed: Quantity, outer_radius: Quantity
 ) -> Quantity:
-    """Surface coefficient of a turning body, h_still + h_rot (omega R)**0.8.
+    """Surface coefficient of a turning body.
+
+    Equation: h = h_still + h_rot (omega R)**0.8
 
     Parameters
     ----------
@@ -506,7 +567,9 @@ def heat_transfer_in_motion(
 
 
 def runaway_loss(heat_transfer: Quantity, surface: Quantity) -> Quantity:
-    """Cold copper loss at which a coil under constant current heats up without end, h S/alpha.
+    """Cold copper loss at which a coil under constant current heats up without end.
+
+    Equation: P_run = h S/alpha, with alpha = 0.00393 1/K
 
     One kelvin more makes alpha P20 more heat, and the surface gives off h S more: above this loss the first is larger.
 
@@ -540,7 +603,9 @@ def runaway_loss(heat_transfer: Quantity, surface: Quantity) -> Quantity:
 def resistance_rise(
     cold_loss: Quantity, runaway_loss: Quantity, ambient_ratio: Quantity, other_heat: Quantity
 ) -> Quantity:
-    """Steady rise of the resistance over R20 by heating up from ambient, alpha dT = (P20 c + Q)/(P_run - P20).
+    """Steady rise of the resistance over R20 by heating up from ambient.
+
+    Equation: alpha dT = (P20 c + Q)/(P_run - P20)
 
     Parameters
     ----------
@@ -575,7 +640,9 @@ def resistance_rise(
 def coil_temperature_rise(
     cold_loss: Quantity, runaway_loss: Quantity, ambient_ratio: Quantity, other_heat: Quantity
 ) -> Quantity:
-    """Steady temperature rise of a coil under constant current, (P20 c + Q)/(alpha (P_run - P20)).
+    """Steady temperature rise of a coil under constant current.
+
+    Equation: dT = (P20 c + Q)/(alpha (P_run - P20)), with alpha = 0.00393 1/K
 
     Solves dT h S = P20 (c + alpha dT) + Q, c being R/R20 at ambient temperature.
 
@@ -613,7 +680,9 @@ def coil_temperature_rise(
 def hot_copper_loss(
     cold_loss: Quantity, runaway_loss: Quantity, ambient_ratio: Quantity, other_heat: Quantity
 ) -> Quantity:
-    """Copper loss at the steady temperature, P20 (c + Q/P_run)/(1 - P20/P_run).
+    """Copper loss at the steady temperature.
+
+    Equation: P_cu = P20 (c + Q/P_run)/(1 - P20/P_run)
 
     This is P20 (c + alpha dT) with the dT of :func:`coil_temperature_rise`.
 
@@ -648,16 +717,18 @@ def hot_copper_loss(
 
 
 def time_constant(linkage: Quantity, unit_loss: Quantity) -> Quantity:
-    """Time constant of the current of a coil, tau = L/R = (Phi/NI)/(P/NI**2).
+    """Time constant of the current of a coil, inductance over resistance.
+
+    Equation: tau = Lambda/p
 
     L = N Phi/I and R = P/I**2; the turns cancel.
 
     Parameters
     ----------
     linkage : scalar, array or symbol
-        Flux of the coil over its ampere-turns Phi/NI [Wb/A].
+        Flux of the coil over its ampere-turns, Lambda = Phi/NI [Wb/A].
     unit_loss : scalar, array or symbol
-        Copper loss over the square of the ampere-turns P/NI**2 [W/A2].
+        Copper loss over the square of the ampere-turns, p = P/NI**2 [W/A2].
 
     Returns
     -------
@@ -679,7 +750,9 @@ def time_constant(linkage: Quantity, unit_loss: Quantity) -> Quantity:
 
 
 def current_rise_time(time_constant: Quantity, over_excitation: Quantity) -> Quantity:
-    """Time in which the current rises to that of the steady coil, tau ln(k/(k - 1)).
+    """Time in which the current rises to that of the steady coil.
+
+    Equation: t = tau ln(k/(k - 1))
 
     Parameters
     ----------

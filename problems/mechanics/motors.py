@@ -6,11 +6,18 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "breakdown_slip",
+    "kloss_torque",
+]
+
 
 def kloss_torque(
     speed: Quantity, synchronous_speed: Quantity, breakdown_torque: Quantity, breakdown_slip: Quantity
 ) -> Quantity:
-    """Torque of an asynchronous motor over its speed, M1 = 2 M_b s s_b/(s**2 + s_b**2) with s = 1 - omega1/omega_sync.
+    """Torque of an asynchronous motor over its speed.
+
+    Equation: M1 = 2 M_b s s_b/(s**2 + s_b**2), with s = 1 - omega1/omega_sync
 
     Above the synchronous speed it is negative: the motor brakes.
 
@@ -46,7 +53,9 @@ def kloss_torque(
 
 
 def breakdown_slip(rated_slip: Quantity, pullout_torque_ratio: Quantity) -> Quantity:
-    """Slip at the breakdown torque that the rated point asks for, s_b = s_N (k + sqrt(k**2 - 1)).
+    """Slip at the breakdown torque that the rated point asks for.
+
+    Equation: s_b = s_N (k + sqrt(k**2 - 1))
 
     Parameters
     ----------

@@ -12,11 +12,31 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "annulus_mass",
+    "cylinder_surface",
+    "cylinder_volume",
+    "drag_torque",
+    "drum_diameter",
+    "lining_mass",
+    "lug_pressure",
+    "pack_inner_inertia",
+    "pack_length",
+    "shaft_shear_stress",
+    "sine_plate_force",
+    "sliding_speed",
+    "squeeze_time",
+    "static_hold",
+    "stroke",
+]
+
 
 def annulus_mass(
     density: Quantity, count: Quantity, thickness: Quantity, mean_diameter: Quantity, width: Quantity
 ) -> Quantity:
-    """Mass of equal flat rings, rho n t pi (ro - ri)(ro + ri).
+    """Mass of equal flat rings.
+
+    Equation: m = rho n t pi dm b
 
     Parameters
     ----------
@@ -27,9 +47,9 @@ def annulus_mass(
     thickness : scalar, array or symbol
         t [m].
     mean_diameter : scalar, array or symbol
-        Sum of outer and inner radius [m].
+        Sum of outer and inner radius dm [m].
     width : scalar, array or symbol
-        Outer less inner radius [m].
+        Outer less inner radius b [m].
 
     Returns
     -------
@@ -51,14 +71,16 @@ def annulus_mass(
 
 
 def lining_mass(density: Quantity, thickness: Quantity, area: Quantity) -> Quantity:
-    """Mass of the linings, rho t A.
+    """Mass of the linings.
+
+    Equation: m = rho t A
 
     Parameters
     ----------
     density : scalar, array or symbol
-        Density of the lining [kg/m3].
+        Density of the lining rho [kg/m3].
     thickness : scalar, array or symbol
-        Thickness of one lining [m].
+        Thickness of one lining t [m].
     area : scalar, array or symbol
         All lined surfaces A [m2].
 
@@ -88,7 +110,9 @@ def pack_length(
     lining_thickness: Quantity,
     gap: Quantity,
 ) -> Quantity:
-    """Length of the released pack, z_b t_i + z_k t_o + z (t_lining + gap).
+    """Length of the released pack.
+
+    Equation: L = z_b t_i + z_k t_o + z (t_lining + gap), with z_b = z/2 + 1, z_k = z/2
 
     Parameters
     ----------
@@ -97,9 +121,9 @@ def pack_length(
     inner_thickness, outer_thickness : scalar, array or symbol
         Steel cores t_i, t_o [m].
     lining_thickness : scalar, array or symbol
-        One lining [m]; both sides of every outer plate are lined.
+        One lining t_lining [m]; both sides of every outer plate are lined.
     gap : scalar, array or symbol
-        Release gap per surface [m].
+        Release gap per surface, gap [m].
 
     Returns
     -------
@@ -121,14 +145,16 @@ def pack_length(
 
 
 def drum_diameter(outer_spline_radius: Quantity, drum_wall: Quantity) -> Quantity:
-    """Outside diameter of the drum, D = 2 (b + s_drum).
+    """Outside diameter of the drum.
+
+    Equation: D = 2 (b + s_drum)
 
     Parameters
     ----------
     outer_spline_radius : scalar, array or symbol
         Mean spline radius of the outer plates b [m].
     drum_wall : scalar, array or symbol
-        Wall outside the mean spline radius [m].
+        Wall outside the mean spline radius s_drum [m].
 
     Returns
     -------
@@ -150,7 +176,9 @@ def drum_diameter(outer_spline_radius: Quantity, drum_wall: Quantity) -> Quantit
 
 
 def cylinder_volume(diameter: Quantity, length: Quantity) -> Quantity:
-    """Volume of the enveloping cylinder, pi D**2 L/4.
+    """Volume of the enveloping cylinder.
+
+    Equation: V = pi D**2 L/4
 
     Parameters
     ----------
@@ -175,7 +203,9 @@ def cylinder_volume(diameter: Quantity, length: Quantity) -> Quantity:
 
 
 def cylinder_surface(diameter: Quantity, length: Quantity) -> Quantity:
-    """Surface that gives off heat: shell and both faces, pi D L + pi D**2/2.
+    """Surface that gives off heat: shell and both faces.
+
+    Equation: A = pi D L + pi D**2/2
 
     Parameters
     ----------
@@ -202,14 +232,16 @@ def cylinder_surface(diameter: Quantity, length: Quantity) -> Quantity:
 def lug_pressure(
     plate_torque: Quantity, spline_radius: Quantity, lug_count: Quantity, lug_height: Quantity, thickness: Quantity
 ) -> Quantity:
-    """Pressure of the lugs of one plate on the spline flanks, p = M_plate/(radius n_lug h_lug t).
+    """Pressure of the lugs of one plate on the spline flanks.
+
+    Equation: p = M_plate/(R n_lug h_lug t)
 
     Parameters
     ----------
     plate_torque : scalar, array or symbol
-        Torque of one plate, both faces [N m].
+        Torque of one plate, both faces M_plate [N m].
     spline_radius : scalar, array or symbol
-        Mean spline radius [m].
+        Mean spline radius R [m].
     lug_count : scalar, array or symbol
         Lugs that carry n_lug [-].
     lug_height : scalar, array or symbol
@@ -244,7 +276,9 @@ def drag_torque(
     ring_ratio: Quantity,
     gap: Quantity,
 ) -> Quantity:
-    """Drag of the released pack with full oil films, T = z (pi/2) eta omega (r2**4 - r1**4)/h.
+    """Drag of the released pack with full oil films.
+
+    Equation: T = z (pi/2) eta omega dm**4 c (1 + c**2)/(2 h)
 
     Uses r2**4 - r1**4 = dm**4 c (1 + c**2)/2.
 
@@ -284,14 +318,16 @@ def drag_torque(
 
 
 def stroke(surfaces: Quantity, gap: Quantity, wear_depth: Quantity) -> Quantity:
-    """Way of the actuator that closes the released pack when its linings are worn, s = z (gap + d_w).
+    """Way of the actuator that closes the released pack when its linings are worn.
+
+    Equation: s = z (gap + d_w)
 
     Parameters
     ----------
     surfaces : scalar, array or symbol
         z [-].
     gap : scalar, array or symbol
-        Release gap per surface [m].
+        Release gap per surface, gap [m].
     wear_depth : scalar, array or symbol
         Wear of one lining before it is replaced d_w [m].
 
@@ -326,7 +362,7 @@ def pack_inner_inertia(
 ) -> Quantity:
     """Inertia of what turns with the inner plates: plates, rim and web of the hub.
 
-    J = rho pi/2 [t (r2**4 - a**4) + L (a**4 - (a - s)**4) + t_w ((a - s)**4 - r_b**4)].
+    Equation: J = (rho pi/2) (t (r2**4 - a**4) + L (a**4 - (a - s)**4) + t_w ((a - s)**4 - r_b**4))
 
     Parameters
     ----------
@@ -378,7 +414,7 @@ def squeeze_time(
 ) -> Quantity:
     """Time in which a force squeezes the oil film of a smooth ring from h0 to h1.
 
-    t = 3 pi eta/(4 F) [r2**4 - r1**4 - (r2**2 - r1**2)**2/ln(r2/r1)] (1/h1**2 - 1/h0**2).
+    Equation: t = 3 pi eta/(4 F) (r2**4 - r1**4 - (r2**2 - r1**2)**2/ln(r2/r1)) (1/h1**2 - 1/h0**2)
 
     Parameters
     ----------
@@ -422,7 +458,10 @@ def sine_plate_force(
     inner_diameter: Quantity,
     turns: Quantity = 1.0,
 ) -> Quantity:
-    """Force that flattens a waved ring, F = f E b t**3 N**4 (OD/ID)/(K Dm**3 Z).
+    """Force that flattens a waved ring.
+
+    Equation: F = f E b t**3 N**4 (OD/ID)/(K Dm**3 Z), with Dm = (OD + ID)/2, K = 3.88 if N <= 4 else 2.9 if N <= 6.5
+        else 2.3 if N <= 9.5 else 2.13
 
     Parameters
     ----------
@@ -464,14 +503,16 @@ def sine_plate_force(
 
 
 def sliding_speed(speed_difference: Quantity, radius: Quantity) -> Quantity:
-    """Rubbing speed at a radius, v = omega r.
+    """Rubbing speed at a radius.
+
+    Equation: v = omega r
 
     Parameters
     ----------
     speed_difference : scalar, array or symbol
         omega [rad/s].
     radius : scalar, array or symbol
-        Outer radius of the ring [m].
+        Outer radius of the ring r [m].
 
     Returns
     -------
@@ -493,14 +534,16 @@ def sliding_speed(speed_difference: Quantity, radius: Quantity) -> Quantity:
 
 
 def static_hold(torque: Quantity, mu_static: Quantity, mu_dynamic: Quantity, load_torque: Quantity) -> Quantity:
-    """Torque that the locked clutch holds over the load torque, (mu_static/mu) M_k/M_load.
+    """Torque that the locked clutch holds over the load torque.
+
+    Equation: q = (mu_static/mu) M_k/M_load
 
     Parameters
     ----------
     torque : scalar, array or symbol
         Slipping torque M_k [N m].
     mu_static, mu_dynamic : scalar, array or symbol
-        Breakaway and sliding friction [-].
+        Breakaway friction mu_static and sliding friction mu [-].
     load_torque : scalar, array or symbol
         M_load [N m].
 
@@ -524,7 +567,9 @@ def static_hold(torque: Quantity, mu_static: Quantity, mu_dynamic: Quantity, loa
 
 
 def shaft_shear_stress(torque: Quantity, diameter: Quantity) -> Quantity:
-    """Torsion stress of a solid shaft, tau = 16 M/(pi d**3).
+    """Torsion stress of a solid shaft.
+
+    Equation: tau = 16 M/(pi d**3)
 
     Parameters
     ----------

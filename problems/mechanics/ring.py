@@ -12,14 +12,34 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "friction_radius",
+    "friction_torque",
+    "inner_diameter",
+    "inner_plate_count",
+    "mean_diameter",
+    "outer_diameter",
+    "outer_plate_count",
+    "pressure_torque",
+    "required_torque",
+    "ring_area",
+    "ring_ratio",
+    "sizing_mean_diameter",
+    "surfaces_needed",
+    "worn_peak_pressure",
+    "worn_torque",
+]
+
 
 def mean_diameter(outer_diameter: Quantity, inner_diameter: Quantity) -> Quantity:
-    """Mean diameter of a friction ring, dm = (d_out + d_in)/2.
+    """Mean diameter of a friction ring.
+
+    Equation: dm = (d_out + d_in)/2
 
     Parameters
     ----------
     outer_diameter, inner_diameter : scalar, array or symbol
-        Diameters of the ring [m].
+        Diameters of the ring d_out, d_in [m].
 
     Returns
     -------
@@ -41,12 +61,14 @@ def mean_diameter(outer_diameter: Quantity, inner_diameter: Quantity) -> Quantit
 
 
 def ring_ratio(outer_diameter: Quantity, inner_diameter: Quantity) -> Quantity:
-    """Ring width over mean diameter, c = (d_out - d_in)/(d_out + d_in).
+    """Ring width over mean diameter.
+
+    Equation: c = (d_out - d_in)/(d_out + d_in)
 
     Parameters
     ----------
     outer_diameter, inner_diameter : scalar, array or symbol
-        Diameters of the ring [m].
+        Diameters of the ring d_out, d_in [m].
 
     Returns
     -------
@@ -68,7 +90,9 @@ def ring_ratio(outer_diameter: Quantity, inner_diameter: Quantity) -> Quantity:
 
 
 def outer_diameter(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Outer diameter of a ring, d_out = dm (1 + c).
+    """Outer diameter of a ring.
+
+    Equation: d_out = dm (1 + c)
 
     Parameters
     ----------
@@ -97,7 +121,9 @@ def outer_diameter(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
 
 
 def inner_diameter(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Inner diameter of a ring, d_in = dm (1 - c).
+    """Inner diameter of a ring.
+
+    Equation: d_in = dm (1 - c)
 
     Parameters
     ----------
@@ -126,7 +152,9 @@ def inner_diameter(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
 
 
 def friction_radius(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Friction radius at uniform pressure, r = (dm/2)(1 + c**2/3).
+    """Friction radius at uniform pressure.
+
+    Equation: r = (dm/2) (1 + c**2/3)
 
     The factored form of 2/3 (r2**3 - r1**3)/(r2**2 - r1**2), which would cancel for narrow rings.
 
@@ -157,7 +185,9 @@ def friction_radius(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
 
 
 def ring_area(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Area of one friction surface, A1 = pi dm**2 c.
+    """Area of one friction surface.
+
+    Equation: A1 = pi dm**2 c
 
     Parameters
     ----------
@@ -186,12 +216,14 @@ def ring_area(mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
 
 
 def friction_torque(mu: Quantity, force: Quantity, friction_radius: Quantity, sum_factor: Quantity) -> Quantity:
-    """Torque of a pack, M = mu F0 r E.
+    """Torque of a pack.
+
+    Equation: M = mu F0 r E
 
     Parameters
     ----------
     mu : scalar, array or symbol
-        Sliding friction [-].
+        Sliding friction mu [-].
     force : scalar, array or symbol
         Axial force of the actuator F0 [N].
     friction_radius : scalar, array or symbol
@@ -221,14 +253,16 @@ def friction_torque(mu: Quantity, force: Quantity, friction_radius: Quantity, su
 def pressure_torque(
     surfaces: Quantity, mu: Quantity, pressure: Quantity, mean_diameter: Quantity, ring_ratio: Quantity
 ) -> Quantity:
-    """Torque of z surfaces at uniform pressure without guide friction, M = z mu p pi dm**3 (3c + c**3)/6.
+    """Torque of z surfaces at uniform pressure without guide friction.
+
+    Equation: M = z mu p pi dm**3 (3c + c**3)/6
 
     Parameters
     ----------
     surfaces : scalar, array or symbol
         z [-].
     mu : scalar, array or symbol
-        Sliding friction [-].
+        Sliding friction mu [-].
     pressure : scalar, array or symbol
         p [Pa].
     mean_diameter : scalar, array or symbol
@@ -258,7 +292,9 @@ def pressure_torque(
 def sizing_mean_diameter(
     torque: Quantity, surfaces: Quantity, mu: Quantity, pressure: Quantity, ring_ratio: Quantity
 ) -> Quantity:
-    """Mean diameter that a torque needs, dm = cbrt(6 (M/z)/(mu pi (3c + c**3) p)).
+    """Mean diameter that a torque needs.
+
+    Equation: dm = cbrt(6 (M/z)/(mu pi (3c + c**3) p))
 
     Parameters
     ----------
@@ -267,7 +303,7 @@ def sizing_mean_diameter(
     surfaces : scalar, array or symbol
         z [-]; 2 per disc.
     mu : scalar, array or symbol
-        Sliding friction [-].
+        Sliding friction mu [-].
     pressure : scalar, array or symbol
         Allowed pressure p [Pa].
     ring_ratio : scalar, array or symbol
@@ -297,6 +333,8 @@ def surfaces_needed(
 ) -> Quantity:
     """Even number of surfaces that a torque needs on a given ring, rounded up.
 
+    Equation: z = 2 ceil(M/(2 M1)), with M1 = mu p pi dm**3 (3 c + c**3)/6
+
     Parameters
     ----------
     torque : scalar, array or symbol
@@ -306,7 +344,7 @@ def surfaces_needed(
     ring_ratio : scalar, array or symbol
         c [-].
     mu : scalar, array or symbol
-        Sliding friction [-].
+        Sliding friction mu [-].
     pressure : scalar, array or symbol
         Allowed pressure p [Pa].
 
@@ -332,7 +370,9 @@ def surfaces_needed(
 
 
 def outer_plate_count(surfaces: Quantity) -> Quantity:
-    """Outer plates of a pack that ends in two inner plates, z_k = z/2.
+    """Outer plates of a pack that ends in two inner plates.
+
+    Equation: z_k = z/2
 
     Parameters
     ----------
@@ -357,7 +397,9 @@ def outer_plate_count(surfaces: Quantity) -> Quantity:
 
 
 def inner_plate_count(surfaces: Quantity) -> Quantity:
-    """Inner plates of a pack that ends in two inner plates, z_b = z/2 + 1.
+    """Inner plates of a pack that ends in two inner plates.
+
+    Equation: z_b = z/2 + 1
 
     Parameters
     ----------
@@ -388,7 +430,9 @@ def required_torque(
     speed_factor: Quantity,
     surface_factor: Quantity = 1.0,
 ) -> Quantity:
-    """Sizing torque, M_req = n M_load/(c_m c_v c_z).
+    """Sizing torque.
+
+    Equation: M_req = n M_load/(c_m c_v c_z)
 
     Parameters
     ----------
@@ -423,14 +467,16 @@ def required_torque(
 
 
 def worn_torque(surfaces: Quantity, mu: Quantity, force: Quantity, mean_diameter: Quantity) -> Quantity:
-    """Torque of a worn-in lining (pressure times radius constant), M = z mu F dm/2.
+    """Torque of a worn-in lining (pressure times radius constant).
+
+    Equation: M = z mu F dm/2
 
     Parameters
     ----------
     surfaces : scalar, array or symbol
         z [-].
     mu : scalar, array or symbol
-        Sliding friction [-].
+        Sliding friction mu [-].
     force : scalar, array or symbol
         Axial force F [N].
     mean_diameter : scalar, array or symbol
@@ -456,7 +502,9 @@ def worn_torque(surfaces: Quantity, mu: Quantity, force: Quantity, mean_diameter
 
 
 def worn_peak_pressure(force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
-    """Pressure at the inner edge of a worn-in lining, p = F/(2 pi r1 (r2 - r1)).
+    """Pressure at the inner edge of a worn-in lining.
+
+    Equation: p = F/(pi dm**2 c (1 - c))
 
     Parameters
     ----------

@@ -11,11 +11,19 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "BOSS_LENGTH",
+    "boss_mass",
+    "shaft_diameter",
+]
+
 BOSS_LENGTH = 1.2  # of the shaft diameter: room for a parallel key that carries the torque of the shaft
 
 
 def shaft_diameter(torque: Quantity, shear_stress: Quantity) -> Quantity:
-    """Diameter of a solid shaft that carries a torque, d_s = (16 M/(pi tau))**(1/3).
+    """Diameter of a solid shaft that carries a torque.
+
+    Equation: d_s = (16 M/(pi tau))**(1/3)
 
     Parameters
     ----------
@@ -44,7 +52,9 @@ def shaft_diameter(torque: Quantity, shear_stress: Quantity) -> Quantity:
 
 
 def boss_mass(density: Quantity, diameter: Quantity, hub_factor: Quantity) -> Quantity:
-    """Mass of the boss of a hub on its shaft, rho pi (k_b**2 - 1) (d_s/2)**2 1.2 d_s.
+    """Mass of the boss of a hub on its shaft.
+
+    Equation: m = rho pi (k_b**2 - 1) (d_s/2)**2 1.2 d_s
 
     Parameters
     ----------

@@ -28,6 +28,35 @@ from problems.mechanics import Quantity
 from synth.errors import InputError
 from synth.special import special
 
+__all__ = [
+    "LOAD_KINDS",
+    "StartupPhases",
+    "active_lock_in_ramp",
+    "burn_out_time",
+    "catch_up_time",
+    "constant_torque_slip",
+    "driven_back_work",
+    "excess_share",
+    "friction_work",
+    "kinetic_energy",
+    "load_start_time",
+    "lock_torque",
+    "locks_after_ramp",
+    "lowest_driven_speed",
+    "never_starts",
+    "peak_power_root",
+    "peak_slip_power",
+    "ramp_relief",
+    "ramp_work",
+    "reactive_friction_work",
+    "reactive_peak_slip_power",
+    "reactive_slip_time",
+    "run_up_work",
+    "slip_time",
+    "startup_phases",
+    "torque_rate_per_inertia",
+]
+
 LOAD_KINDS = ("reactive", "active")
 
 
@@ -38,7 +67,9 @@ def _is_active(load_kind: str) -> bool:
 
 
 def never_starts(torque: Quantity, load_torque: Quantity) -> Quantity:
-    """Whether the clutch cannot move the load, T <= L.
+    """Whether the clutch cannot move the load.
+
+    Equation: never = T <= L
 
     Parameters
     ----------
@@ -67,7 +98,9 @@ def never_starts(torque: Quantity, load_torque: Quantity) -> Quantity:
 def burn_out_time(
     torque: Quantity, driver_speed: Quantity, heat_capacity: Quantity, temperature_rise: Quantity
 ) -> Quantity:
-    """Time in which a clutch that never starts its load reaches a temperature rise, C dT/(T omega1).
+    """Time in which a clutch that never starts its load reaches a temperature rise.
+
+    Equation: t = C dT/(T omega1)
 
     Parameters
     ----------
@@ -78,7 +111,7 @@ def burn_out_time(
     heat_capacity : scalar, array or symbol
         C [J/K].
     temperature_rise : scalar, array or symbol
-        Allowed rise [K].
+        Allowed rise dT [K].
 
     Returns
     -------
@@ -109,7 +142,7 @@ def locks_after_ramp(
 ) -> Quantity:
     """Whether lock-up comes after the end of the ramp.
 
-    Reactive: (T-L)**2 t_r < 2 J T omega1. Active: t_r (T - 2 L) <= 2 J omega1.
+    Equation: after = t_r (T - 2 L) <= 2 J omega1 if active else (T - L)**2 t_r < 2 J T omega1
 
     Parameters
     ----------
@@ -152,7 +185,9 @@ def locks_after_ramp(
 
 
 def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity) -> Quantity:
-    """Time at which the clutch torque reaches the load torque, t_B = L t_r/T.
+    """Time at which the clutch torque reaches the load torque.
+
+    Equation: t_B = L t_r/T
 
     Parameters
     ----------
@@ -179,7 +214,9 @@ def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity
 
 
 def excess_share(torque: Quantity, load_torque: Quantity) -> Quantity:
-    """Share of the clutch torque that the load leaves for acceleration, 1 - L/T.
+    """Share of the clutch torque that the load leaves for acceleration.
+
+    Equation: share = 1 - L/T
 
     Parameters
     ----------
@@ -204,7 +241,9 @@ def excess_share(torque: Quantity, load_torque: Quantity) -> Quantity:
 
 
 def kinetic_energy(driven_inertia: Quantity, driver_speed: Quantity) -> Quantity:
-    """Energy of the driven side after lock-up, E = J omega1**2/2.
+    """Energy of the driven side after lock-up.
+
+    Equation: E = J omega1**2/2
 
     Parameters
     ----------
@@ -231,7 +270,9 @@ def kinetic_energy(driven_inertia: Quantity, driver_speed: Quantity) -> Quantity
 
 
 def ramp_work(load_torque: Quantity, driver_speed: Quantity, ramp_time: Quantity) -> Quantity:
-    """Work that the load torque would take of the driver in half the ramp, L omega1 t_r/2.
+    """Work that the load torque would take of the driver in half the ramp.
+
+    Equation: W = L omega1 t_r/2
 
     Parameters
     ----------
@@ -260,7 +301,9 @@ def ramp_work(load_torque: Quantity, driver_speed: Quantity, ramp_time: Quantity
 
 
 def run_up_work(torque: Quantity, load_torque: Quantity, energy: Quantity) -> Quantity:
-    """Friction work of a step of torque, E T/(T-L), arranged as E (1 + L/(T-L)).
+    """Friction work of a step of torque, arranged as E (1 + L/(T-L)).
+
+    Equation: W = E T/(T - L)
 
     Parameters
     ----------
@@ -289,7 +332,9 @@ def run_up_work(torque: Quantity, load_torque: Quantity, energy: Quantity) -> Qu
 
 
 def ramp_relief(torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity) -> Quantity:
-    """Work that a load moved during the ramp takes over, L (T-L)**3 t_r**2/(24 J T**2).
+    """Work that a load moved during the ramp takes over.
+
+    Equation: W = L (T - L)**3 t_r**2/(24 J T**2)
 
     Parameters
     ----------
@@ -321,7 +366,9 @@ def ramp_relief(torque: Quantity, load_torque: Quantity, driven_inertia: Quantit
 
 
 def catch_up_time(torque: Quantity, driven_inertia: Quantity, driver_speed: Quantity, ramp_time: Quantity) -> Quantity:
-    """Time from the start of a reactive load to lock-up inside the ramp, sqrt(2 J omega1 t_r/T).
+    """Time from the start of a reactive load to lock-up inside the ramp.
+
+    Equation: t = sqrt(2 J omega1 t_r/T)
 
     Parameters
     ----------
@@ -361,10 +408,12 @@ def slip_time(
     ramp_time: Quantity,
     load_kind: str = "reactive",
 ) -> Quantity:
-    """Time from the first touch to lock-up, t_D.
+    """Time from the first touch to lock-up.
 
-    Reactive: J omega1/(T-L) + t_r (T+L)/(2T) after the ramp, L t_r/T + sqrt(2 J omega1 t_r/T) inside it. Active:
-    (J omega1 + T t_r/2)/(T-L) after, t_B + sqrt(t_B**2 + 2 J omega1 t_r/T) inside, with t_B = L t_r/T.
+    Equation: t_D = reactive_slip_time(T, L, J, omega1, t_r) if reactive else (J omega1 + T t_r/2)/(T - L) if t_r (T - 2
+        L) <= 2 J omega1 else t_B + sqrt(t_B**2 + 2 J omega1 t_r/T), with t_B = L t_r/T
+
+    Of an active load the first case is lock-up after the ramp, the second lock-up inside it.
 
     Parameters
     ----------
@@ -418,6 +467,9 @@ def reactive_slip_time(
 ) -> Quantity:
     """Time from the first touch to lock-up under a reactive load, see :func:`slip_time`.
 
+    Equation: t_D = J omega1/(T - L) + t_r (T + L)/(2 T) if (T - L)**2 t_r < 2 J T omega1 else L t_r/T + sqrt(2 J omega1
+        t_r/T)
+
     It falls with the torque and rises with all else; its logarithm is convex in those of all arguments together.
 
     Parameters
@@ -455,14 +507,16 @@ def reactive_slip_time(
 
 
 def active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quantity, ramp_time: Quantity) -> Quantity:
-    """Time of lock-up inside the ramp under an active load, t_B + sqrt(t_B**2 + 2 J omega1 t_r/T).
+    """Time of lock-up inside the ramp under an active load.
+
+    Equation: t = t_B + sqrt(t_B**2 + 2 H t_r/T), with t_B = L t_r/T
 
     Parameters
     ----------
     torque, load_torque : scalar, array or symbol
         T, L [N m].
     momentum : scalar, array or symbol
-        J omega1 [N m s].
+        Momentum to gain, H = J omega1 [N m s].
     ramp_time : scalar, array or symbol
         t_r [s].
 
@@ -489,7 +543,9 @@ def active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quant
 def driven_back_work(
     torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity
 ) -> Quantity:
-    """Work by which the motion of an active load during the ramp adds, L (4L-T) t_r**2/(24 J).
+    """Work by which the motion of an active load during the ramp adds.
+
+    Equation: W = L (4 L - T) t_r**2/(24 J)
 
     Parameters
     ----------
@@ -527,11 +583,13 @@ def friction_work(
     ramp_time: Quantity,
     load_kind: str = "reactive",
 ) -> Quantity:
-    """Friction work of one engagement, W.
+    """Friction work of one engagement.
 
-    Reactive, with E = J omega1**2/2: E T/(T-L) + L omega1 t_r/2 - L (T-L)**3 t_r**2/(24 J T**2) after the ramp,
-    E + L**2 omega1 t_r/(2T) + 2/3 L omega1 sqrt(2 J omega1 t_r/T) inside it. Active:
-    T/(T-L) (E + L omega1 t_r/2 + L (4L-T) t_r**2/(24 J)) after, (J omega1 + L t_D)(omega1/2 + L t_D/(6J)) inside.
+    Equation: W = reactive_friction_work(T, L, J, omega1, t_r) if reactive else T/(T - L) (J omega1**2/2 + L omega1
+        t_r/2 + L (4 L - T) t_r**2/(24 J)) if t_r (T - 2 L) <= 2 J omega1 else (J omega1 + L t_D) (omega1/2 + L t_D/(6
+        J)), with t_D = active_lock_in_ramp(T, L, J omega1, t_r)
+
+    Of an active load the first case is lock-up after the ramp, the second lock-up inside it.
 
     Parameters
     ----------
@@ -588,6 +646,9 @@ def reactive_friction_work(
 ) -> Quantity:
     """Friction work of one engagement under a reactive load, see :func:`friction_work`.
 
+    Equation: W = E T/(T - L) + L omega1 t_r/2 - L (T - L)**3 t_r**2/(24 J T**2) if (T - L)**2 t_r < 2 J T omega1 else E
+        + L**2 omega1 t_r/(2 T) + (2/3) L omega1 sqrt(2 J omega1 t_r/T), with E = J omega1**2/2
+
     It falls with the torque and rises with all else; its logarithm is convex in those of all arguments together.
 
     Parameters
@@ -637,7 +698,9 @@ def _speed_at_load_start(
 def lowest_driven_speed(
     torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity
 ) -> Quantity:
-    """Greatest backward speed of an active load without brake or backstop, -L**2 t_r/(2 J T), at t_B.
+    """Greatest backward speed of an active load without brake or backstop.
+
+    Equation: omega2 = -L**2 t_r/(2 J T)
 
     Parameters
     ----------
@@ -675,11 +738,13 @@ def peak_slip_power(
     ramp_time: Quantity,
     load_kind: str = "reactive",
 ) -> Quantity:
-    """Greatest friction power M_k (omega1 - omega2).
+    """Greatest friction power of a start-up.
 
-    Counted from t_B it would be reached at x* = (-L + sqrt(L**2 + 6 s J omega))/(3 s), with s = T/t_r and omega the
-    slip speed at t_B (omega1, plus the backward speed of an active load). If that is before the end of the
-    ramp, 2 T J omega < t_r (T-L)(3T-L), the power is (L + s x*)**2 x*/J, otherwise T (omega - (T-L)**2 t_r/(2JT)).
+    Equation: P = (L + s x)**2 x/J if 2 T J omega < t_r (T - L) (3 T - L) else T (omega - (T - L)**2 t_r/(2 J T)), with
+        omega = omega1 if reactive else omega1 + L**2 t_r/(2 J T), s = T/t_r, x = (-L + sqrt(L**2 + 6 s J omega))/(3 s)
+
+    It is reached x after t_B where that is before the end of the ramp (the first case), otherwise at its end; omega is
+    the slip speed at t_B: omega1, plus the backward speed of an active load.
 
     Parameters
     ----------
@@ -727,6 +792,9 @@ def reactive_peak_slip_power(
 ) -> Quantity:
     """Greatest friction power under a reactive load, see :func:`peak_slip_power`.
 
+    Equation: P = (L + s x)**2 x/J if 2 T J omega1 < t_r (T - L) (3 T - L) else T (omega1 - (T - L)**2 t_r/(2 J T)),
+        with s = T/t_r, x = (-L + sqrt(L**2 + 6 s J omega1))/(3 s)
+
     It falls with the ramp time and rises with all else.
 
     Parameters
@@ -762,7 +830,9 @@ def reactive_peak_slip_power(
 def peak_power_root(
     torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, slip_speed: Quantity, ramp_time: Quantity
 ) -> Quantity:
-    """Root of the greatest friction power inside the ramp, L + sqrt(L**2 + 6 T J omega/t_r).
+    """Root of the greatest friction power inside the ramp.
+
+    Equation: root = L + sqrt(L**2 + 6 T J omega/t_r)
 
     Parameters
     ----------
@@ -816,7 +886,9 @@ def lock_torque(
     ramp_time: Quantity,
     load_kind: str = "reactive",
 ) -> Quantity:
-    """Clutch torque just before lock-up: T after the ramp, M_k(t_D) inside it.
+    """Clutch torque just before lock-up.
+
+    Equation: M = min(T, L + sqrt(2 J omega1 T/t_r + (L**2 if active else 0)))
 
     Inside the ramp it is L + sqrt(2 J omega1 T/t_r) (reactive) or L + sqrt(L**2 + 2 J omega1 T/t_r) (active), which is
     below T there, and above T where lock-up comes after the ramp.
@@ -862,7 +934,9 @@ def lock_torque(
 
 
 def torque_rate_per_inertia(torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity) -> Quantity:
-    """Jerk of the driven side during the ramp, T/(t_r J).
+    """Jerk of the driven side during the ramp.
+
+    Equation: jerk = T/(t_r J)
 
     Parameters
     ----------
@@ -937,6 +1011,8 @@ def startup_phases(
     load_kind: str = "reactive",
 ) -> StartupPhases:
     """Compute times, speeds, powers and works of the phases of a start-up.
+
+    Equation (implicit): J domega2/dt = T min(t/t_r, 1) - L
 
     Parameters
     ----------
@@ -1036,12 +1112,12 @@ def constant_torque_slip(
 ) -> tuple[Quantity, Quantity]:
     """Slip time and friction work of two finite inertias under constant torques (step engagement).
 
-    t = domega/((T-M1)/J1 + (T-M2)/J2), W = T domega t/2.
+    Equation: (t, W) = (t, T domega t/2), with t = domega/((T - M1)/J1 + (T - M2)/J2)
 
     Parameters
     ----------
     slip_speed : scalar, array or symbol
-        Speed difference at the start [rad/s].
+        Speed difference at the start domega [rad/s].
     torque, driver_torque, load_torque : scalar, array or symbol
         T, M1, M2 [N m].
     driver_inertia, driven_inertia : scalar, array or symbol

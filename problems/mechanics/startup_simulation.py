@@ -28,20 +28,34 @@ from synth.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
+__all__ = [
+    "LOADS",
+    "RAMP_SHAPES",
+    "DriverTorque",
+    "Event",
+    "Ramp",
+    "StartupRun",
+    "SwitchingRun",
+    "simulate_startup",
+    "simulate_switching",
+]
+
 Ramp: TypeAlias = str | Sequence[tuple[float, float]] | Callable[[float], float]
 DriverTorque: TypeAlias = float | Callable[[float], float]
 
 RAMP_SHAPES = ("linear", "smooth")
 LOADS = (*LOAD_KINDS, "inertia")
-TO_RPM = 30 / math.pi
+_TO_RPM = 30 / math.pi
 
-# Relative accuracy of the integration. Torques that differ by less than SAME count as equal where a piece could
+# Relative accuracy of the integration. Torques that differ by less than _SAME count as equal where a piece could
 # otherwise open and close again without end.
-ACCURACY, SAME = 1e-10, 1e-12
-ROWS = 400  # rows of the frame per run, events apart
-MOST_PIECES = 2000
+_ACCURACY, _SAME = 1e-10, 1e-12
+_ROWS = 400  # rows of the frame per run, events apart
+_MOST_PIECES = 2000
 
-SPEED_1, SPEED_2, WORK_1, WORK_2, FRICTION = range(5)  # the state: both speeds, works of driver and load, friction work
+_SPEED_1, _SPEED_2, _WORK_1, _WORK_2, _FRICTION = range(
+    5
+)  # the state: both speeds, works of driver and load, friction work
 
 
 @dataclass(frozen=True)
@@ -106,13 +120,13 @@ class _Question:
         """Return M1, M_k and M2 within a piece."""
         load = self.load_torque * (mode.motion if self.load_kind == "reactive" else 1)
         if mode.slip == 0:
-            driver = load if self.driver_torque is None else self.driver_torque(state[SPEED_1])
+            driver = load if self.driver_torque is None else self.driver_torque(state[_SPEED_1])
             share = 0.0 if self.driver_torque is None else self.driven_inertia / self._both
             return driver, load + share * (driver - load), load
         clutch = mode.slip * self.capacity(time)
         if self.stands and mode.motion == 0:
             load = clutch
-        return clutch if self.driver_torque is None else self.driver_torque(state[SPEED_1]), clutch, load
+        return clutch if self.driver_torque is None else self.driver_torque(state[_SPEED_1]), clutch, load
 
     @property
     def _both(self) -> float:
@@ -130,8 +144,8 @@ class _Question:
         """Return the derivative of the state."""
         driver, clutch, load = self.torques(mode, time, state)
         first, second = self.accelerations(mode, driver, clutch, load)
-        slip = state[SPEED_1] - state[SPEED_2] if mode.slip else 0.0
-        return [first, second, driver * state[SPEED_1], load * state[SPEED_2], clutch * slip]
+        slip = state[_SPEED_1] - state[_SPEED_2] if mode.slip else 0.0
+        return [first, second, driver * state[_SPEED_1], load * state[_SPEED_2], clutch * slip]
 
 
 @dataclass(frozen=True)
@@ -252,7 +266,7 @@ class StartupRun:
 
     def _rows(self, piece: _Piece, number: int) -> list[list[float]]:
         question, mode = self.question, piece.mode
-        steps = max(2, math.ceil(ROWS * (piece.end - piece.start) / self.end) + 1)
+        steps = max(2, math.ceil(_ROWS * (piece.end - piece.start) / self.end) + 1)
         first = question.driver_speed
         inertia = 0.0 if question.driver_torque is None else question.driver_inertia
         phase = next(k for k, (_, end, _) in enumerate(self.phases(), 1) if piece.end <= end)
@@ -261,7 +275,7 @@ class StartupRun:
             state = piece.state(time)
             driver, clutch, load = question.torques(mode, time, state)
             faster, second = question.accelerations(mode, driver, clutch, load)
-            speed_1, speed_2 = state[SPEED_1], state[SPEED_2]
+            speed_1, speed_2 = state[_SPEED_1], state[_SPEED_2]
             slip = speed_1 - speed_2 if mode.slip else 0.0
             kinetic = inertia * faster * speed_1 + question.driven_inertia * second * speed_2
             stored = (inertia * (speed_1**2 - first**2) + question.driven_inertia * speed_2**2) / 2
@@ -271,19 +285,19 @@ class StartupRun:
                 clutch,
                 load,
                 question.capacity(time),
-                speed_1 * TO_RPM,
-                speed_2 * TO_RPM,
-                slip * TO_RPM,
+                speed_1 * _TO_RPM,
+                speed_2 * _TO_RPM,
+                slip * _TO_RPM,
                 faster,
                 second,
                 driver * speed_1,
                 load * speed_2,
                 kinetic,
                 clutch * slip,
-                state[WORK_1],
-                state[WORK_2],
+                state[_WORK_1],
+                state[_WORK_2],
                 stored,
-                state[FRICTION],
+                state[_FRICTION],
                 float(phase),
             ]
             rows.append([float(value) for value in row])
@@ -306,6 +320,8 @@ def simulate_startup(
     time_limit: float | None = None,
 ) -> StartupRun:
     """Integrate a start-up from the first touch to lock-up and a little beyond.
+
+    Equation (implicit): J1 domega1/dt = M1 - M_k, J2 domega2/dt = M_k - M2
 
     Parameters
     ----------
@@ -461,14 +477,14 @@ def _default_limit(question: _Question) -> float:
     """Return a time late enough for every lock-up: a slip from the end of the ramp on with twice the speed to gain."""
     inertia, speed, ramp_time = question.driven_inertia, question.driver_speed, question.ramp_time
     excess = question.torque - question.load_torque
-    if excess <= SAME * question.torque:
+    if excess <= _SAME * question.torque:
         return 2 * ramp_time + 2 * inertia * speed / question.torque
     return ramp_time + 2 * (inertia * speed + question.torque * ramp_time) / excess
 
 
 # -- the integration -------------------------------------------------------------------------------
 
-TROUBLE = "the course of the start-up changes without end"
+_TROUBLE = "the course of the start-up changes without end"
 
 
 class _Integration:
@@ -483,14 +499,14 @@ class _Integration:
         self.keeps_load = True
         # The works are of the order of the kinetic energy, or of what the torque does at full speed.
         energy = question.driven_inertia * question.driver_speed**2
-        self.tolerance = np.array([question.driver_speed] * 2 + [energy] * 3) * ACCURACY * 1e-2
+        self.tolerance = np.array([question.driver_speed] * 2 + [energy] * 3) * _ACCURACY * 1e-2
 
     def run(self) -> StartupRun:
         """Integrate until lock-up is past, the driver stalls or the time is up."""
         question = self.question
         state = np.array([question.driver_speed, 0.0, 0.0, 0.0, 0.0])
         time, outcome = 0.0, ""
-        slip, motion = 1, 0 if question.capacity(0.0) <= question.load_torque * (1 + SAME) else 1
+        slip, motion = 1, 0 if question.capacity(0.0) <= question.load_torque * (1 + _SAME) else 1
         if question.load_torque == 0:
             motion = 1
         elif motion:
@@ -498,8 +514,8 @@ class _Integration:
         if question.ramp_time == 0:
             self._note(0.0, "ramp ends")
         while time < self.end and not outcome:
-            if len(self.pieces) > MOST_PIECES:
-                raise ArithmeticError(TROUBLE)
+            if len(self.pieces) > _MOST_PIECES:
+                raise ArithmeticError(_TROUBLE)
             mode = _Mode(slip, motion, self._phase(slip, motion, time))
             time, state, reached = self._integrate(mode, time, state)
             if abs(time - question.ramp_time) <= 1e-12 * question.ramp_time and time > 0:
@@ -517,11 +533,11 @@ class _Integration:
                 motion = slip if question.stands else 1
                 self._note(time, "load starts")
             elif reached == "rest":
-                state[SPEED_2] = 0.0
+                state[_SPEED_2] = 0.0
                 motion = 0
                 self._note(time, "load stops")
             elif reached == "stall":
-                state[SPEED_1] = 0.0
+                state[_SPEED_1] = 0.0
                 outcome = "stalled"
                 self._note(time, "driver stalls")
         return self._result(outcome or ("locked" if slip == 0 else "slipping"), time, state)
@@ -552,7 +568,7 @@ class _Integration:
             state,
             # A motor that is steep for its small rotor is stiff; nothing else here is.
             method="DOP853" if question.driver_torque is None else "LSODA",
-            rtol=ACCURACY,
+            rtol=_ACCURACY,
             atol=self.tolerance,
             events=[function for _, function in watched],
             dense_output=True,
@@ -579,29 +595,29 @@ class _Integration:
             found.append((name, function))
 
         if mode.slip:
-            watch("lock", lambda t, y: mode.slip * (y[SPEED_1] - y[SPEED_2]))
+            watch("lock", lambda t, y: mode.slip * (y[_SPEED_1] - y[_SPEED_2]))
         else:
 
             def reserve(t: float, y: Any) -> float:
-                return question.hold * question.capacity(t) * (1 + SAME) - abs(question.torques(mode, t, y)[1])
+                return question.hold * question.capacity(t) * (1 + _SAME) - abs(question.torques(mode, t, y)[1])
 
             watch("slip", reserve)
         if mode.slip and mode.motion == 0:
-            watch("start", lambda t, y: load * (1 + SAME) - question.capacity(t))
+            watch("start", lambda t, y: load * (1 + _SAME) - question.capacity(t))
         if mode.slip and mode.motion and question.stands:
-            watch("rest", lambda t, y: mode.motion * y[SPEED_2])
+            watch("rest", lambda t, y: mode.motion * y[_SPEED_2])
         if question.driver_torque is not None:
-            watch("stall", lambda t, y: y[SPEED_1])
+            watch("stall", lambda t, y: y[_SPEED_1])
         return found
 
     def _lock(self, time: float, state: Any, slip: int, motion: int) -> tuple[int, int, Any]:
         """Return the mode and state at lock-up; from the first one on the end is in sight."""
         question = self.question
-        state[SPEED_2] = state[SPEED_1]
+        state[_SPEED_2] = state[_SPEED_1]
         self._note(time, "lock-up")
         motion = 1 if motion == 0 else motion
         if math.isnan(self.lock_time):
-            self.lock_time, self.lock_speed = time, float(state[SPEED_1])
+            self.lock_time, self.lock_speed = time, float(state[_SPEED_1])
             self.keeps_load = self._keeps_load(self.lock_speed)
             if self.hold is not None:
                 self.end = min(time + self.hold, max(self.limit, time))
@@ -620,23 +636,23 @@ class _Integration:
 
     def _result(self, outcome: str, end: float, state: Any) -> StartupRun:
         question = self.question
-        kinetic = question.driven_inertia * state[SPEED_2] ** 2 / 2
+        kinetic = question.driven_inertia * state[_SPEED_2] ** 2 / 2
         if question.driver_torque is not None:
-            kinetic += question.driver_inertia * (state[SPEED_1] ** 2 - question.driver_speed**2) / 2
+            kinetic += question.driver_inertia * (state[_SPEED_1] ** 2 - question.driver_speed**2) / 2
         slipping = [piece for piece in self.pieces if piece.mode.slip]
         reserves = [self._reserve(piece) for piece in self.pieces if not piece.mode.slip]
         return StartupRun(
             outcome=outcome,
             slip_time=self.lock_time,
-            friction_work=float(state[FRICTION]),
+            friction_work=float(state[_FRICTION]),
             peak_slip_power=max(_greatest(piece, self._slip_power(piece)) for piece in slipping),
             lock_speed=self.lock_speed,
             greatest_acceleration=max(_greatest(piece, self._driven_acceleration(piece)) for piece in slipping),
             lowest_driven_speed=min(0.0, -max(_greatest(piece, _backward_speed(piece)) for piece in slipping)),
             hold_reserve=min(reserves, default=math.nan),
             keeps_load=self.keeps_load,
-            driver_work=float(state[WORK_1]),
-            load_work=float(state[WORK_2]),
+            driver_work=float(state[_WORK_1]),
+            load_work=float(state[_WORK_2]),
             kinetic_work=float(kinetic),
             end=float(end),
             events=tuple(self.events),
@@ -648,7 +664,7 @@ class _Integration:
         def power(time: float) -> float:
             state = piece.state(time)
             clutch = self.question.torques(piece.mode, time, state)[1]
-            return float(clutch * (state[SPEED_1] - state[SPEED_2]))
+            return float(clutch * (state[_SPEED_1] - state[_SPEED_2]))
 
         return power
 
@@ -669,7 +685,7 @@ class _Integration:
 
 
 def _backward_speed(piece: _Piece) -> Callable[[float], float]:
-    return lambda time: -float(piece.state(time)[SPEED_2])
+    return lambda time: -float(piece.state(time)[_SPEED_2])
 
 
 def _greatest(piece: _Piece, function: Callable[[float], float]) -> float:
@@ -742,7 +758,9 @@ def simulate_switching(
     cooled_area: float,
     engagements: int | None = None,
 ) -> SwitchingRun:
-    """Let equal engagements follow each other and integrate the temperature of a lumped body, C dT/dt = P - h A T.
+    """Let equal engagements follow each other and integrate the temperature of a lumped body.
+
+    Equation (implicit): C dT/dt = P - h A T
 
     The balance is linear: one engagement is integrated from ambient, and a cycle that begins warmer adds what is left
     of that warmth.
@@ -828,7 +846,7 @@ def _one_engagement(run: StartupRun, capacity: float, constant: float) -> tuple[
         def balance(time: float, rise: Any, piece: _Piece = piece) -> list[float]:
             state = piece.state(time)
             clutch = question.torques(piece.mode, time, state)[1]
-            return [clutch * (state[SPEED_1] - state[SPEED_2]) / capacity - rise[0] / constant]
+            return [clutch * (state[_SPEED_1] - state[_SPEED_2]) / capacity - rise[0] / constant]
 
         points = np.linspace(piece.start, piece.end, 100)
         scale = run.friction_work / capacity
@@ -837,5 +855,5 @@ def _one_engagement(run: StartupRun, capacity: float, constant: float) -> tuple[
         )
         times.extend(points[1:])
         rises.extend(answer.y[0][1:])
-        heat += float(piece.state(piece.end)[FRICTION] - piece.state(piece.start)[FRICTION])
+        heat += float(piece.state(piece.end)[_FRICTION] - piece.state(piece.start)[_FRICTION])
     return np.array(times), np.array(rises), heat

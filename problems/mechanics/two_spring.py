@@ -26,9 +26,26 @@ import numpy as np
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "clamp_force",
+    "clamp_force_at",
+    "clamp_spring_travel",
+    "contact_force",
+    "contact_travel",
+    "disc_travel",
+    "plate_travel_at",
+    "stop_force",
+    "stop_load",
+    "stretched_force",
+    "worn_clamp_force",
+    "worn_contact_travel",
+]
+
 
 def stretched_force(preload: Quantity, deflection: Quantity, travel: Quantity) -> Quantity:
-    """Force of a spring set, from its preload and how far it is deflected further, F = F0 (1 + x/delta).
+    """Force of a spring set, from its preload and how far it is deflected further.
+
+    Equation: F = F0 (1 + x/delta)
 
     Parameters
     ----------
@@ -37,7 +54,7 @@ def stretched_force(preload: Quantity, deflection: Quantity, travel: Quantity) -
     deflection : scalar, array or symbol
         Its deflection at rest delta [m].
     travel : scalar, array or symbol
-        What is added to the deflection [m].
+        What is added to the deflection x [m].
 
     Returns
     -------
@@ -59,7 +76,9 @@ def stretched_force(preload: Quantity, deflection: Quantity, travel: Quantity) -
 
 
 def clamp_spring_travel(force: Quantity, clamp_preload: Quantity, deflection: Quantity) -> Quantity:
-    """By how much the clamp springs give beyond their preload, delta2 (F/F20 - 1).
+    """By how much the clamp springs give beyond their preload.
+
+    Equation: x - z = delta2 (F/F20 - 1)
 
     Parameters
     ----------
@@ -90,7 +109,9 @@ def clamp_spring_travel(force: Quantity, clamp_preload: Quantity, deflection: Qu
 
 
 def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel: Quantity) -> Quantity:
-    """Force at contact, Fa = F10 + s1 a.
+    """Force at contact.
+
+    Equation: Fa = F10 + s1 a
 
     Parameters
     ----------
@@ -123,7 +144,9 @@ def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel:
 def contact_travel(
     contact_force: Quantity, clamp_preload: Quantity, clamp_deflection: Quantity, plate_travel: Quantity
 ) -> Quantity:
-    """Travel of the tension disc at contact, x_c = a + delta2 (Fa/F20 - 1).
+    """Travel of the tension disc at contact.
+
+    Equation: x_c = a + delta2 (Fa/F20 - 1)
 
     Parameters
     ----------
@@ -158,7 +181,9 @@ def contact_travel(
 def stop_force(
     clamp_preload: Quantity, clamp_rate: Quantity, plate_travel: Quantity, stop_travel: Quantity
 ) -> Quantity:
-    """Force at the stop, Fb = F20 + s2 (b - a).
+    """Force at the stop.
+
+    Equation: Fb = F20 + s2 (b - a)
 
     Parameters
     ----------
@@ -191,7 +216,9 @@ def stop_force(
 
 
 def clamp_force(stop_force: Quantity, contact_force: Quantity) -> Quantity:
-    """Largest clamp force, F_N = Fb - Fa.
+    """Largest clamp force.
+
+    Equation: F_N = Fb - Fa
 
     Parameters
     ----------
@@ -220,7 +247,9 @@ def clamp_force(stop_force: Quantity, contact_force: Quantity) -> Quantity:
 
 
 def worn_clamp_force(clamp_force: Quantity, return_rate: Quantity, clamp_rate: Quantity, wear: Quantity) -> Quantity:
-    """Largest clamp force with worn lining, F_N - (s1 + s2) w.
+    """Largest clamp force with worn lining.
+
+    Equation: F_Nw = F_N - (s1 + s2) w
 
     Parameters
     ----------
@@ -255,7 +284,9 @@ def worn_clamp_force(clamp_force: Quantity, return_rate: Quantity, clamp_rate: Q
 def worn_contact_travel(
     contact_travel: Quantity, return_rate: Quantity, clamp_rate: Quantity, wear: Quantity
 ) -> Quantity:
-    """Travel of the tension disc at contact with worn lining, x_c + w (1 + s1/s2).
+    """Travel of the tension disc at contact with worn lining.
+
+    Equation: x_cw = x_c + w (1 + s1/s2)
 
     Parameters
     ----------
@@ -290,7 +321,9 @@ def worn_contact_travel(
 def plate_travel_at(
     force: Quantity, return_preload: Quantity, return_rate: Quantity, plate_travel: Quantity
 ) -> Quantity:
-    """Travel of the plate under a force, (F - F10)/s1 between 0 and a.
+    """Travel of the plate under a force, between 0 and its gap.
+
+    Equation: z = min(max((F - F10)/s1, 0), a)
 
     Parameters
     ----------
@@ -333,6 +366,8 @@ def disc_travel(
 ) -> Quantity:
     """Travel of the tension disc under a force, by the table above.
 
+    Equation: x = min(z + max(F - F20, 0)/s2, b), with z = min(max((F - F10)/s1, 0), a)
+
     Parameters
     ----------
     force : scalar, array or symbol
@@ -372,7 +407,9 @@ def disc_travel(
 
 
 def clamp_force_at(force: Quantity, contact_force: Quantity, stop_force: Quantity) -> Quantity:
-    """Clamp force under a force of the flyweights, F - Fa between 0 and Fb - Fa.
+    """Clamp force under a force of the flyweights.
+
+    Equation: F_N = min(max(F, Fa), Fb) - Fa
 
     Parameters
     ----------
@@ -403,7 +440,9 @@ def clamp_force_at(force: Quantity, contact_force: Quantity, stop_force: Quantit
 
 
 def stop_load(force: Quantity, stop_force: Quantity) -> Quantity:
-    """Force on the stop of the tension disc, F - Fb, not below 0.
+    """Force on the stop of the tension disc, not below 0.
+
+    Equation: F_stop = max(F - Fb, 0)
 
     Parameters
     ----------

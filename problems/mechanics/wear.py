@@ -7,9 +7,15 @@ from __future__ import annotations
 
 from problems.mechanics import Quantity
 
+__all__ = [
+    "wear_life",
+]
+
 
 def wear_life(area: Quantity, depth: Quantity, wear_rate: Quantity, friction_work: Quantity) -> Quantity:
-    """Engagements until the linings are worn, N = A d_w/(k_w W).
+    """Engagements until the linings are worn.
+
+    Equation: N = A d_w/(k_w W)
 
     Parameters
     ----------

@@ -57,7 +57,8 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     pandas.DataFrame
         One row per option, requirement, variable, count, choice, slot, column used, derived quantity, limit,
         objective, refusal, advice and row named with a design; numbers in the unit of their row, defaults that follow
-        from other quantities as text. Limits of optional requirements are included. The column group says which
+        from other quantities as text. The range of a column is what is plausible in its table: cells outside are
+        refused. Limits of optional requirements are included. The column group says which
         requirements and options belong together (duty, practice, ...), in the words of the family. The column
         classification says what kind of function a derived quantity, limit or objective is over all that may be
         declared and chosen (see ``synth.bounds.structure``).
@@ -220,6 +221,10 @@ def _values(values: np.ndarray) -> str:
     return f"{', '.join(texts[:3])} .. {texts[-1]} ({len(texts)} values)"
 
 
+def _plausible(end: float | None) -> float:
+    return math.nan if end is None else end
+
+
 def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
     table = tables.table(part.table)
     read: dict[tuple[str, ...], bool] = {}  # columns of the table -> whether a row may lack them in every use
@@ -236,6 +241,8 @@ def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
                 name=f"{part.slot}.{'|'.join(names)}",
                 symbol=f"{part.slot}.{column.symbol}" if column is not None and column.symbol else "",
                 unit=column.unit if column is not None and column.unit else "-",
+                lower=_plausible(column.minimum) if column is not None else math.nan,
+                upper=_plausible(column.maximum) if column is not None else math.nan,
                 text=(column.description if column is not None else "not in this table"),
                 source=f"table {part.table}",
                 optional=optional,

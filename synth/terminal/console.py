@@ -128,7 +128,7 @@ TITLES = {
     "count": "Counts (found by the search)",
     "choice": "Choices (found by the search)",
     "slot": "Parts (found by the search)",
-    "column": "Columns of the parts that are used",
+    "column": "Columns of the parts that are used, and what is plausible in their tables",
     "derived": "Derived quantities",
     "step": "Quantities on the way to others (in front.json, for curves)",
     "limit": "Limits",
@@ -178,7 +178,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     kind, default = row["kind"], row["default"]
     if kind in ("limit", "objective"):
         return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
-    if kind in ("setting", "point", "option", "derived", "step", "column", "slot", "choice"):
+    if kind in ("setting", "point", "option", "derived", "step", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
     bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
@@ -186,6 +186,8 @@ def _range(row: Mapping[Any, Any]) -> str:
         span = " .. ".join(bounds)
     else:
         span = f">= {bounds[0]}" if bounds and not math.isnan(low) else f"<= {bounds[0]}" if bounds else ""
+    if kind == "column":
+        return f"optional  {span}".rstrip() if row["optional"] else span
     if kind != "requirement":
         return span
     if row["optional"]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import pandas as pd
 import pytest
 
 import synth
 from synth.analysis.describe import COLUMNS, describe
 from synth.declaration import Block, Option, Requirement, RowRange
+from synth.errors import InputError
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
 
@@ -111,6 +113,7 @@ def test_parts_columns_objectives_and_remarks(rows: dict[tuple[str, str], dict[s
     column = rows["column", "plate.thickness"]
     assert (column["unit"], column["optional"]) == ("mm", False)
     assert column["text"]
+    assert (column["lower"], column["upper"]) == (0.05, 20.0)
     assert (rows["objective", "weight_index"]["sense"], rows["objective", "weight_index"]["default"]) == ("min", "yes")
     assert (rows["objective", "area"]["sense"], rows["objective", "area"]["default"]) == ("max", "no")
     assert rows["objective", "area"]["unit"] == "mm2"
@@ -219,3 +222,18 @@ def test_a_requirement_stands_in_its_group_or_in_that_of_the_class_that_declares
         ("option", "said"): "duty",
     }
     assert ("requirement", "loose") in groups
+
+
+def test_what_is_plausible_of_a_column_is_what_is_taken(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    """Of a table of one's own in other units as well, and without a range where no table says one."""
+
+    def plate(thickness: float) -> Any:
+        return {"core_plates": pd.DataFrame({"designation": ["own"], "thickness [m]": [thickness]})}
+
+    own = describe(Sample(), plate(0.0199)).query("name == 'plate.thickness'").iloc[0]
+    assert (own["unit"], own["lower"], own["upper"]) == ("mm", 0.05, 20.0)
+    with pytest.raises(InputError, match=r"0\.05 \.\. 20 mm"):
+        describe(Sample(), plate(0.0201))
+    cost = describe("multi_plate_clutch").query("name == 'friction_pair.unit_cost'").iloc[0]
+    assert math.isnan(cost["lower"])
+    assert math.isnan(cost["upper"])

@@ -31,6 +31,7 @@ from synth.analysis.describe import describe
 from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
+from tests.docs import mechanics_page
 from tests.terminal.entry import in_process
 
 ROOT = Path(__file__).parents[2]
@@ -284,6 +285,17 @@ def test_every_family_has_a_worked_example(family: str) -> None:
     assert "$ clutchsynth run" in page
     for name in describe(family).query("kind == 'objective'")["name"]:
         assert name in page, name
+
+
+def test_the_page_of_the_formulas_is_that_of_their_docstrings(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = text_of("docs/mechanics.md")
+    assert mechanics_page.page() == page, "make mechanics writes the page anew"
+    found = mechanics_page.formulas()
+    assert len(found) > 150
+    assert all(f"| `{f.name}(" in page and f"`{f.equation}`" in page for f in found)
+    told = found[0].function.__doc__
+    monkeypatch.setattr(found[0].function, "__doc__", told.replace(found[0].equation, found[0].equation + " + 1"))
+    assert mechanics_page.page() != page
 
 
 def test_every_table_is_in_the_readme_of_the_catalogues() -> None:

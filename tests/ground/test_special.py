@@ -111,3 +111,20 @@ def test_an_expression_is_written_out_with_the_formulas_it_needs_and_no_others()
     assert asked == ["outer", "inner"]
     assert [str(s) for s in ca.symvar(written)] == ["x"]
     assert float(ca.Function("f", [x], [written])(3.0)) == 10.0
+
+
+def test_arguments_are_taken_by_name_as_well():
+    @special((1.0, 1.0), (-1.0, -1.0))
+    def slope(rise, run):
+        return rise / run
+
+    TABLE.pop(next(n for n in TABLE if n.endswith("slope")))  # what stays there is checked as a formula of the program
+    assert slope(run=4.0, rise=2.0) == slope(2.0, run=4.0) == 0.5
+    rise, run = ca.SX.sym("rise"), ca.SX.sym("run")
+    with recorded() as calls:
+        symbol = slope(run=run, rise=rise)
+    (call,) = calls
+    assert [str(x) for x in call.arguments] == ["rise", "run"]
+    assert str(expanded(symbol, calls)) == "(rise/run)"
+    with pytest.raises(TypeError, match="unexpected keyword argument 'width'"):
+        slope(1.0, 2.0, width=2.0)

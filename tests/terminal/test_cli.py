@@ -108,6 +108,10 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
     for heading in ("Options", "Requirements", "Variables", "Counts", "Parts", "Derived", "Limits", "Objectives"):
         assert f"\n{heading}" in done.stdout
     assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1e+06")
+    assert quantity(done.stdout, "friction_pair.p_allow").startswith("friction_pair.p_allow N/mm2 0.001 .. 500")
+    assert quantity(done.stdout, "friction_pair.mu_static").startswith(
+        "friction_pair.mu_static - optional 0.001 .. 1.2"
+    )
     limits, objectives = done.stdout.split("\nLimits\n")[1].split("\nObjectives\n")
     for name, section, kind in (
         ("ring_ratio_min", limits, "log-convex"),
@@ -121,7 +125,8 @@ def test_describe_as_csv() -> None:
     done = at_once("describe", "multi_plate_clutch", "--csv")
     rows = {(row["kind"], row["name"]): row for row in csv.DictReader(io.StringIO(done.stdout))}
     assert rows["requirement", "safety_factor"]["default"] == "1.5"
-    assert rows["column", "friction_pair.mu_dynamic"]["unit"] == "-"
+    column = rows["column", "friction_pair.mu_dynamic"]
+    assert (column["unit"], column["lower"], column["upper"]) == ("-", "0.001", "1.0")
     assert rows["objective", "mass"]["sense"] == "min"
     assert rows["derived", "friction_area"]["classification"] == "log-concave"
     assert not [name for kind, name in rows if kind == "step"]

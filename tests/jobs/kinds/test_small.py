@@ -44,6 +44,11 @@ def test_a_declaration_says_where_a_form_asks_for_what() -> None:
     assert rows["requirement", "outer_diameter_limit"]["section"] == "limit"
     assert rows["requirement", "safety_factor"]["section"] == "assumption"
     assert rows["slot", "friction_pair"]["section"] == "part"
+    assert (rows["column", "friction_pair.p_allow"]["lower"], rows["column", "friction_pair.p_allow"]["upper"]) == (
+        0.001,
+        500,
+    )
+    assert rows["column", "friction_pair.unit_cost"]["lower"] is None
     assert rows["objective", "mass"]["section"] == "objective"
     assert len(rows) <= len(synth.describe("disc_clutch"))
     assert {row["section"] for row in found["rows"] if row["kind"] == "option"} == {"option"}

@@ -9,7 +9,7 @@ const SECTIONS = [
   ["needed", "Needed", "what a study must state"], ["limit", "Limits you may set", "asked only where they are stated"], ["assumption", "Assumptions", "each with a default and its source"],
   ["option", "Options", "how it is built and what it is judged by"], ["variable", "Sizes", "searched within their ranges"], ["count", "Counts", "whole numbers that are searched"], ["choice", "Choices", ""],
   ["part", "Parts", "rows of part tables"], ["objective", "Objectives", "what is made small or large"], ["derived", "What follows", "computed by formulas, each with its source"],
-  ["kept", "Limits of the model", "what every design keeps"], ["column", "Columns of parts", "that formulas read"], ["setting", "Settings of simulations", ""], ["refusal", "What is refused", ""], ["advice", "Advice", ""],
+  ["kept", "Limits of the model", "what every design keeps"], ["column", "Columns of parts", "that formulas read; cells outside of their ranges are refused"], ["setting", "Settings of simulations", ""], ["refusal", "What is refused", ""], ["advice", "Advice", ""],
 ];
 const TABLE = /^rows of (\w+)/;
 const HEADS = ["Name", "Unit", "Default", "Range or choices", "Meaning", "Source"];
