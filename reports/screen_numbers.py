@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
+from synth.plain_text import plain_number
 from synth.units import finite_from_si
-
-DIGITS = 4
 
 
 def words(name: str) -> str:
@@ -20,25 +17,6 @@ def words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def on_screen(value: float | None) -> str:
-    """Return a number in four digits, whole numbers and those above a thousand without decimals.
-
-    Examples
-    --------
-    >>> [on_screen(x) for x in (14.568237, 21017.3, 0.00082654, 1.0, 1234567.0, -0.25, None)]
-    ['14.57', '21 017', '0.0008265', '1', '1 234 567', '-0.25', '']
-    """
-    if value is None or math.isnan(value):
-        return ""
-    if math.isinf(value):
-        return "unbounded"
-    if value == 0:
-        return "0"
-    decimals = max(DIGITS - 1 - math.floor(math.log10(abs(value))), 0)
-    text = f"{value:,.{decimals}f}".replace(",", " ")
-    return text.rstrip("0").rstrip(".") if "." in text else text
-
-
 def in_unit(si: float, unit: str) -> str:
     """Return an SI value in a unit, for a screen; nothing where it does not exist."""
-    return on_screen(finite_from_si(si, unit, None))
+    return plain_number(finite_from_si(si, unit, None))

@@ -12,8 +12,9 @@ from rich.table import Table
 
 from reports.numbers import unit_text
 from reports.reasons import binding, why
-from reports.screen_numbers import in_unit, on_screen, words
+from reports.screen_numbers import in_unit, words
 from reports.sizing import sizing_line
+from synth.plain_text import plain_number
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 
@@ -166,7 +167,7 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
 def _reserve(design: Design) -> str:
     """Return by how many per cent a design carries more than it is sized for."""
     carried, needed = design.limits.get(design.frame.sized_by, (0.0, 0.0))
-    return on_screen(round(100 * (carried / needed - 1), 1) + 0.0) if needed else ""
+    return plain_number(round(100 * (carried / needed - 1), 1) + 0.0) if needed else ""
 
 
 def _column(name: str, unit: str, cells: Sequence[str]) -> _Column:

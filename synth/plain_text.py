@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from collections.abc import Iterable, Iterator
@@ -26,6 +27,36 @@ def printable(text: str) -> str:
     ('core\\x1b[2J 4', 'two\nlines')
     """
     return UNSAFE.sub(_written_out, text)
+
+
+def plain_number(value: float | None, digits: int = 4) -> str:
+    """Return a number as people write it: so many digits, without an exponent, thousands apart.
+
+    Whole parts are not rounded; nothing where there is no number.
+
+    Examples
+    --------
+    >>> [plain_number(x) for x in (14.568237, 21017.3, 0.00082654, 1.0, 1234567.0, -0.25, None)]
+    ['14.57', '21 017', '0.0008265', '1', '1 234 567', '-0.25', '']
+    """
+    if value is None or math.isnan(value):
+        return ""
+    if math.isinf(value):
+        return "unbounded"
+    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0) if value else 0
+    text = f"{value:,.{decimals}f}".replace(",", " ")
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def percent(share: float, digits: int = 3) -> str:
+    """Return a share in per cent.
+
+    Examples
+    --------
+    >>> percent(0.001), percent(16.8)
+    ('0.1 %', '1 680 %')
+    """
+    return f"{plain_number(100 * share, digits)} %"
 
 
 def escaped(text: str) -> str:

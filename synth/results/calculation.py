@@ -17,6 +17,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.feasibility import holds, residual, utilisation
 from synth.files import read_json
+from synth.plain_text import percent
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import digest_of, finite
@@ -289,7 +290,7 @@ class Calculation:
         if recorded == own or abs(recorded - own) <= AGREES * max(abs(recorded), abs(own)):
             return
         smaller = min(abs(recorded), abs(own))
-        differs = f"differs by {100 * abs(recorded - own) / smaller:.3g} %" if smaller else "differs"
+        differs = f"differs by {percent(abs(recorded - own) / smaller)}" if smaller else "differs"
         right = f"a value as its formula gives it ({name} {differs}): run it again, or use the version that computed it"
         raise InputError(f"design: {name}", finite(recorded), right)
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from synth.plain_text import percent, plain_number
 from synth.units import parse_unit
 
 
@@ -22,7 +23,7 @@ def in_words(amounts: Mapping[str, float], units: Mapping[str, str]) -> str:
         unit = parse_unit(units.get(name, "-"))
         # A difference of temperatures is one in kelvin.
         word = "K" if unit.offset else units.get(name, "-")
-        told.append(f"{name}: {amount / float(unit.ratio):.3g}" + ("" if word == "-" else f" {word}"))
+        told.append(f"{name}: {plain_number(amount / float(unit.ratio), 3)}" + ("" if word == "-" else f" {word}"))
     return f" ({', '.join(told)})" if told else ""
 
 
@@ -61,7 +62,7 @@ class Certificate:
         if self.kind == "global":
             return (
                 f"proven: over all {n} combinations of parts and counts no design improves one listed here "
-                f"by more than {100 * (self.gap or 0):.3g} % in every objective{self.amounts()}"
+                f"by more than {percent(self.gap or 0)} in every objective{self.amounts()}"
             )
         end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
         if self.kind == "exhaustive":
@@ -75,4 +76,4 @@ class Certificate:
 
 
 def _percent(gap: float | None) -> str:
-    return "unknown" if gap is None or not math.isfinite(gap) else f"{100 * gap:.3g} %"
+    return "unknown" if gap is None or not math.isfinite(gap) else percent(gap)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from synth.plain_text import percent
+
 
 class Verdict(StrEnum):
     """How a check ended."""
@@ -63,14 +65,3 @@ class Verification:
             f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
             f"{percent(self.claimed_gap or 0.0)} in every objective{self.amounts} {effort}"
         )
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent, for people.
-
-    Examples
-    --------
-    >>> percent(0.005)
-    '0.5 %'
-    """
-    return f"{100 * share:.3g} %"

@@ -26,6 +26,7 @@ from synth.files import csv_text
 from synth.input_limits import INPUT_LIMITS
 from synth.nlp.batch import Tasks
 from synth.output_folder import NEAR_EQUALS, save_result
+from synth.plain_text import percent
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -69,15 +70,15 @@ class NearEquals:
 
     def sentence(self) -> str:
         """Return how many there are, and how far that is certain."""
-        percent = f"{100 * self.within:.3g} %"
+        share = percent(self.within)
         number = f"{self.found:,}".replace(",", " ")
         if self.complete:
             those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
             if not self.found:
-                return f"proven: no other combination of parts, counts and choices comes within {percent}"
-            return f"{those} within {percent}; no further one does (proven)"
+                return f"proven: no other combination of parts, counts and choices comes within {share}"
+            return f"{those} within {share}; no further one does (proven)"
         open_ones = "" if not self.undecided else f"; {self.undecided} more could not be decided"
-        return f"at least {number} other combinations come within {percent}{open_ones}"
+        return f"at least {number} other combinations come within {share}{open_ones}"
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, the chosen one first, with units in the headers."""

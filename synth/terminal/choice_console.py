@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from synth.plain_text import percent, plain_number
 from synth.results.rating_tables import rating_row
 from synth.robust.rate import told_of
-from synth.studies.prices.price_list import NOTHING, percent
+from synth.studies.prices.price_list import NOTHING
 from synth.terminal.console import explanation_text, plain_table
 from synth.units import format_quantity
 
@@ -83,7 +84,7 @@ def _dearness(row: Price) -> float:
 
 
 def _shown(price: float | None) -> str:
-    return "withheld" if price is None else f"{price:+.3g}" if price else "0"
+    return "withheld" if price is None else f"{'+' if price > 0 else ''}{plain_number(price, 3)}"
 
 
 def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:

@@ -21,7 +21,7 @@ from rich.text import Text
 
 from synth.files import csv_text
 from synth.margins import MARGINS
-from synth.plain_text import PlainStream, printable
+from synth.plain_text import PlainStream, percent, plain_number, printable
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.units import format_quantity, from_si, split_header
@@ -181,7 +181,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     if kind in ("setting", "point", "option", "derived", "step", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
-    bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
+    bounds = [plain_number(x, 6) for x in (low, high) if not math.isnan(x)]
     if len(bounds) == 2:
         span = " .. ".join(bounds)
     else:
@@ -194,7 +194,7 @@ def _range(row: Mapping[Any, Any]) -> str:
         return f"optional  {span}"
     if default is None:
         return f"needed  {span}"
-    return f"{default:.6g}  {span}" if isinstance(default, float) else f"(see right)  {span}"
+    return f"{plain_number(default, 6)}  {span}" if isinstance(default, float) else f"(see right)  {span}"
 
 
 def _meaning(row: Mapping[Any, Any]) -> str:
@@ -277,7 +277,7 @@ def _limits(design: Design, states: Mapping[str, str]) -> Table:
     for name, state in states.items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
-        shown_use = "" if used is None else f"{used:.4g}"
+        shown_use = plain_number(used)
         style = "bold red" if state == "VIOLATED" else ""
         table.add_row(name, value, SIGNS[design.frame.limit_senses[name]], limit, shown_use, Text(state, style))
     return table
@@ -334,9 +334,8 @@ def print_simulation(
     for frame in frames.values():
         console.print(frame.attrs["title"])
         unit = split_header(str(frame.attrs.get("x", frame.columns[0])))[1] or ""
-        events = [
-            f"{mark['label']} {mark['x']:.5g} {unit}" for mark in frame.attrs.get("marks", ()) if mark.get("label")
-        ]
+        marks = [mark for mark in frame.attrs.get("marks", ()) if mark.get("label")]
+        events = [f"{mark['label']} {plain_number(mark['x'], 5)} {unit}" for mark in marks]
         if events:
             console.print(f"  {', '.join(events)}")
     if len(opinion):
@@ -347,8 +346,8 @@ def print_simulation(
             if abs(relative) < MARGINS.same:
                 relative = row["difference"] = 0.0  # rounding only
             numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
-            shown = [f"{x:.6g} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]
-            table.add_row(row["quantity"], *shown, f"{100 * relative:.3g} %" if math.isfinite(relative) else "")
+            shown = [f"{plain_number(x, 6)} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]
+            table.add_row(row["quantity"], *shown, percent(relative) if math.isfinite(relative) else "")
         console.print(table)
     if design.violated:
         console.print(f"\nlimits violated: {', '.join(design.violated)} (clutchsynth check lists them)")
@@ -491,7 +490,7 @@ def _brief(value: Any) -> str:
         return {True: "yes", False: "no", None: "-"}[value]
     if isinstance(value, int):
         return f"{value:,}".replace(",", " ")
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    return plain_number(value, 3) if isinstance(value, float) else str(value)
 
 
 @contextmanager

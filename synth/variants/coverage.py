@@ -15,6 +15,7 @@ from synth.margins import MARGINS, within
 from synth.model.model import DataInput, Evaluation, Model
 from synth.model.problem import DesignProblem
 from synth.model.program import InputValue
+from synth.plain_text import percent
 from synth.question.inputs import inputs_of, part_value
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -235,7 +236,7 @@ def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantCol
     broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > TOLERANCE]
     if not broken:
         return "the designs that keep its limits have parts, counts or sizes that it does not allow"
-    shown = ", ".join(f"{name} by {100 * share:.3g} %" for share, name in sorted(broken, reverse=True)[:3])
+    shown = ", ".join(f"{name} by {percent(share)}" for share, name in sorted(broken, reverse=True)[:3])
     return f"the nearest design misses {shown}"
 
 

@@ -33,6 +33,7 @@ from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.files import read_bytes
 from synth.model.problem import DesignProblem
+from synth.plain_text import percent
 from synth.proof.levels import prove_regions
 from synth.proof.questions import Point, ProofOutcome
 from synth.proof.tree import NO_SCALE, ProofTree, void_without
@@ -41,7 +42,7 @@ from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
 from synth.results.calculation import CALCULATION, load_calculation
 from synth.results.front_record import changed
-from synth.results.verification import Verification, percent
+from synth.results.verification import Verification
 from synth.special import expanded
 from synth.units import format_quantity
 from synth.verification.contradictions import contradiction

@@ -35,6 +35,7 @@ COMMAND = (sys.executable, "-c", "from synth.terminal.cli import main; main()")
 API = "/api/v1"
 ENDED = ("done", "failed", "cancelled", "stopped")
 SECONDS = 60.0
+MOST_REPEATED = 100  # times that a busy service is asked for one job
 FAMILIES = ("hoist_multi_plate", "cone_drive", "automobile_disc", "wrap_spring_freewheel", "powder_winder")
 
 
@@ -151,6 +152,18 @@ def submit(client: httpx.Client, request: Mapping[str, Any], kind: str = "synthe
     answer = client.post(f"{API}/jobs", json={"kind": kind, "request": request, **more})
     answer.raise_for_status()
     return str(answer.json()["id"])
+
+
+def patiently(client: httpx.Client, request: Mapping[str, Any]) -> tuple[str, int]:
+    """Ask for a job, and again when a busy service says so, as clients are told to; return its id, and how often."""
+    again = 0
+    while True:
+        answer = client.post(f"{API}/jobs", json={"kind": "synthesis", "request": request})
+        if answer.status_code != httpx.codes.SERVICE_UNAVAILABLE or again == MOST_REPEATED:
+            answer.raise_for_status()
+            return str(answer.json()["id"]), again
+        again += 1
+        time.sleep(float(answer.headers.get("Retry-After", 1)))
 
 
 def status(client: httpx.Client, job: str) -> dict[str, Any]:
@@ -422,10 +435,12 @@ def soak(database: str | None = None, jobs: int = 10_000, pages: int = 10) -> di
     sizes: list[dict[str, float]] = []
     ends: Counter[str] = Counter()
     with served(database) as service, httpx.Client(base_url=service.url, timeout=60.0) as client:
-        begin, waiting = time.monotonic(), list[str]()
+        begin, waiting, refused = time.monotonic(), list[str](), 0
         for k in range(1, jobs + 1):
             how: dict[str, Any] = {"points": 5} if k % 7 == 0 else QUICK
-            waiting.append(submit(client, spec(FAMILIES[k % len(FAMILIES)], **how, seed=k)))
+            job, busy = patiently(client, spec(FAMILIES[k % len(FAMILIES)], **how, seed=k))
+            waiting.append(job)
+            refused += busy
             if len(waiting) > 2:
                 job = waiting.pop(0)
                 ends[ended(client, job)["state"]] += 1
@@ -439,6 +454,7 @@ def soak(database: str | None = None, jobs: int = 10_000, pages: int = 10) -> di
     return {
         "jobs": jobs,
         "ends": dict(ends),
+        "asked again later": refused,
         **{f"{name} MB": ", ".join(f"{size[name]:.0f}" for size in sizes) for name in sizes[-1]},
     }
 

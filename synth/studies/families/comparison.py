@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
+from synth.plain_text import percent
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -72,7 +73,7 @@ class Comparison:
         if self.certificate.kind == "global" and self.designs:
             return (
                 f"proven: over all {n} combinations of parts and counts of {those} searched no design improves one "
-                f"listed here by more than {100 * (self.certificate.gap or 0):.3g} % in every objective"
+                f"listed here by more than {percent(self.certificate.gap or 0)} in every objective"
                 f"{self.certificate.amounts()}"
             )
         if self.certificate.kind == "global":

@@ -229,11 +229,6 @@ def _number(value: float) -> float | None:
     return None if math.isnan(value) else value
 
 
-def percent(amount: float) -> str:
-    """Return a fraction in per cent, with three digits."""
-    return f"{100 * amount:.3g} %"
-
-
 def rounded(value: float, unit: str, sense: str) -> str:
     """Return a value with its unit, rounded up where at least so much is needed, otherwise down."""
     return next(outward(value, unit, up=sense == "at_least"))

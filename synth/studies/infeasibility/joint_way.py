@@ -9,11 +9,12 @@ from typing import Any
 
 from synth.bounds.structure import classify
 from synth.model.constraint import SIGNS
+from synth.plain_text import percent
 from synth.question.ranges import declared_ranges
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
-from synth.studies.infeasibility.explanation import Relaxation, percent
+from synth.studies.infeasibility.explanation import Relaxation
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import LIMIT, REQUIREMENT

@@ -9,9 +9,10 @@ from typing import Any
 
 from synth.analysis.fired_guards import FiredGuard, columns_of, requirements_of
 from synth.model.constraint import SIGNS, Constraint
+from synth.plain_text import percent
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
-from synth.studies.infeasibility.explanation import Relaxation, percent, rounded
+from synth.studies.infeasibility.explanation import Relaxation, rounded
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT, REQUIREMENT

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 from synth.files import csv_text, read_json, write_atomically
 from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
+from synth.plain_text import percent
 from synth.results import Frame
 from synth.study_limits import PRICES as LIMITS
 
@@ -192,11 +193,6 @@ class PriceStore:
             write_atomically(self.folder / name, text)
         except OSError as error:
             raise InputError("output", str(self.folder), f"a folder that can be written ({error.strerror})") from error
-
-
-def percent(share: float) -> str:
-    """Return a share as per cent in few digits."""
-    return f"{100 * share:.3g} %"
 
 
 def told(

@@ -24,6 +24,7 @@ from synth.errors import InputError, at
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
 from synth.output_folder import claimed
+from synth.plain_text import percent, plain_number
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront
@@ -40,7 +41,6 @@ from synth.studies.prices.price_list import (
     Price,
     Prices,
     PriceStore,
-    percent,
     told,
 )
 from synth.studies.prices.resolve import Move, Resolver
@@ -460,7 +460,7 @@ class _Case:
                 f"holds for {percent(self.again.limits.fine * self.again.step)}; {why}",
                 share=self.again.limits.fine,
             )
-        told = f"the multipliers say {slope:.3g}, but " if own[1][number] else ""
+        told = f"the multipliers say {plain_number(slope, 3)}, but " if own[1][number] else ""
         return _Side(None, f"{told}{why}" if again == why else f"{told}{why}, {again}")
 
     def _way(self, move: Move) -> str:
@@ -480,7 +480,7 @@ class _Case:
         again = self._price(float(found.phi[number, self.k]), number)
         if self._agree(again, slope):
             return ""
-        return f"solving again with {way} gives {again:.3g}{self._what_binds(found, number)}"
+        return f"solving again with {way} gives {plain_number(again, 3)}{self._what_binds(found, number)}"
 
     def _agree(self, again: float, slope: float) -> bool:
         limits = self.again.limits
