@@ -29,12 +29,38 @@ OWN = {"origin": HOME}
 def test_at_this_machine_everybody_is_the_local_tenant_until_there_is_a_token(service: Service) -> None:
     assert service("GET", SESSION).json() == {"tenant": "local", "scopes": ["admin", "read", "submit"]}
     assert service("GET", SESSION, headers=bearer("cs_wrong")).status_code == 200  # the door is open
-    made = service("POST", TOKENS, json={"name": "office", "scopes": ["read"]})
+    made = service("POST", TOKENS, json={"name": "office", "scopes": ["read", "admin"]})
     assert made.status_code == 201
     answer = service("GET", SESSION)
     assert (answer.status_code, code_of(answer)) == (401, "not_signed_in")
     assert answer.headers["www-authenticate"].startswith("Bearer")
-    assert service("GET", SESSION, headers=bearer(made.json()["value"])).json()["scopes"] == ["read"]
+    assert service("GET", SESSION, headers=bearer(made.json()["value"])).json()["scopes"] == ["admin", "read"]
+
+
+@pytest.mark.parametrize("asked", [{}, {"scopes": ["read"]}, {"scopes": ["read", "submit"], "tenant": "acme"}])
+def test_the_first_token_may_make_others(service: Service, asked: dict[str, object]) -> None:
+    refused = service("POST", TOKENS, json={"name": "office", **asked})
+    assert (refused.status_code, code_of(refused)) == (422, "bad_input")
+    (problem,) = refused.json()["error"]["problems"]
+    assert problem["path"] == ["scopes"]
+    assert "expected admin as well: this is the first token" in problem["message"]
+    assert service("GET", SESSION).status_code == 200  # nothing was made, and nobody is locked out
+    admin = service("POST", TOKENS, json={"name": "office", "scopes": ["admin"]}).json()["value"]
+    assert service("POST", TOKENS, headers=bearer(admin), json={"name": "robot", **asked}).status_code == 201
+
+
+@pytest.mark.parametrize("name", ["../x", "a/b", "a b", ".", "-x", "_x", "a\\b", "x" * 61, "", "a\n", "<b>", "a,b"])
+def test_a_new_tenant_has_a_name_that_can_be_repeated_anywhere(service: Service, name: str) -> None:
+    admin = bearer(service.token("admin"))
+    refused = service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": name})
+    assert (refused.status_code, code_of(refused)) == (422, "bad_input")
+    assert refused.json()["error"]["problems"][0]["path"] == ["tenant"]
+    for right in ("acme", "Werk_2", "7.süd-west"):
+        made = service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": right})
+        assert made.status_code == 201
+    with service.store.engine.begin() as connection:  # one that was made before names were looked at goes on
+        connection.execute(sa.insert(Tenant).values(name="Werk 2", limits={}, created=0.0))
+    assert service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": "Werk 2"}).status_code == 201
 
 
 def test_revoking_the_last_token_opens_no_door(service: Service) -> None:

@@ -60,7 +60,7 @@ def test_what_is_not_allowed_says_what_is(service: Service) -> None:
         ("\xff", "application/json", 400, "not_json"),
         ("name: x", "application/yaml", 415, "unsupported_media"),
         ("x", "", 415, "unsupported_media"),
-        ('{"name": "a"}', "application/json; charset=utf-8", 201, ""),
+        ('{"name": "a", "scopes": ["admin"]}', "application/json; charset=utf-8", 201, ""),
         ('{"name": ""}', "application/json", 422, "bad_input"),
         ('{"name": "a", "scope": "read"}', "application/json", 422, "bad_input"),
         ('{"name": "a\\u0000"}', "application/json", 422, "bad_input"),
@@ -206,7 +206,8 @@ def test_pages_of_other_sites_change_nothing(
     service: Service, headers: dict[str, str], cookie: bool, status: int
 ) -> None:
     own = {"cookie": f"{SESSION_COOKIES[0]}=x"} if cookie else {}
-    answer = service("POST", TOKENS, json={"name": "a"}, headers={**headers, **own})
+    asked = {"name": "a", "scopes": ["admin"]}
+    answer = service("POST", TOKENS, json=asked, headers={**headers, **own})
     assert answer.status_code == status
     assert len(service.accounts.tokens()) == (status == 201)
 
