@@ -19,7 +19,7 @@ from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.service.auth import Anybody, principal_of
 from synth.service.context import Context
-from synth.service.errors import ServiceError, not_found
+from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
 
 ID = re.compile(r"[0-9A-Za-z_]{1,64}")
@@ -164,6 +164,12 @@ def tagged(
     if knows(request, etag):
         return Response(status_code=304, headers=more)
     return Response(content, media_type=media, headers=more)
+
+
+def tagged_json(request: Request, told: Any, version: str) -> Response:
+    """Return what depends on the code or the tables of this server alone, with their digest as the tag."""
+    content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
+    return tagged(request, content, JSON, f'"{version}"')
 
 
 def tag_of(content: bytes) -> str:
