@@ -10,7 +10,7 @@ what somebody else has asked.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from http import HTTPStatus
 from types import MappingProxyType
 from typing import Any
@@ -27,6 +27,7 @@ from starlette.responses import Response
 from synth.errors import ExtraNeededError, InputError
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
+from synth.service.addresses import Addresses
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
@@ -186,7 +187,7 @@ def again(seconds: float) -> dict[str, str]:
     return {"Retry-After": str(max(1, round(seconds)))}
 
 
-def register_errors(app: FastAPI, retry_after: float) -> None:
+def register_errors(app: FastAPI, retry_after: float, addresses: Addresses) -> None:
     """Let every refusal have the one form.
 
     Parameters
@@ -194,6 +195,8 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     app : FastAPI
     retry_after : float
         In s, after which whoever met a passing hindrance may come again.
+    addresses : Addresses
+        How each address may be asked.
     """
 
     def told(kind: type[Exception], make: Any) -> None:
@@ -205,12 +208,17 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
 
         app.add_exception_handler(kind, handle)
 
+    async def of_http(request: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        allowed = addresses.methods(request.scope["path"]) if error.status_code == 405 else ()
+        return error_response(_of_http(error, allowed), request_id_of(request))
+
     def later(message: str) -> Any:
         return lambda _: ServiceError(503, message, headers=again(retry_after))
 
     away = later("the database does not answer; nothing is lost, please come again")
     told(ServiceError, lambda error: error)
-    told(HTTPException, _of_http)
+    app.add_exception_handler(HTTPException, of_http)
     told(RequestValidationError, _of_validation)
     told(InputError, _of_input)
     told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
@@ -250,14 +258,21 @@ def _of_input(error: InputError) -> ServiceError:
     return ServiceError(503, "the database cannot be used") if error.field == DATABASE_FLAG else refusal_of(error)
 
 
-def _of_http(error: HTTPException) -> ServiceError:
-    allowed = (error.headers or {}).get("Allow", "")
+def _of_http(error: HTTPException, methods: Collection[str] = ()) -> ServiceError:
+    """Return what the framework refuses; where a path cannot be asked so, the methods by which it can.
+
+    The framework itself knows those of the first route that has the path.
+    """
+    headers = dict(error.headers or NO_HEADERS)
+    if methods:
+        headers["Allow"] = ", ".join(sorted(methods))
+    allowed = headers.get("Allow", "")
     sentences = {
         404: "there is nothing here, or it is not yours",
         405: "this cannot be done here" + (f"; expected {allowed}" if allowed else ""),
     }
     message = sentences.get(error.status_code) or str(error.detail) or HTTPStatus(error.status_code).phrase
-    return ServiceError(error.status_code, message, headers=error.headers or NO_HEADERS)
+    return ServiceError(error.status_code, message, headers=headers)
 
 
 def _of_validation(error: RequestValidationError) -> ServiceError:

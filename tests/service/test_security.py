@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,28 @@ def test_every_refusal_has_one_form(service: Service, method: str, path: str, st
 
 def test_what_is_not_allowed_says_what_is(service: Service) -> None:
     assert service("PUT", "/healthz").headers["allow"] == "GET"
+    for method, path, allowed in (
+        ("PUT", TOKENS, "GET, POST"),
+        ("PUT", "/api/v1/jobs/x", "DELETE, GET, PATCH"),
+        ("HEAD", "/api/v1/session", "DELETE, GET, POST"),
+        ("GET", "/api/v1/jobs/x/cancel", "POST"),
+        ("DELETE", "/api/v1/openapi.json", "GET, HEAD"),
+        ("POST", "/jobs/x", "GET"),
+    ):
+        answer = service(method, path)
+        assert (answer.status_code, answer.headers["allow"]) == (405, allowed), path
+    assert service("PUT", TOKENS).json()["error"]["message"] == "this cannot be done here; expected GET, POST"
+
+
+def test_every_address_tells_all_its_methods(service: Service) -> None:
+    seen = 0
+    for path, described in service.app.openapi()["paths"].items():
+        methods = {method.upper() for method in described} & {"GET", "POST", "PUT", "PATCH", "DELETE"}
+        answer = service("TRACE", re.sub(r"{\w+(:path)?}", "1", path))
+        assert (answer.status_code, code_of(answer)) == (405, "method_not_allowed"), path
+        assert set(answer.headers["allow"].split(", ")) == methods, path
+        seen += len(methods) > 1
+    assert seen >= 5
 
 
 @pytest.mark.parametrize(
