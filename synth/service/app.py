@@ -107,7 +107,7 @@ def create_app(
     )
     app.state.context = context
     own = [route for router in (*ROUTERS, *OUTSIDE) for route in router.routes]
-    register_errors(app, settings.retry_after, Addresses([*app.routes, *own]))
+    register_errors(app, settings.retry_after, Addresses([*app.routes, *own]), routes.unknown)
     for router in ROUTERS:
         app.include_router(router, responses=REFUSALS, dependencies=[Depends(known_query)])
     for router in OUTSIDE:

@@ -10,7 +10,7 @@ what somebody else has asked.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from http import HTTPStatus
 from types import MappingProxyType
 from typing import Any
@@ -187,7 +187,9 @@ def again(seconds: float) -> dict[str, str]:
     return {"Retry-After": str(max(1, round(seconds)))}
 
 
-def register_errors(app: FastAPI, retry_after: float, addresses: Addresses) -> None:
+def register_errors(
+    app: FastAPI, retry_after: float, addresses: Addresses, page: Callable[[Request], Response | None]
+) -> None:
     """Let every refusal have the one form.
 
     Parameters
@@ -197,6 +199,8 @@ def register_errors(app: FastAPI, retry_after: float, addresses: Addresses) -> N
         In s, after which whoever met a passing hindrance may come again.
     addresses : Addresses
         How each address may be asked.
+    page : callable
+        Returns what a browser is shown at an address where nothing stands; None where it is no browser that asks.
     """
 
     def told(kind: type[Exception], make: Any) -> None:
@@ -210,6 +214,9 @@ def register_errors(app: FastAPI, retry_after: float, addresses: Addresses) -> N
 
     async def of_http(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
+        shown = page(request) if error.status_code == 404 else None
+        if shown is not None:
+            return shown
         allowed = addresses.methods(request.scope["path"]) if error.status_code == 405 else ()
         return error_response(_of_http(error, allowed), request_id_of(request))
 

@@ -222,7 +222,9 @@ def test_a_new_tenant_gets_the_limits_of_the_settings_and_the_local_one_none(ser
 # ---- guessing -------------------------------------------------------------------------------------------------------
 
 
-def test_who_guesses_has_to_wait_and_a_valid_token_from_there_is_let_in(service: Service, caplog: pytest.LogCaptureFixture) -> None:
+def test_who_guesses_has_to_wait_and_a_valid_token_from_there_is_let_in(
+    service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
     token = service.token()
     with caplog.at_level(logging.INFO, LOG.name):
         found = [
