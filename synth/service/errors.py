@@ -28,6 +28,7 @@ from synth.errors import ExtraNeededError, InputError
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
 from synth.service.addresses import Addresses
+from synth.service.wording import fault_of
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
@@ -50,33 +51,6 @@ CODES: Mapping[int, str] = MappingProxyType(
         500: "internal",
         501: "not_installed",
         503: "unavailable",
-    }
-)
-
-
-# What would be right, by the type of a fault that a schema tells: its own words are for programmers.
-WORDS: Mapping[str, str] = MappingProxyType(
-    {
-        "missing": "a value",
-        "extra_forbidden": "no key of this name; the description of the interface lists those there are",
-        "string_type": "a text",
-        "string_too_long": "at most {max_length} characters",
-        "string_too_short": "a text that is not empty",
-        "string_pattern_mismatch": "a text without other signs than its description allows",
-        "int_type": "a whole number",
-        "int_parsing": "a whole number",
-        "int_from_float": "a whole number",
-        "float_type": "a number",
-        "float_parsing": "a number",
-        "bool_type": "true or false",
-        "bool_parsing": "true or false",
-        "greater_than_equal": "{ge} or more",
-        "less_than_equal": "at most {le}",
-        "list_type": "a list",
-        "dict_type": "a JSON object",
-        "model_type": "a JSON object",
-        "model_attributes_type": "a JSON object",
-        "value_error": "a file with its content",
     }
 )
 
@@ -289,31 +263,5 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
         return ServiceError(400, "the body is not JSON", "not_json")
     if any(isinstance(fault.get("input"), bytes) for fault in found):
         return ServiceError(415, "the body is not JSON; expected application/json here")
-    problems = [_fault(told).told() for told in found]
+    problems = [fault_of(told).told() for told in found]
     return ServiceError(422, str(problems[0]["message"]), problems=problems)
-
-
-def _fault(told: Mapping[str, Any]) -> InputError:
-    """Return what a schema says of one place as a sentence of ours."""
-    place = tuple(told["loc"])
-    path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
-    value = None if told["type"] == "missing" else _short(told.get("input"))
-    right = WORDS.get(told["type"], "{msg}").format(
-        msg=str(told["msg"]).removeprefix("Input should be "), **_bounds(told)
-    )
-    return InputError(".".join(map(str, path)) or "body", value, right, path)
-
-
-def _bounds(told: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers that a schema names with a fault."""
-    names = ("ge", "le", "max_length", "min_length")
-    return {name: value for name, value in (told.get("ctx") or {}).items() if name in names}
-
-
-def _short(value: Any) -> Any:
-    """Return a value to be repeated: of a whole object only that it is one."""
-    if isinstance(value, Mapping):
-        return "an object"
-    if value is None:
-        return "null"
-    return "a list" if isinstance(value, (list, tuple)) else value

@@ -87,7 +87,7 @@ def test_names_can_be_shown(accounts: Accounts, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["../x", "a b", "a/b", "-a", "_a", "."])
 def test_a_new_tenant_has_a_name_of_letters_and_digits(accounts: Accounts, name: str) -> None:
-    with pytest.raises(InputError, match="digits, -, _ or ., the first a letter or digit"):
+    with pytest.raises(InputError, match=r"digits, -, _ or \., the first a letter or digit"):
         accounts.tenant(name, {})
     assert accounts.tenant("Werk-2.süd_x", {}) > 1
 

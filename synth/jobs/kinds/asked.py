@@ -10,13 +10,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, at
 from synth.jobs.kinds.contract import QUESTION, TABLE, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, SEARCHED, Described, refuse_several, refuse_values, shown_kind
+from synth.question.spec_keys import FIELDS, SEARCHED, refuse_several, refuse_values, shown_kind
 from synth.question.spec_patch import patched
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
@@ -29,6 +29,7 @@ from synth.units import format_quantity
 WHERE = "request"
 OF = "of"
 FAMILY = "family"
+WORKERS = "workers"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
 STATED = re.compile(
     r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
@@ -61,8 +62,11 @@ def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
         raise InputError(WHERE, Described("what JSON cannot hold"), "texts in Unicode and finite numbers") from None
     for key in request:
         if key not in keys:
+            if key == WORKERS:
+                one_thread(request[key])
+                continue
             raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
-    return {str(key): value for key, value in request.items() if value is not None}
+    return {str(key): value for key, value in request.items() if value is not None and key in keys}
 
 
 def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -98,6 +102,19 @@ def flag(name: str, value: Any) -> bool:
     if not isinstance(value, bool):
         raise InputError(f"{WHERE}: {name}", shown_kind(value), "true or false", (name,))
     return value
+
+
+def one_thread(value: Any) -> None:
+    """Refuse more threads than one: whoever runs the workers says how much is worked at.
+
+    Raises
+    ------
+    InputError
+        Something else is stated.
+    """
+    if value is not None and (isinstance(value, bool) or value != 1):
+        right = "1, or nothing: a job is searched by one thread, and any number finds the same"
+        raise InputError(f"{WHERE}: {WORKERS}", shown_kind(value), right, (WORKERS,))
 
 
 def seconds(value: Any) -> float | None:
@@ -309,7 +326,14 @@ def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
 
 
 def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:
-    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing."""
+    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing.
+
+    Raises
+    ------
+    InputError
+        A value is not of its kind, or more than one thread is asked for.
+    """
+    one_thread(spec.get(WORKERS))
     stated = {key: value for key, value in spec.items() if key in SEARCHED and value is not None}
     read = SearchSettings.from_json({**usual, **stated}, WHERE)
     return replace(read, workers=1)

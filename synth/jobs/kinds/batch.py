@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, at
 from synth.jobs.batch import BatchJob
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.asked import WHERE, catalogs_of, checked_keys, digests, flag, seconds, seed, settings_of
@@ -27,7 +27,7 @@ from synth.jobs.row_table import EXCEL, RowTable, read_table
 from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import Described, shown_kind
+from synth.question.spec_keys import shown_kind
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")

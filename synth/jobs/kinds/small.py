@@ -16,7 +16,19 @@ from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
 from synth.errors import InputError, SeveralErrors, at
 from synth.jobs.kinds import comparison, synthesis
-from synth.jobs.kinds.asked import FAMILY, OF, SPEC, WHERE, catalogs_of, checked_keys, digests, settings_of, spec_of
+from synth.jobs.kinds.asked import (
+    FAMILY,
+    OF,
+    SPEC,
+    WHERE,
+    WORKERS,
+    catalogs_of,
+    checked_keys,
+    digests,
+    one_thread,
+    settings_of,
+    spec_of,
+)
 from synth.jobs.kinds.contract import NOTHING, Sources
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS, KindSettings
 from synth.model.model import Model
@@ -273,6 +285,8 @@ class _Check:
             return value  # read where it is known which tables there are
 
         def kept(entries: Any) -> Any:
+            if key == WORKERS:
+                one_thread(entries)
             with at(key):
                 FIELDS[key](f"{WHERE}: {key}", entries)
             return entries

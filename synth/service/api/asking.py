@@ -21,9 +21,9 @@ from synth.service.auth import Anybody, principal_of
 from synth.service.context import Context
 from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
+from synth.service.wording import WORD
 
 ID = re.compile(r"[0-9A-Za-z_]{1,64}")
-WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0
 LONGEST = 200
 LARGEST = 2**53  # that JSON tells exactly, everywhere
 CHECKED = 16  # digits of a place in a list that tell whether it belongs to the list

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Body, Path, Query, Request, Response
 from synth.errors import InputError
 from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
 from synth.jobs.shelf import Shelf
-from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged_json
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.schemas import (
     EXAMPLES,
     CheckAnswer,
@@ -20,6 +20,7 @@ from synth.service.api.schemas import (
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import not_found
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["families"])
 OPTIONS = "such as lubrication:dry,guide_model:cz"

@@ -9,14 +9,15 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from synth.jobs.kinds import KINDS
-from synth.service.api.asking import LONGEST, WORD
+from synth.service.api.asking import LONGEST
 from synth.service.errors import Problem
+from synth.service.wording import TITLE, WORD
 
 # Bodies to begin with. They name families, which the programs do not.
 EXAMPLES: dict[str, Any] = json.loads((files("synth.service.api") / "examples.json").read_text(encoding="utf-8"))
 
 Words = Annotated[str, Field(max_length=LONGEST, pattern=WORD)]
-Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=r"^[^\x00-\x1f\x7f]*$")]
+Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=TITLE)]
 
 
 def _example(body: Any) -> ConfigDict:

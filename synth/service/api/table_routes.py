@@ -8,11 +8,12 @@ from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel
 
 from synth.jobs.engine_tasks import TABLE_TASK, TABLES_TASK
-from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged_json
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.family_routes import listed, remembered
 from synth.service.auth import Reader
 from synth.service.context import API, Context
 from synth.service.errors import not_found
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 

@@ -106,6 +106,11 @@ def test_every_kind_can_be_asked(client: Client, front: str) -> None:
         ({"kind": "synthesis", "request": QUICK, "priority": 2}, ["priority"]),
         ({"kind": "synthesis", "request": QUICK, "seconds_limit": "5"}, ["seconds_limit"]),
         ({"kind": "synthesis", "request": QUICK, "folder": "/tmp"}, ["folder"]),
+        ({"kind": "synthesis", "request": QUICK, "title": " "}, ["title"]),
+        ({"kind": "synthesis", "request": QUICK, "title": "\u00a0"}, ["title"]),
+        ({"kind": "synthesis", "request": {**QUICK, "workers": 64}}, ["workers"]),
+        ({"kind": "compare", "request": {**QUICK, "family": "any", "workers": 64}}, ["workers"]),
+        ({"kind": "batch", "request": {**BATCH, "workers": 64}}, ["workers"]),
         ({"kind": "whatif", "request": {**QUICK, "vary": {"load_torque": "400:700:1 N*m"}}}, ["vary"]),
         ({"kind": "batch", "request": {"family": FAMILY, "upload": "nothing"}}, ["upload"]),
         ({"kind": "batch", "request": {"family": FAMILY, "upload": "/etc/passwd"}}, ["upload"]),
@@ -119,6 +124,22 @@ def test_what_cannot_be_asked_is_refused_with_its_place(
     assert (answer.status_code, code_of(answer)) == (422, "bad_input")
     (problem,) = answer.json()["error"]["problems"]
     assert path is None or problem["path"] == path
+
+
+def test_more_threads_are_refused_with_the_reason_and_one_is_taken(client: Client) -> None:
+    for path in ("check", "batches", "batches/check"):
+        asked = QUICK if path == "check" else BATCH
+        answer = client.post(path, {**asked, "workers": 64}).json()
+        (problem,) = (answer if path == "check" else answer["error"])["problems"]
+        assert problem["path"] == ["workers"], path
+        assert "a job is searched by one thread" in problem["expected"]
+        taken = client.post(path, {**asked, "workers": 1})
+        assert taken.status_code < 300, taken.text
+
+
+def test_a_title_may_have_blanks_and_is_more_than_that(client: Client, front: str) -> None:
+    assert client("PATCH", f"jobs/{front}", json={"title": " "}).status_code == 422
+    assert client("PATCH", f"jobs/{front}", json={"title": " a\u00a0lift "}).status_code == 200
 
 
 def test_a_tenant_has_what_it_may_have(works: Service) -> None:
