@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from synth.errors import InputError
 from synth.model.problem import DesignProblem
 from synth.tables.catalogs import Catalogs
 
+ALIKE = 0.75  # of two names of columns, of which one may be a misspelling of the other: `density` and `densty` are 0.92
 _shipped: dict[str, Catalogs] = {}
 
 
@@ -47,6 +49,34 @@ def refuse_unused(problem: DesignProblem, catalogs: Catalogs) -> None:
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             right = f"a table that is used ({', '.join(sorted(used)) or 'none'}){hint}"
             raise InputError("catalogs", name, right, ("catalogs", name))
+
+
+def lacking_columns(problem: DesignProblem, catalogs: Catalogs) -> list[InputError]:
+    """Return what tables of the user's own lack and the problem cannot do without, all of it.
+
+    What it uses is known by the shipped tables; of a table that only the user has, nothing is told here.
+    """
+    declared = problem.declaration(frozenset(), as_catalogs(None))
+    found = dict[tuple[str, str], InputError]()
+    for part in [*declared.slots.values(), *declared.rows.values()]:
+        table = catalogs.table(part.table)
+        there = {name for name, column in table.columns.items() if column.numeric}
+        for used in part.columns.values():
+            name = used.columns[0]
+            if not used.required or len(used.columns) > 1 or not name.isidentifier() or name in there:
+                continue
+            meant = meant_by(name, [column for column in table.columns if column not in part.columns])
+            right = f"a number column, which slot {part.slot} uses" + (f"; did you mean {meant}?" if meant else "")
+            where = f"table {part.table}, column {name}"
+            found.setdefault((part.table, name), InputError(where, None, right, ("catalogs", part.table, name)))
+    return list(found.values())
+
+
+def meant_by(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that a misspelt one stands for, perhaps."""
+    folded = {one.casefold(): one for one in known}
+    close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=ALIKE)
+    return folded[close[0]] if close else None
 
 
 def as_catalogs(spec: Any) -> Catalogs:

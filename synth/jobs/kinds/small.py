@@ -35,7 +35,7 @@ from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.registry import families as registered
 from synth.model.registry import load
-from synth.question.catalogs import as_catalogs, refuse_unused
+from synth.question.catalogs import as_catalogs, lacking_columns, refuse_unused
 from synth.question.examples import Example, examples_of
 from synth.question.examples import examples as all_examples
 from synth.question.names import requirement_named
@@ -55,6 +55,7 @@ from synth.units import format_quantity
 
 T = TypeVar("T")
 SECTIONS = {"option": "option", "slot": "part", "objective": "objective"}  # of a form, by kind of row
+CATALOGS = "catalogs"
 NEEDED, LIMIT, ASSUMPTION = "needed", "limit", "assumption"
 MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "robust")  # keys with entries of their own
 
@@ -238,6 +239,16 @@ class _Check:
         self.end = time.monotonic() + settings.seconds
 
     def of(self, request: Any) -> dict[str, Any]:
+        self._caught(self._looked_at, request)
+        return {
+            "ready": not self.faults,
+            "problems": [fault.told() for fault in self.faults],
+            "read": self.read,
+            "combinations": None if self.faults else self.combinations,
+        }
+
+    def _looked_at(self, request: Any) -> None:
+        """Note all that is wrong; what is raised is one fault more, after which nothing is looked at."""
         spec = self._entries(request)
         family = spec.get(FAMILY)
         if family is None:
@@ -248,19 +259,13 @@ class _Check:
                 self._caught(comparison.read, spec, self.sources)
         else:
             self._one_family(spec)
-        return {
-            "ready": not self.faults,
-            "problems": [fault.told() for fault in self.faults],
-            "read": self.read,
-            "combinations": None if self.faults else self.combinations,
-        }
 
     def _caught(self, act: Callable[..., T], *given: Any) -> T | None:
         """Return what a reader returns; None where it refuses, which is noted."""
         try:
             return act(*given)
         except InputError as fault:
-            self.faults.append(fault)
+            self.faults += fault.every()
             return None
 
     def _late(self) -> bool:
@@ -336,6 +341,12 @@ class _Check:
         def read() -> Catalogs:
             tables = catalogs_of(spec.get("catalogs"), self.sources)
             refuse_unused(problem, tables)
+            try:
+                problem.model(frozenset(), tables)
+            except InputError as fault:
+                if fault.path[:1] != (CATALOGS,):
+                    raise
+                raise SeveralErrors(lacking_columns(problem, tables) or [fault]) from None
             return tables
 
         found = self._caught(read)
