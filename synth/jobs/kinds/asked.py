@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from synth.errors import Described, InputError, at
+from synth.errors import Described, InputError, SeveralErrors, at
 from synth.jobs.kinds.contract import QUESTION, TABLE, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.catalogs import as_catalogs, refuse_unused
@@ -60,13 +61,36 @@ def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
         json.dumps(request, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, RecursionError):  # halves of characters, numbers that are none
         raise InputError(WHERE, Described("what JSON cannot hold"), "texts in Unicode and finite numbers") from None
+    faults: list[InputError] = []
     for key in request:
-        if key not in keys:
-            if key == WORKERS:
+        with noted(faults):
+            if key == WORKERS and key not in keys:
                 one_thread(request[key])
-                continue
-            raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
+            elif key not in keys:
+                raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
+    refuse_noted(faults)
     return {str(key): value for key, value in request.items() if value is not None and key in keys}
+
+
+@contextmanager
+def noted(faults: list[InputError]) -> Iterator[None]:
+    """Note what is refused inside, and go on."""
+    try:
+        yield
+    except InputError as fault:
+        faults += fault.every()
+
+
+def refuse_noted(faults: Sequence[InputError]) -> None:
+    """Refuse what was noted, all of it at once.
+
+    Raises
+    ------
+    InputError
+        There is something.
+    """
+    if faults:
+        raise SeveralErrors(faults) if len(faults) > 1 else faults[0]
 
 
 def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:

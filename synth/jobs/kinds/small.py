@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -218,21 +218,41 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
     return _Check(sources, settings).of(request)
 
 
-def all_faults(request: Mapping[str, Any], sources: Sources, first: InputError) -> InputError:
-    """Return a refusal that has, beside the fault that was found first, everything else that is wrong with a spec."""
+def all_faults(
+    spec: Mapping[str, Any],
+    sources: Sources,
+    first: InputError,
+    keys: Sequence[str] = (),
+    more: Sequence[InputError] = (),
+) -> InputError:
+    """Return a refusal that has, beside the fault that was found first, everything else that is wrong.
+
+    Parameters
+    ----------
+    spec : mapping
+        What a request asks as a spec.
+    sources : Sources
+    first : InputError
+    keys : sequence of str
+        That may stand beside those of a spec.
+    more : sequence of InputError
+        What is wrong under those.
+    """
     if first.path[:1] == (FAMILY,):
         return first  # of another family all else would be another fault
-    check = _Check(sources, KIND_SETTINGS)
-    check.of({key: value for key, value in request.items() if key in (*SPEC, OF)})
-    found = check.faults if any(fault.path == first.path for fault in check.faults) else [first, *check.faults]
+    check = _Check(sources, KIND_SETTINGS, keys)
+    check.of(spec)
+    found = [*check.faults, *more]
+    if not any(fault.path == first.path for fault in found):
+        found.insert(0, first)
     return SeveralErrors(found) if len(found) > 1 else first
 
 
 class _Check:
     """One check: what is understood goes on, what is not is a fault and is left out."""
 
-    def __init__(self, sources: Sources, settings: KindSettings) -> None:
-        self.sources, self.settings = sources, settings
+    def __init__(self, sources: Sources, settings: KindSettings, more: Sequence[str] = ()) -> None:
+        self.sources, self.settings, self.keys = sources, settings, (*SPEC, OF, *more)
         self.faults: list[InputError] = []
         self.read: dict[str, str] = {}
         self.combinations: int | None = None
@@ -277,8 +297,8 @@ class _Check:
     def _entries(self, request: Any) -> dict[str, Any]:
         """Return what stands under the keys of a spec and is of its kind."""
         if isinstance(request, Mapping):
-            for key in [key for key in request if key not in (*SPEC, OF)]:
-                self._caught(checked_keys, {key: 0}, (*SPEC, OF))
+            for key in [key for key in request if key not in self.keys]:
+                self._caught(checked_keys, {key: 0}, self.keys)
             request = {key: value for key, value in request.items() if key in (*SPEC, OF)}
         found = self._caught(spec_of, request, self.sources)
         spec = found[0] if found is not None else {}

@@ -271,3 +271,54 @@ def test_only_what_has_not_been_done_can_go_on(works: Service, client: Client, f
         answer = client.post(f"jobs/{table}/resume")
         assert answer.status_code == status, answer.text
     assert client.ended(table)["state"] == "done"
+
+
+WRONG = {**QUICK, "requirements": {**DUTY, "load_torque": "much", "jerk_limit": "9 kg"}, "limits": {"mas": "< 5 kg"}}
+
+
+def faults_of(client: Client, kind: str, request: dict[str, Any]) -> list[tuple[Any, ...]]:
+    answer = client.post("jobs", {"kind": kind, "request": request})
+    assert (answer.status_code, code_of(answer)) == (422, "bad_input")
+    return [tuple(problem["path"]) for problem in answer.json()["error"]["problems"]]
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "paths"),
+    [
+        ("synthesis", {"colour": "red"}, [("colour",)]),
+        ("explain", {"physics": 3}, [("physics",)]),
+        ("whatif", {"vary": {"nothing": "1, 2", "weights.mass": 5}, "breaks": "yes"}, [("breaks",)]),
+        (
+            "whatif",
+            {"vary": {"nothing": "1, 2", "wear_life_min": "a:b"}},
+            [("vary", "nothing"), ("vary", "wear_life_min")],
+        ),
+        ("whatif", {"colour": "red", "shape": 1}, [("vary",), ("colour",), ("shape",)]),
+    ],
+)
+def test_every_kind_that_takes_a_spec_tells_all_faults_at_once(
+    client: Client, kind: str, more: dict[str, Any], paths: list[tuple[Any, ...]]
+) -> None:
+    found = faults_of(client, kind, {**WRONG, **more})
+    spec = [tuple(one["path"]) for one in client.post("check", WRONG).json()["problems"]]
+    assert len(spec) == 3
+    assert {*spec, *paths} <= {*found}
+    assert len(found) == len({*found})
+
+
+def test_a_batch_tells_all_that_is_wrong_beside_its_rows(client: Client) -> None:
+    wrong = {"points": 0, "gap": "x", "grid": 3, "family": "nothing", "mapping": [], "catalogs": {"x": "/etc"}}
+    wrong |= {"seed": -1.5, "time_limit": "soon"}
+    assert sorted(path[0] for path in faults_of(client, "batch", {**BATCH, **wrong})) == sorted(wrong)
+    assert faults_of(client, "batch", {**BATCH, "colour": 1, "shape": 2}) == [("colour",), ("shape",)]
+
+
+def test_what_varies_may_be_left_out_of_the_spec_and_is_no_fault(client: Client) -> None:
+    requirements = {name: value for name, value in DUTY.items() if name != "load_torque"}
+    asked = {**QUICK, "requirements": requirements, "vary": {"load_torque": "500, 600 N*m"}}
+    assert faults_of(client, "whatif", {**asked, "limits": {"mas": "< 5 kg"}, "breaks": 1}) == [
+        ("limits", "mas"),
+        ("breaks",),
+    ]
+    job = client.submit("whatif", asked)
+    assert client("DELETE", f"jobs/{job}").status_code == 204
