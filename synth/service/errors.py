@@ -17,7 +17,7 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException
@@ -58,7 +58,10 @@ CODES: Mapping[int, str] = MappingProxyType(
 class Problem(BaseModel):
     """One thing that is wrong in the input."""
 
-    path: list[str | int]
+    path: list[str | int] = Field(
+        description="Keys and positions: of a spec its own, also where it stands under `request`; of all else those of "
+        "the body, or the name of a parameter. Empty for the body as a whole."
+    )
     value: Any = None
     expected: str
     message: str

@@ -21,10 +21,12 @@ from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from synth.errors import Described, InputError, SeveralErrors
+from synth.service.context import API
 from synth.service.errors import ServiceError, again, error_response, refusal_of
 from synth.service.settings import ServiceSettings, is_loopback
 from synth.service.wording import place_in_words
 
+JOBS, REQUEST = f"{API}/jobs", "request"  # where a spec does not stand alone, and its key there
 MOST_TOLD = 20  # faults of a body that are told one by one
 SAFE = ("GET", "HEAD", "OPTIONS")
 PROBES = ("/healthz", "/readyz", "/metrics")  # whoever watches the service must see it when it is busy, too
@@ -206,7 +208,8 @@ class BodyCheck:
         try:
             counted = self._bounded(receive, self._most(media, length))
             if media == JSON_BODY:
-                counted = self._again(await self._json(counted), receive)
+                within = REQUEST if scope["path"] == JOBS else ""
+                counted = self._again(await self._json(counted, within), receive)
         except HTTPException as error:  # raised while the body arrived
             await refuse(scope, receive, send, _closing(ServiceError(error.status_code, error.detail)))
             return
@@ -257,7 +260,7 @@ class BodyCheck:
 
         return received
 
-    async def _json(self, receive: Receive) -> bytes:
+    async def _json(self, receive: Receive, within: str) -> bytes:
         parts: list[bytes] = []
         while True:
             message = await receive()
@@ -267,7 +270,7 @@ class BodyCheck:
             if not message.get("more_body"):
                 break
         body = b"".join(parts)
-        check_json(body, self.settings.json_depth, self.settings.json_keys)
+        check_json(body, self.settings.json_depth, self.settings.json_keys, within)
         return body
 
     @staticmethod
@@ -294,8 +297,15 @@ def _closing(error: ServiceError) -> ServiceError:
     )
 
 
-def check_json(body: bytes, depth: int, keys: int) -> None:
+def check_json(body: bytes, depth: int, keys: int, within: str = "") -> None:
     """Refuse what is not JSON, nests too deeply, has too many keys, one twice, or what cannot be kept or computed with.
+
+    Parameters
+    ----------
+    body : bytes
+    depth, keys : int
+    within : str
+        The key under which a spec stands: paths within it begin with its own keys, as those of a check do.
 
     Raises
     ------
@@ -332,7 +342,7 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
             break
         level = below
     if odd:
-        raise _told(read)
+        raise _told(read, within)
 
 
 def _check_texts(texts: Iterable[str]) -> None:
@@ -382,14 +392,16 @@ def _hooks(odd: list[_Odd]) -> dict[str, Any]:
     }
 
 
-def _told(read: Any) -> ServiceError:
+def _told(read: Any, within: str) -> ServiceError:
     """Return the refusal of what is odd in JSON: all that is still in its place."""
     waiting: list[tuple[tuple[str | int, ...], Any]] = [((), read)]
     faults: list[InputError] = []
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, _Odd):
-            faults.append(InputError(place_in_words(path), value.value, value.right, path))
+            in_spec = len(path) > 1 and path[0] == within
+            own = path[1:] if in_spec else path
+            faults.append(InputError(place_in_words(path), value.value, value.right, own))
         elif isinstance(value, (dict, list)):
             entries = value.items() if isinstance(value, dict) else enumerate(value)
             waiting += reversed([((*path, key), entry) for key, entry in entries])
