@@ -35,7 +35,7 @@ from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.registry import families as registered
 from synth.model.registry import load
-from synth.question.catalogs import as_catalogs, lacking_columns, refuse_unused
+from synth.question.catalogs import as_catalogs, lacking_columns, misspelt_columns, refuse_unused
 from synth.question.examples import Example, examples_of
 from synth.question.examples import examples as all_examples
 from synth.question.names import requirement_named
@@ -212,8 +212,8 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
     -------
     dict
         ``ready``: whether it can be asked; ``problems``: ``path``, ``value``, ``expected`` and ``message`` of each
-        fault; ``read``: the requirements stated, as they are understood; ``combinations`` of parts and counts, where
-        it is ready and asks one family.
+        fault; ``read``: the requirements stated, as they are understood; ``remarks``: ``path`` and ``message`` of what
+        is no fault and perhaps not meant; ``combinations`` of parts and counts, where it is ready and asks one family.
     """
     return _Check(sources, settings).of(request)
 
@@ -255,6 +255,7 @@ class _Check:
         self.sources, self.settings, self.keys = sources, settings, (*SPEC, OF, *more)
         self.faults: list[InputError] = []
         self.read: dict[str, str] = {}
+        self.remarks: list[dict[str, Any]] = []
         self.combinations: int | None = None
         self.end = time.monotonic() + settings.seconds
 
@@ -264,6 +265,7 @@ class _Check:
             "ready": not self.faults,
             "problems": [fault.told() for fault in self.faults],
             "read": self.read,
+            "remarks": self.remarks,
             "combinations": None if self.faults else self.combinations,
         }
 
@@ -361,6 +363,14 @@ class _Check:
         def read() -> Catalogs:
             tables = catalogs_of(spec.get("catalogs"), self.sources)
             refuse_unused(problem, tables)
+            self.remarks += [
+                {
+                    "path": [CATALOGS, table, column],
+                    "message": f"table {table}, column {column}: no family knows it, and it is carried along; "
+                    f"did you mean {meant}?",
+                }
+                for table, column, meant in misspelt_columns(tables)
+            ]
             try:
                 problem.model(frozenset(), tables)
             except InputError as fault:

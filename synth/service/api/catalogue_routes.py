@@ -13,6 +13,7 @@ from synth.jobs.engine_tasks import PART_TABLE_TASK
 from synth.jobs.models import Catalogue
 from synth.jobs.shelf import NAME, Shelf, text_of
 from synth.service.api.schemas import (
+    BroughtCatalogue,
     CatalogueAnswer,
     CatalogueDiff,
     CatalogueEntry,
@@ -43,8 +44,11 @@ async def list_catalogues(principal: Reader, context: Context) -> CatalogueList:
 @router.post("/catalogues", status_code=201, responses=KEPT, summary="Bring a part table")
 async def add_catalogue(
     request: Request, response: Response, asked: CatalogueRequest, principal: Submitter, context: Context
-) -> CatalogueEntry:
-    """Keep a part table as the next version of its name, after it was read as questions will read it."""
+) -> BroughtCatalogue:
+    """Keep a part table as the next version of its name, after it was read as questions will read it.
+
+    The answer tells how it was read, which columns no family knows, and what slots of families lack in it.
+    """
     if not NAME.fullmatch(asked.name):
         right = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
         raise InputError("name", asked.name, right, ("name",))
@@ -60,7 +64,8 @@ async def add_catalogue(
         same = f"{added.name}@{added.version} has the same content"
         raise ServiceError(409, same, "same_content", headers={"Location": place})
     response.headers["Location"] = place
-    return _entry(added)
+    understood = {key: told[key] for key in ("reading", "columns", "missing", "remarks")}
+    return BroughtCatalogue(**_entry(added).model_dump(), **understood)
 
 
 @router.get("/catalogues/{name}/{version}", summary="A version of a part table")
