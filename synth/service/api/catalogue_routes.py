@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request, Response
@@ -24,6 +22,7 @@ from synth.service.api.schemas import (
 from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, not_found
+from synth.tables.delimited_text import delimited_text
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 LARGEST_VERSION = 999_999_999  # as references have it
@@ -149,7 +148,8 @@ def difference(before: Catalogue, after: Catalogue) -> CatalogueDiff:
 
 def _cells(text: str) -> dict[str, dict[str, str]]:
     """Return the rows of a table by their first cell."""
-    header, *rows = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text)) if any(line)]
+    lines = [cells for _, cells in delimited_text(text.encode(), "table").lines()]
+    header, *rows = [[cell.strip() for cell in line] for line in lines if any(line)]
     return {row[0]: dict(zip(header, [*row, *[""] * (len(header) - len(row))], strict=False)) for row in rows}
 
 

@@ -115,3 +115,11 @@ def test_a_misspelt_column_beside_right_ones_is_remarked_by_a_check(client: Clie
     assert remark["path"] == ["catalogs", TABLE, "relative_cots"]
     assert remark["message"].endswith("did you mean relative_cost?")
     assert client.post("check", QUICK).json()["remarks"] == []
+
+
+def test_versions_with_semicolons_are_compared_cell_by_cell(client: Client) -> None:
+    for number in ("0,12", "0,13"):
+        brought(client, "changes", f"designation;mu_dynamic [-]\nL1;{number}\nL2;0,2\n")
+    told = client.get("catalogues/changes/2/changes?since=1").json()
+    assert told["changed"] == [{"designation": "L1", "column": "mu_dynamic [-]", "before": "0.12", "after": "0.13"}]
+    assert (told["added"], told["removed"]) == ([], [])
