@@ -73,7 +73,10 @@ async def read_catalogue(name: Name, version: Version, principal: Reader, contex
     found = await _own(context, principal.tenant, name, version)
     text = text_of(found)
     used = await in_thread(Shelf(context.store).uses, principal.tenant, text.reference)
-    return CatalogueAnswer(entry=_entry(found), csv=text.csv, schema=text.schema, used_by=used)
+    written = delimited_text(text.csv.encode(), text.reference)
+    return CatalogueAnswer(
+        entry=_entry(found), csv=text.csv, separator=written.delimiter, schema=text.schema, used_by=used
+    )
 
 
 @router.get("/catalogues/{name}/{version}/changes", summary="What a version has changed")

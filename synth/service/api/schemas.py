@@ -387,6 +387,7 @@ class CatalogueAnswer(BaseModel):
 
     entry: CatalogueEntry
     csv: str
+    separator: str = Field(description="Between the columns of `csv`.")
     schema_: str = Field(alias="schema")
     used_by: list[str]
 

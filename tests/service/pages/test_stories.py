@@ -294,6 +294,8 @@ def test_whoever_brings_a_part_table_sees_how_it_was_read(site: Site, visited: V
         found.sees("#kept li", "did you mean mu_dynamic?")
         page.locator("#kept a").click()
         page.wait_for_url("**/catalogues?own=my_linings%401")
+        found.sees("table.sheet th", "mu dynamics")
+        found.sees("table.sheet td", "0,12")
 
 
 # ---- texts of others ------------------------------------------------------------------------------------------------

@@ -86,7 +86,7 @@ function shippedTable(table) {
 async function ownTable(name, stated) {
   const version = Number(stated), path = `/catalogues/${encodeURIComponent(name)}/${version}`;
   const [own, { catalogues }] = await Promise.all([get(path), get("/catalogues")]);
-  const { entry, csv, used_by: users } = own;
+  const { entry, csv, separator, used_by: users } = own;
   const others = catalogues.filter((one) => one.name === name && one.version !== version);
   const jobs = await Promise.all(users.slice(0, SHOWN_JOBS).map((id) => get(`/jobs/${id}`).catch(() => null)));
   const changed = h("div", { class: "stack" }), rows = h("div", { class: "stack" }), fault = h("p", { class: "fault", role: "alert" });
@@ -95,7 +95,7 @@ async function ownTable(name, stated) {
   async function compare(since) {
     const changes = since ? await get(`${path}/changes?since=${since}`) : null;
     const cells = new Map(changes?.changed.map((cell) => [`${cell.designation}\n${headingOf(cell.column).name}`, cell]) ?? []), added = new Set(changes?.added ?? []);
-    const [header, ...lines] = cellsOf(csv), order = inOrder(header.map((text) => headingOf(text).name));
+    const [header, ...lines] = cellsOf(csv, separator), order = inOrder(header.map((text) => headingOf(text).name));
     const table = sheet([header, ...lines].map((line) => order.map((k) => line[k] ?? "")), { label: "Rows", most: MOST, tone: (column, line) => (added.has(line[0]) ? "added" : cells.has(`${line[0]}\n${column}`) ? "changed" : ""),
       cell: (text, column) => (column === "confidence" && text ? trust(text) : null) });
     rows.replaceChildren(h("h2", {}, count(entry.rows, "row")), found(table), table);

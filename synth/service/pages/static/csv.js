@@ -3,13 +3,14 @@
 import { API } from "./api.js";
 import { amount, h, unitText, words } from "./dom.js";
 
-/** Return the lines of a CSV text, each as its cells. */
-export function cellsOf(text) {
+/** Return the lines of a CSV text, each as its cells; between them stands a comma, a semicolon or a tab. */
+export function cellsOf(text, separator = ",") {
+  const cell = new RegExp(`(?:"((?:[^"]|"")*)"|([^${separator}"\\r\\n]*))(${separator}|\\r?\\n|$)`, "g");
   const lines = [[]];
-  for (const [, quoted, plain, end] of text.replace(/^\ufeff/, "").matchAll(/(?:"((?:[^"]|"")*)"|([^,"\r\n]*))(,|\r?\n|$)/g)) {
+  for (const [, quoted, plain, end] of text.replace(/^\ufeff/, "").matchAll(cell)) {
     lines.at(-1).push(quoted === undefined ? plain : quoted.replaceAll('""', '"'));
     if (end === "") break;
-    if (end !== ",") lines.push([]);
+    if (end !== separator) lines.push([]);
   }
   return lines.filter((line) => line.some((cell) => cell !== ""));
 }
