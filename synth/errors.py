@@ -136,6 +136,16 @@ class ExtraNeededError(InputError):
         return type(self), (self.option, self.extra)
 
 
+class Described:
+    """Stands for a value in a message: ``got a list`` says more than the list itself."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __repr__(self) -> str:
+        return self._text
+
+
 class at:
     """Say where in the input one is: what is refused inside stands under these keys.
 

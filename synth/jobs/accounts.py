@@ -29,6 +29,7 @@ PREFIX_LETTERS = 8  # of a token that are kept, to find it by and to tell it apa
 NAME = 60  # letters of a name at most
 # Neither characters that act on a terminal nor blanks alone.
 NAME_PATTERN = r"^[^\u0000-\u0020\u007f-\u00a0][^\u0000-\u001f\u007f-\u009f]*$"
+TENANT = re.compile(r"[^\W_][\w.-]*")  # names that programs, addresses and folders can repeat as they are
 HALF = re.compile(r"[\ud800-\udfff]")  # of a letter: what no database keeps
 LONGEST_TOKEN = 100  # letters; what is longer is none, and is not even hashed
 
@@ -135,14 +136,18 @@ class Accounts:
         Raises
         ------
         InputError
-            The name is empty, or too long.
+            There is none of that name, and it is no name for a new one.
         """
-        self._check_name("tenant", name)
+        right = f"a name of at most {NAME} letters, digits, -, _ or ., the first a letter or digit"
+        if not _can_be_shown(name):
+            raise InputError("tenant", name, right, ("tenant",))
         for _ in range(2):
             with self.engine.begin() as connection:
                 known = connection.scalar(sa.select(Tenant.id).where(Tenant.name == name))
                 if known is not None:
                     return int(known)
+            if not TENANT.fullmatch(name):
+                raise InputError("tenant", name, right, ("tenant",))
             try:
                 with self.engine.begin() as connection:
                     new = {"name": name, "limits": dict(limits), "created": moment()}
@@ -214,7 +219,9 @@ class Accounts:
         InputError
             Name or scopes are wrong.
         """
-        self._check_name("name", name)
+        if not _can_be_shown(name):
+            right = f"a name of at most {NAME} letters in one line, which does not begin with a blank"
+            raise InputError("name", name, right, ("name",))
         wanted = set(scopes)
         if not wanted or not wanted <= set(SCOPES):
             shown = ",".join(sorted(wanted)) or None
@@ -334,11 +341,6 @@ class Accounts:
         with self.engine.begin() as connection:
             connection.execute(sa.delete(BrowserSession).where(BrowserSession.hash == _hash(cookie)))
 
-    @staticmethod
-    def _check_name(field: str, name: str) -> None:
-        if len(name) > NAME or not re.fullmatch(NAME_PATTERN, name) or HALF.search(name):
-            raise InputError(field, name, f"a name of at most {NAME} letters", (field,))
-
     def find(self, beginning: str) -> TokenEntry:
         """Return the token that is meant by its number, or by its first letters as lists show them.
 
@@ -353,6 +355,10 @@ class Accounts:
         if len(exact or found) != 1:
             raise InputError("TOKEN", beginning, "the number of a token, or its first letters, as token list shows")
         return (exact or found)[0]
+
+
+def _can_be_shown(name: str) -> bool:
+    return len(name) <= NAME and re.fullmatch(NAME_PATTERN, name) is not None and HALF.search(name) is None
 
 
 def _hash(value: str) -> str:

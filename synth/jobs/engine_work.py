@@ -56,14 +56,16 @@ def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         With everything that is wrong, as far as one fault does not hide another.
     """
     chosen, sources = kind(payload["kind"]), _sources(payload)
+    module, request = chosen.load(), payload["request"]
     try:
-        posed = chosen.load().read(payload["request"], sources)
+        posed = module.read(request, sources)
     except InputError as fault:
         if not chosen.checked:
             raise
         from synth.jobs.kinds.small import all_faults
 
-        raise all_faults(payload["request"], sources, fault) from fault
+        spec, more = module.beside(request, sources) if chosen.keys else (request, [])
+        raise all_faults(spec, sources, fault, chosen.keys, more) from fault
     return {
         "request": dict(posed.request),
         "title": posed.title,

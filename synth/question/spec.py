@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, at
 from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.question.spec_keys import (
     ASKED,
     FIELDS,
     SEARCHED,
-    Described,
     asks_several,
     hint_at_key,
     read_keys,

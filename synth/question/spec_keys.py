@@ -9,7 +9,7 @@ from numbers import Real
 from types import MappingProxyType
 from typing import Any
 
-from synth.errors import InputError, at, whole_number
+from synth.errors import Described, InputError, at, whole_number
 from synth.input_limits import INPUT_LIMITS
 
 LEAST_GAP, LARGEST_GAP = 1e-6, 0.5
@@ -24,16 +24,6 @@ def is_gap(value: Any) -> bool:
 def is_finite(value: Any) -> bool:
     """Tell whether something is a finite number of any type; truth values are none."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
-
-
-class Described:
-    """Stands for a value in a message: ``got a list`` says more than the list itself."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-
-    def __repr__(self) -> str:
-        return self._text
 
 
 # What would be right, where whoever knows of commands may say which.

@@ -15,6 +15,7 @@ from synth.errors import InputError
 from synth.jobs.accounts import Accounts
 from synth.jobs.store import Store
 from synth.service import figures, health, token_routes
+from synth.service.addresses import Addresses
 from synth.service.api import (
     batch_routes,
     catalogue_routes,
@@ -105,7 +106,8 @@ def create_app(
         ],
     )
     app.state.context = context
-    register_errors(app, settings.retry_after)
+    own = [route for router in (*ROUTERS, *OUTSIDE) for route in router.routes]
+    register_errors(app, settings.retry_after, Addresses([*app.routes, *own]), routes.unknown)
     for router in ROUTERS:
         app.include_router(router, responses=REFUSALS, dependencies=[Depends(known_query)])
     for router in OUTSIDE:

@@ -1,4 +1,4 @@
-"""Wrong tokens, counted by where they come from: whoever guesses is not listened to any more for a while."""
+"""Wrong tokens, counted by where they come from: whoever guesses has to wait for a while."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class FailedTokens:
         self._failed: OrderedDict[str, deque[float]] = OrderedDict()
 
     def wait(self, address: str) -> float:
-        """Return for how many s an address is not listened to; 0 where it is."""
+        """Return for how many s wrong tokens of an address are not answered any more; 0 where they are."""
         times = self._recent(network_of(address))
         return times[0] + self._window - self._clock() if len(times) >= self._most else 0.0
 

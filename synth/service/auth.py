@@ -34,7 +34,7 @@ async def principal_of(request: Request, context: Context, described: Described 
     Raises
     ------
     ServiceError
-        401 without a valid token; 429 where too many wrong ones came from there.
+        401 without a valid token; 429 where it is wrong, and too many wrong ones came from there before.
     """
     principal = await _recognised(request, context)
     request.scope["state"]["principal"] = principal
@@ -58,17 +58,17 @@ async def _recognised(request: Request, context: ServiceContext) -> Principal:
 
 
 async def _by_token(request: Request, context: ServiceContext, token: str) -> Principal:
+    found = await context.read(context.accounts.recognise, token)
+    if found is not None:
+        return found  # whoever else has guessed at the same address: a whole office may stand behind one
     address = address_of(request)
     wait = context.failed_tokens.wait(address)
     if wait > 0:
         raise ServiceError(429, "too many wrong tokens came from there; please come again later", headers=again(wait))
-    found = await context.read(context.accounts.recognise, token)
-    if found is None:
-        context.failed_tokens.failed(address)
-        context.metrics.refused_tokens.inc()
-        log("wrong_token", address=address, request_id=request.scope["state"].get("request_id"))
-        raise ServiceError(401, "the token is wrong, too old or revoked", headers=ASK)
-    return found
+    context.failed_tokens.failed(address)
+    context.metrics.refused_tokens.inc()
+    log("wrong_token", address=address, request_id=request.scope["state"].get("request_id"))
+    raise ServiceError(401, "the token is wrong, too old or revoked", headers=ASK)
 
 
 def _note_use(context: ServiceContext, token: int) -> None:

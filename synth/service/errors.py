@@ -10,14 +10,14 @@ what somebody else has asked.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from http import HTTPStatus
 from types import MappingProxyType
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException
@@ -27,6 +27,8 @@ from starlette.responses import Response
 from synth.errors import ExtraNeededError, InputError
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
+from synth.service.addresses import Addresses
+from synth.service.wording import fault_of
 
 JSON = "application/json"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
@@ -53,37 +55,13 @@ CODES: Mapping[int, str] = MappingProxyType(
 )
 
 
-# What would be right, by the type of a fault that a schema tells: its own words are for programmers.
-WORDS: Mapping[str, str] = MappingProxyType(
-    {
-        "missing": "a value",
-        "extra_forbidden": "no key of this name; the description of the interface lists those there are",
-        "string_type": "a text",
-        "string_too_long": "at most {max_length} characters",
-        "string_too_short": "a text that is not empty",
-        "string_pattern_mismatch": "a text without other signs than its description allows",
-        "int_type": "a whole number",
-        "int_parsing": "a whole number",
-        "int_from_float": "a whole number",
-        "float_type": "a number",
-        "float_parsing": "a number",
-        "bool_type": "true or false",
-        "bool_parsing": "true or false",
-        "greater_than_equal": "{ge} or more",
-        "less_than_equal": "at most {le}",
-        "list_type": "a list",
-        "dict_type": "a JSON object",
-        "model_type": "a JSON object",
-        "model_attributes_type": "a JSON object",
-        "value_error": "a file with its content",
-    }
-)
-
-
 class Problem(BaseModel):
     """One thing that is wrong in the input."""
 
-    path: list[str | int]
+    path: list[str | int] = Field(
+        description="Keys and positions: of a spec its own, also where it stands under `request`; of all else those of "
+        "the body, or the name of a parameter. Empty for the body as a whole."
+    )
     value: Any = None
     expected: str
     message: str
@@ -186,7 +164,9 @@ def again(seconds: float) -> dict[str, str]:
     return {"Retry-After": str(max(1, round(seconds)))}
 
 
-def register_errors(app: FastAPI, retry_after: float) -> None:
+def register_errors(
+    app: FastAPI, retry_after: float, addresses: Addresses, page: Callable[[Request], Response | None]
+) -> None:
     """Let every refusal have the one form.
 
     Parameters
@@ -194,6 +174,10 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
     app : FastAPI
     retry_after : float
         In s, after which whoever met a passing hindrance may come again.
+    addresses : Addresses
+        How each address may be asked.
+    page : callable
+        Returns what a browser is shown at an address where nothing stands; None where it is no browser that asks.
     """
 
     def told(kind: type[Exception], make: Any) -> None:
@@ -205,12 +189,20 @@ def register_errors(app: FastAPI, retry_after: float) -> None:
 
         app.add_exception_handler(kind, handle)
 
+    async def of_http(request: Request, error: Exception) -> Response:
+        assert isinstance(error, HTTPException)
+        shown = page(request) if error.status_code == 404 else None
+        if shown is not None:
+            return shown
+        allowed = addresses.methods(request.scope["path"]) if error.status_code == 405 else ()
+        return error_response(_of_http(error, allowed), request_id_of(request))
+
     def later(message: str) -> Any:
         return lambda _: ServiceError(503, message, headers=again(retry_after))
 
     away = later("the database does not answer; nothing is lost, please come again")
     told(ServiceError, lambda error: error)
-    told(HTTPException, _of_http)
+    app.add_exception_handler(HTTPException, of_http)
     told(RequestValidationError, _of_validation)
     told(InputError, _of_input)
     told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
@@ -250,14 +242,21 @@ def _of_input(error: InputError) -> ServiceError:
     return ServiceError(503, "the database cannot be used") if error.field == DATABASE_FLAG else refusal_of(error)
 
 
-def _of_http(error: HTTPException) -> ServiceError:
-    allowed = (error.headers or {}).get("Allow", "")
+def _of_http(error: HTTPException, methods: Collection[str] = ()) -> ServiceError:
+    """Return what the framework refuses; where a path cannot be asked so, the methods by which it can.
+
+    The framework itself knows those of the first route that has the path.
+    """
+    headers = dict(error.headers or NO_HEADERS)
+    if methods:
+        headers["Allow"] = ", ".join(sorted(methods))
+    allowed = headers.get("Allow", "")
     sentences = {
         404: "there is nothing here, or it is not yours",
         405: "this cannot be done here" + (f"; expected {allowed}" if allowed else ""),
     }
     message = sentences.get(error.status_code) or str(error.detail) or HTTPStatus(error.status_code).phrase
-    return ServiceError(error.status_code, message, headers=error.headers or NO_HEADERS)
+    return ServiceError(error.status_code, message, headers=headers)
 
 
 def _of_validation(error: RequestValidationError) -> ServiceError:
@@ -267,31 +266,5 @@ def _of_validation(error: RequestValidationError) -> ServiceError:
         return ServiceError(400, "the body is not JSON", "not_json")
     if any(isinstance(fault.get("input"), bytes) for fault in found):
         return ServiceError(415, "the body is not JSON; expected application/json here")
-    problems = [_fault(told).told() for told in found]
+    problems = [fault_of(told).told() for told in found]
     return ServiceError(422, str(problems[0]["message"]), problems=problems)
-
-
-def _fault(told: Mapping[str, Any]) -> InputError:
-    """Return what a schema says of one place as a sentence of ours."""
-    place = tuple(told["loc"])
-    path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
-    value = None if told["type"] == "missing" else _short(told.get("input"))
-    right = WORDS.get(told["type"], "{msg}").format(
-        msg=str(told["msg"]).removeprefix("Input should be "), **_bounds(told)
-    )
-    return InputError(".".join(map(str, path)) or "body", value, right, path)
-
-
-def _bounds(told: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers that a schema names with a fault."""
-    names = ("ge", "le", "max_length", "min_length")
-    return {name: value for name, value in (told.get("ctx") or {}).items() if name in names}
-
-
-def _short(value: Any) -> Any:
-    """Return a value to be repeated: of a whole object only that it is one."""
-    if isinstance(value, Mapping):
-        return "an object"
-    if value is None:
-        return "null"
-    return "a list" if isinstance(value, (list, tuple)) else value

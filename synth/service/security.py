@@ -20,10 +20,13 @@ from starlette.exceptions import HTTPException
 from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from synth.errors import InputError, SeveralErrors
+from synth.errors import Described, InputError, SeveralErrors
+from synth.service.context import API
 from synth.service.errors import ServiceError, again, error_response, refusal_of
 from synth.service.settings import ServiceSettings, is_loopback
+from synth.service.wording import place_in_words
 
+JOBS, REQUEST = f"{API}/jobs", "request"  # where a spec does not stand alone, and its key there
 MOST_TOLD = 20  # faults of a body that are told one by one
 SAFE = ("GET", "HEAD", "OPTIONS")
 PROBES = ("/healthz", "/readyz", "/metrics")  # whoever watches the service must see it when it is busy, too
@@ -205,7 +208,8 @@ class BodyCheck:
         try:
             counted = self._bounded(receive, self._most(media, length))
             if media == JSON_BODY:
-                counted = self._again(await self._json(counted), receive)
+                within = REQUEST if scope["path"] == JOBS else ""
+                counted = self._again(await self._json(counted, within), receive)
         except HTTPException as error:  # raised while the body arrived
             await refuse(scope, receive, send, _closing(ServiceError(error.status_code, error.detail)))
             return
@@ -256,7 +260,7 @@ class BodyCheck:
 
         return received
 
-    async def _json(self, receive: Receive) -> bytes:
+    async def _json(self, receive: Receive, within: str) -> bytes:
         parts: list[bytes] = []
         while True:
             message = await receive()
@@ -266,7 +270,7 @@ class BodyCheck:
             if not message.get("more_body"):
                 break
         body = b"".join(parts)
-        check_json(body, self.settings.json_depth, self.settings.json_keys)
+        check_json(body, self.settings.json_depth, self.settings.json_keys, within)
         return body
 
     @staticmethod
@@ -293,8 +297,15 @@ def _closing(error: ServiceError) -> ServiceError:
     )
 
 
-def check_json(body: bytes, depth: int, keys: int) -> None:
+def check_json(body: bytes, depth: int, keys: int, within: str = "") -> None:
     """Refuse what is not JSON, nests too deeply, has too many keys, one twice, or what cannot be kept or computed with.
+
+    Parameters
+    ----------
+    body : bytes
+    depth, keys : int
+    within : str
+        The key under which a spec stands: paths within it begin with its own keys, as those of a check do.
 
     Raises
     ------
@@ -305,9 +316,12 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
     try:
         read = json.loads(body, **_hooks(odd))
     except RecursionError:
-        raise _bad_json(f"at most {depth} levels of brackets") from None
-    except (ValueError, UnicodeDecodeError):
-        raise ServiceError(400, "the body is not JSON", "not_json") from None
+        raise _bad_body("more levels of brackets", f"at most {depth}") from None
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise ServiceError(400, f"the body is not JSON: see {place}", "not_json") from None
+    except ValueError:  # of its letters
+        raise ServiceError(400, "the body is not JSON: it is no text in UTF-8", "not_json") from None
     level, counted = [read], 0
     for nested in itertools.count():
         below: list[Any] = []
@@ -321,71 +335,74 @@ def check_json(body: bytes, depth: int, keys: int) -> None:
             elif isinstance(value, str):
                 _check_texts((value,))
         if counted > keys:
-            raise _bad_json(f"at most {keys} keys")
+            raise _bad_body(f"{counted} keys", f"at most {keys}")
         if nested >= depth and any(isinstance(value, (dict, list)) for value in level):
-            raise _bad_json(f"at most {depth} levels of brackets")
+            raise _bad_body("more levels of brackets", f"at most {depth}")
         if not below:
             break
         level = below
     if odd:
-        raise _told(read)
+        raise _told(read, within)
 
 
 def _check_texts(texts: Iterable[str]) -> None:
     for text in texts:
         if "\0" in text or any("\ud800" <= letter <= "\udfff" for letter in text):
-            raise _bad_json("texts of letters: neither the character 0 nor half of one")
+            raise _bad_body("a text with the character 0 or half a letter", "texts of whole letters")
 
 
-def _bad_json(expected: str) -> ServiceError:
-    return refusal_of(InputError("body", "JSON", expected))
+def _bad_body(got: str, expected: str) -> ServiceError:
+    return refusal_of(InputError("body", Described(got), expected))
 
 
 @dataclass(frozen=True, eq=False)
 class _Odd:
     """Stands in JSON that was read for what readers of JSON do not agree upon."""
 
-    text: str
+    value: Any
     right: str
-    is_json: bool = True
 
 
 def _hooks(odd: list[_Odd]) -> dict[str, Any]:
     """Return how JSON is read so that each oddity is noted, and stands in its place."""
 
-    def noted(text: str, right: str, is_json: bool = True) -> _Odd:
-        odd.append(_Odd(text, right, is_json))
+    def noted(value: Any, right: str) -> _Odd:
+        odd.append(_Odd(value, right))
         return odd[-1]
 
-    def number(text: str) -> Any:
-        value = float(text)
-        return value if math.isfinite(value) else noted(text, "a finite number")
+    def constant(text: str) -> Any:
+        return noted(text, "a finite number")
+
+    def number(text: str, kind: type[float] | type[int] = float) -> Any:
+        return kind(text) if math.isfinite(float(text)) else constant(text)
 
     def members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
             names = [name for name, _ in pairs]
             twice = next(name for name in names if names.count(name) > 1)
-            found[twice] = noted(f"{twice} more than once", "each key once")
+            found[twice] = noted(Described("several values"), "each key once")
         return found
 
-    constant = partial(noted, right="a finite number", is_json=False)
-    return {"parse_constant": constant, "parse_float": number, "object_pairs_hook": members}
+    return {
+        "parse_constant": constant,
+        "parse_float": number,
+        "parse_int": partial(number, kind=int),
+        "object_pairs_hook": members,
+    }
 
 
-def _told(read: Any) -> ServiceError:
+def _told(read: Any, within: str) -> ServiceError:
     """Return the refusal of what is odd in JSON: all that is still in its place."""
     waiting: list[tuple[tuple[str | int, ...], Any]] = [((), read)]
     faults: list[InputError] = []
-    is_json = True
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, _Odd):
-            field = ": ".join(map(str, path)) or "body"
-            faults.append(InputError(field, value.text, value.right, path))
-            is_json &= value.is_json
+            in_spec = len(path) > 1 and path[0] == within
+            own = path[1:] if in_spec else path
+            faults.append(InputError(place_in_words(path), value.value, value.right, own))
         elif isinstance(value, (dict, list)):
             entries = value.items() if isinstance(value, dict) else enumerate(value)
             waiting += reversed([((*path, key), entry) for key, entry in entries])
-    refusal = refusal_of(SeveralErrors(faults[:MOST_TOLD]))
-    return refusal if is_json else ServiceError(400, refusal.message, "not_json", refusal.problems)
+    return refusal_of(SeveralErrors(faults[:MOST_TOLD]))

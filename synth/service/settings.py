@@ -108,7 +108,7 @@ class ServiceSettings:
     shutdown_timeout : int
         For requests that are under way when the service ends.
     failed_tokens : int
-        Wrong tokens from one address within ``failed_window``, after which it is not listened to.
+        Wrong tokens from one address within ``failed_window``, after which further wrong ones are answered 429.
     failed_window : float
         In which wrong tokens are counted.
     addresses : int

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from synth.jobs.accounts import NAME, NAME_PATTERN, TokenEntry
+from synth.errors import InputError
+from synth.jobs.accounts import ADMIN, NAME, NAME_PATTERN, TokenEntry
 from synth.jobs.database import HEAD
 from synth.service.auth import Administrator, Anybody
 from synth.service.context import API, Context, in_thread
@@ -62,7 +63,12 @@ class TokenRequest(BaseModel):
     )
 
     name: str = Field(max_length=NAME, pattern=NAME_PATTERN, description="Whom or what it is for.")
-    tenant: str | None = Field(None, max_length=NAME, pattern=NAME_PATTERN, description="By default your own.")
+    tenant: str | None = Field(
+        None,
+        max_length=NAME,
+        pattern=NAME_PATTERN,
+        description="By default your own; a new one is named by letters, digits, `-`, `_` and `.`.",
+    )
     scopes: list[Literal["read", "submit", "admin"]] = Field(["read", "submit"], min_length=1, max_length=3)
     days: float | None = Field(None, gt=0, le=36_500, description="For which it is valid.")
 
@@ -98,8 +104,15 @@ async def list_tokens(principal: Administrator, context: Context) -> TokenList:
 
 @router.post("/tokens", status_code=201, summary="Make a token")
 async def make_token(asked: TokenRequest, principal: Administrator, context: Context) -> MadeToken:
-    """Make a token, and its tenant where that is a new one."""
+    """Make a token, and its tenant where that is a new one.
+
+    The first one needs the scope admin: from then on nobody comes in without a token, and without such a one nobody
+    could make another here.
+    """
     accounts, settings = context.accounts, context.settings
+    if principal.token is None and ADMIN not in asked.scopes:
+        right = f"{ADMIN} as well: this is the first token, and without it nobody could make another one here"
+        raise InputError("scopes", ", ".join(asked.scopes), right, ("scopes",))
     tenant = principal.tenant
     if asked.tenant is not None:
         tenant = await in_thread(accounts.tenant, asked.tenant, settings.tenant_limits)

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError
+from synth.errors import Described, InputError
 from synth.jobs.batch import BatchResult
 from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.asked import OF, WHERE, catalogs_of, checked_keys, of_files, read_json, seconds
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.models import Job
 from synth.jobs.store import Store
-from synth.question.spec_keys import Described, shown_kind
+from synth.question.spec_keys import shown_kind
 from synth.variants.size_range import check_size_range, size_range
 from synth.variants.variant_settings import VARIANTS
 

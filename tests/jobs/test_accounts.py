@@ -79,10 +79,17 @@ def test_a_tenant_is_made_once_however_many_ask(accounts: Accounts) -> None:
 
 @pytest.mark.parametrize("name", ["", " ", "x" * 61, "a\nb", "a\x00b"])
 def test_names_can_be_shown(accounts: Accounts, name: str) -> None:
-    with pytest.raises(InputError, match="a name of at most 60 letters"):
+    with pytest.raises(InputError, match="a name of at most 60 letters, digits"):
         accounts.tenant(name, {})
     with pytest.raises(InputError, match="a name of at most 60 letters"):
         accounts.make_token(name, 1, ["read"], None)
+
+
+@pytest.mark.parametrize("name", ["../x", "a b", "a/b", "-a", "_a", "."])
+def test_a_new_tenant_has_a_name_of_letters_and_digits(accounts: Accounts, name: str) -> None:
+    with pytest.raises(InputError, match=r"digits, -, _ or \., the first a letter or digit"):
+        accounts.tenant(name, {})
+    assert accounts.tenant("Werk-2.süd_x", {}) > 1
 
 
 @pytest.mark.parametrize("scopes", [[], ["write"], ["read", "all"]])

@@ -29,12 +29,38 @@ OWN = {"origin": HOME}
 def test_at_this_machine_everybody_is_the_local_tenant_until_there_is_a_token(service: Service) -> None:
     assert service("GET", SESSION).json() == {"tenant": "local", "scopes": ["admin", "read", "submit"]}
     assert service("GET", SESSION, headers=bearer("cs_wrong")).status_code == 200  # the door is open
-    made = service("POST", TOKENS, json={"name": "office", "scopes": ["read"]})
+    made = service("POST", TOKENS, json={"name": "office", "scopes": ["read", "admin"]})
     assert made.status_code == 201
     answer = service("GET", SESSION)
     assert (answer.status_code, code_of(answer)) == (401, "not_signed_in")
     assert answer.headers["www-authenticate"].startswith("Bearer")
-    assert service("GET", SESSION, headers=bearer(made.json()["value"])).json()["scopes"] == ["read"]
+    assert service("GET", SESSION, headers=bearer(made.json()["value"])).json()["scopes"] == ["admin", "read"]
+
+
+@pytest.mark.parametrize("asked", [{}, {"scopes": ["read"]}, {"scopes": ["read", "submit"], "tenant": "acme"}])
+def test_the_first_token_may_make_others(service: Service, asked: dict[str, object]) -> None:
+    refused = service("POST", TOKENS, json={"name": "office", **asked})
+    assert (refused.status_code, code_of(refused)) == (422, "bad_input")
+    (problem,) = refused.json()["error"]["problems"]
+    assert problem["path"] == ["scopes"]
+    assert "expected admin as well: this is the first token" in problem["message"]
+    assert service("GET", SESSION).status_code == 200  # nothing was made, and nobody is locked out
+    admin = service("POST", TOKENS, json={"name": "office", "scopes": ["admin"]}).json()["value"]
+    assert service("POST", TOKENS, headers=bearer(admin), json={"name": "robot", **asked}).status_code == 201
+
+
+@pytest.mark.parametrize("name", ["../x", "a/b", "a b", ".", "-x", "_x", "a\\b", "x" * 61, "", "a\n", "<b>", "a,b"])
+def test_a_new_tenant_has_a_name_that_can_be_repeated_anywhere(service: Service, name: str) -> None:
+    admin = bearer(service.token("admin"))
+    refused = service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": name})
+    assert (refused.status_code, code_of(refused)) == (422, "bad_input")
+    assert refused.json()["error"]["problems"][0]["path"] == ["tenant"]
+    for right in ("acme", "Werk_2", "7.süd-west"):
+        made = service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": right})
+        assert made.status_code == 201
+    with service.store.engine.begin() as connection:  # one that was made before names were looked at goes on
+        connection.execute(sa.insert(Tenant).values(name="Werk 2", limits={}, created=0.0))
+    assert service("POST", TOKENS, headers=admin, json={"name": "a", "tenant": "Werk 2"}).status_code == 201
 
 
 def test_revoking_the_last_token_opens_no_door(service: Service) -> None:
@@ -196,17 +222,21 @@ def test_a_new_tenant_gets_the_limits_of_the_settings_and_the_local_one_none(ser
 # ---- guessing -------------------------------------------------------------------------------------------------------
 
 
-def test_who_guesses_is_not_listened_to(service: Service, caplog: pytest.LogCaptureFixture) -> None:
+def test_who_guesses_has_to_wait_and_a_valid_token_from_there_is_let_in(
+    service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
     token = service.token()
     with caplog.at_level(logging.INFO, LOG.name):
         found = [
             service("GET", SESSION, headers=bearer(f"cs_{k:043}"), address="192.0.2.7").status_code for k in range(12)
         ]
     assert found == [401] * 10 + [429] * 2
-    limited = service("GET", SESSION, headers=bearer(token), address="192.0.2.7")
+    limited = service("GET", SESSION, headers=bearer(token[:-1]), address="192.0.2.7")
     assert (limited.status_code, code_of(limited)) == (429, "too_many")
     assert 1 <= int(limited.headers["retry-after"]) <= 60
-    assert service("GET", SESSION, headers=bearer(token), address="192.0.2.8").status_code == 200
+    for address in ("192.0.2.7", "192.0.2.8"):  # others stand behind the same address
+        assert service("GET", SESSION, headers=bearer(token), address=address).status_code == 200
+    assert service("GET", SESSION, headers=bearer(token[:-1]), address="192.0.2.7").status_code == 429
     assert sum("wrong_token" in record.message for record in caplog.records) == 10
 
 

@@ -8,6 +8,8 @@ Importing this package loads nothing heavy; the module of a kind is imported whe
     Does what a request that was read asks for.
 ``summary(records) -> dict``
     A few facts of its records, for lists.
+``beside(request, sources) -> dict, list of InputError``
+    Where its requests have more keys than a spec: the spec in one that was refused, and what is wrong beside it.
 """
 
 from __future__ import annotations
@@ -25,11 +27,12 @@ __all__ = ["KINDS", "Kind", "KindModule", "Posed", "Record", "Sources", "Tell", 
 
 
 class KindModule(Protocol):
-    """What the module of a kind has."""
+    """What the module of a kind has; ``beside`` those with ``keys`` alone."""
 
     read: Callable[[Mapping[str, Any], Sources], Posed]
     work: Callable[[Mapping[str, Any], Sources, Tell], dict[str, Record]]
     summary: Callable[[Mapping[str, bytes]], dict[str, Any]]
+    beside: Callable[[Mapping[str, Any], Sources], tuple[dict[str, Any], list[InputError]]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +54,8 @@ class Kind:
         Whether its requests take a ``time_limit``.
     checked : bool
         Whether the check of a spec tells all that is wrong with its requests.
+    keys : tuple of str
+        Of its requests beside those of a spec; ``beside`` of its module tells what is wrong under them.
     """
 
     name: str
@@ -60,6 +65,7 @@ class Kind:
     record: str
     timed: bool = True
     checked: bool = False
+    keys: tuple[str, ...] = ()
 
     def load(self) -> KindModule:
         """Return its module."""
@@ -90,6 +96,8 @@ KINDS: Mapping[str, Kind] = _kinds(
         module="synth.jobs.kinds.whatif",
         title="A question at many values of a requirement, limit, weight, part or option",
         record="study.json",
+        checked=True,
+        keys=("vary", "breaks"),
     ),
     Kind(
         name="explain",
@@ -97,6 +105,7 @@ KINDS: Mapping[str, Kind] = _kinds(
         title="Why nothing is feasible, and what would make it so",
         record="explanation.json",
         checked=True,
+        keys=("physics",),
     ),
     Kind(
         name="prices",

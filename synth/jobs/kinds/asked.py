@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, SeveralErrors, at
 from synth.jobs.kinds.contract import QUESTION, TABLE, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, SEARCHED, Described, refuse_several, refuse_values, shown_kind
+from synth.question.spec_keys import FIELDS, SEARCHED, refuse_several, refuse_values, shown_kind
 from synth.question.spec_patch import patched
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
@@ -29,6 +30,7 @@ from synth.units import format_quantity
 WHERE = "request"
 OF = "of"
 FAMILY = "family"
+WORKERS = "workers"
 REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
 STATED = re.compile(
     r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
@@ -59,10 +61,36 @@ def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
         json.dumps(request, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, RecursionError):  # halves of characters, numbers that are none
         raise InputError(WHERE, Described("what JSON cannot hold"), "texts in Unicode and finite numbers") from None
+    faults: list[InputError] = []
     for key in request:
-        if key not in keys:
-            raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
-    return {str(key): value for key, value in request.items() if value is not None}
+        with noted(faults):
+            if key == WORKERS and key not in keys:
+                one_thread(request[key])
+            elif key not in keys:
+                raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
+    refuse_noted(faults)
+    return {str(key): value for key, value in request.items() if value is not None and key in keys}
+
+
+@contextmanager
+def noted(faults: list[InputError]) -> Iterator[None]:
+    """Note what is refused inside, and go on."""
+    try:
+        yield
+    except InputError as fault:
+        faults += fault.every()
+
+
+def refuse_noted(faults: Sequence[InputError]) -> None:
+    """Refuse what was noted, all of it at once.
+
+    Raises
+    ------
+    InputError
+        There is something.
+    """
+    if faults:
+        raise SeveralErrors(faults) if len(faults) > 1 else faults[0]
 
 
 def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -98,6 +126,19 @@ def flag(name: str, value: Any) -> bool:
     if not isinstance(value, bool):
         raise InputError(f"{WHERE}: {name}", shown_kind(value), "true or false", (name,))
     return value
+
+
+def one_thread(value: Any) -> None:
+    """Refuse more threads than one: whoever runs the workers says how much is worked at.
+
+    Raises
+    ------
+    InputError
+        Something else is stated.
+    """
+    if value is not None and (isinstance(value, bool) or value != 1):
+        right = "1, or nothing: a job is searched by one thread, and any number finds the same"
+        raise InputError(f"{WHERE}: {WORKERS}", shown_kind(value), right, (WORKERS,))
 
 
 def seconds(value: Any) -> float | None:
@@ -309,7 +350,14 @@ def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
 
 
 def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:
-    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing."""
+    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing.
+
+    Raises
+    ------
+    InputError
+        A value is not of its kind, or more than one thread is asked for.
+    """
+    one_thread(spec.get(WORKERS))
     stated = {key: value for key, value in spec.items() if key in SEARCHED and value is not None}
     read = SearchSettings.from_json({**usual, **stated}, WHERE)
     return replace(read, workers=1)

@@ -14,10 +14,21 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, at
 from synth.jobs.batch import BatchJob
 from synth.jobs.engine_tasks import Tell
-from synth.jobs.kinds.asked import WHERE, catalogs_of, checked_keys, digests, flag, seconds, seed, settings_of
+from synth.jobs.kinds.asked import (
+    WHERE,
+    catalogs_of,
+    checked_keys,
+    digests,
+    flag,
+    noted,
+    refuse_noted,
+    seconds,
+    seed,
+    settings_of,
+)
 from synth.jobs.kinds.contract import TABLE, Posed, Record, Sources
 from synth.jobs.kinds.files import UnknownFileError
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
@@ -27,7 +38,7 @@ from synth.jobs.row_table import EXCEL, RowTable, read_table
 from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import Described, shown_kind
+from synth.question.spec_keys import shown_kind
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")
@@ -205,24 +216,33 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
         Something of it is wrong.
     """
     common: dict[str, Any] = {name: stated.get(name) for name in COMMON}
-    grid = stated.get("grid", True)
-    common |= {"objectives": stated.get("objectives"), "grid": flag("grid", grid)}
-    usual = SearchSettings()
-    settings = settings_of(
-        {
-            **{key: stated[key] for key in ("points", "gap") if key in stated},
-            "seed": seed(stated.get("seed")),
-            "time_limit": seconds(stated.get("time_limit")),
-        },
-        points=usual.points,
-    )
+    common |= {"objectives": stated.get("objectives")}
+    how, usual, faults = dict[str, Any](), SearchSettings(), list[InputError]()
+    with noted(faults):
+        common["grid"] = flag("grid", stated.get("grid", True))
+    with noted(faults):
+        how["seed"] = seed(stated.get("seed"))
+    with noted(faults):
+        how["time_limit"] = seconds(stated.get("time_limit"))
+    for key in ("points", "gap"):
+        with noted(faults):
+            how |= {key: stated[key]} if key in stated else {}
+            settings_of({key: how.get(key)})
+    with noted(faults):
+        family = _family(stated.get("family"))
+    with noted(faults):
+        mapping = _mapping(stated.get("mapping"))
+    with noted(faults):
+        catalogs = catalogs_of(stated.get("catalogs"), sources)
+    refuse_noted(faults)
+    settings = settings_of(how, points=usual.points)
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
         yield BatchJob(
-            _family(stated.get("family")),
+            family,
             _rows(table, Path(folder)),
             Path(folder) / "out",
-            _mapping(stated.get("mapping")),
-            catalogs_of(stated.get("catalogs"), sources),
+            mapping,
+            catalogs,
             sources.database or None,
             settings,
             common,

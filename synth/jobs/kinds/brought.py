@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import itertools
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError
+from synth.errors import InputError, shortened
 from synth.jobs.engine_tasks import Tell
+from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.jobs.row_table import RowTable
+from synth.model.registry import families, load
+from synth.plain_text import printable
+from synth.question.catalogs import as_catalogs, meant_by, needed_columns
 from synth.tables.catalogs import Catalogs
-from synth.tables.schema import SCHEMA_SUFFIX
+from synth.tables.delimited_text import DelimitedText, delimited_text
+from synth.tables.schema import SCHEMA_SUFFIX, Schema, schema_of_text
 from synth.tables.table_text import TableText
+from synth.units import split_header
+
+OF_ROWS = ("source", "confidence")  # that every row has, in any table
 
 
 def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
@@ -36,7 +45,14 @@ def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Read a part table as a question would, and return how many rows it has and its columns.
+    """Read a part table as a question would.
+
+    Returns
+    -------
+    dict
+        ``rows``: how many there are; ``reading``: how the text is written; ``columns``: which of them families know,
+        and what is perhaps meant by the others; ``missing``: what slots of families cannot do without, with the
+        options as they are by default; ``remarks``: all of this that is not as it should be, in sentences.
 
     Raises
     ------
@@ -56,4 +72,73 @@ def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         raise
     if not len(table):
         raise InputError(f"{text.reference}", "a header only", "at least one row below the header", ("csv",))
-    return {"rows": len(table), "columns": [column.heading for column in table.columns.values()]}
+    written = delimited_text(text.csv.encode(), text.reference)
+    columns = _columns(written, text, shipped.schema(name))
+    there = {column["name"] for column in columns}
+    missing = [one for one in _needed().get(name, ()) if not there & {*one[2]}]
+    slots = dict.fromkeys((family, slot) for family, slot, _ in missing)
+    return {
+        "rows": len(table),
+        "reading": {
+            "separator": written.delimiter,
+            "encoding": written.encoding,
+            "decimal_commas": list(written.titles),
+        },
+        "columns": columns,
+        "missing": [
+            {
+                "family": family,
+                "slot": slot,
+                "columns": [" or ".join(names) for *place, names in missing if place == [family, slot]],
+            }
+            for family, slot in slots
+        ],
+        "remarks": _remarks(written, columns, missing),
+    }
+
+
+def _columns(written: DelimitedText, text: TableText, known: Schema | None) -> list[dict[str, Any]]:
+    """Return the columns of a table as they stand there, and which of them are known."""
+    _, head = next(written.lines())
+    found = [(*split_header(title), title) for title in head if title.strip()]
+    schemas = [known, schema_of_text(text.schema, text.reference + SCHEMA_SUFFIX) if text.schema else None]
+    names = [column.name for schema in schemas if schema is not None for column in schema.columns]
+    there = {name for name, *_ in found}
+    absent = [name for name in names if name not in there]
+    return [
+        {
+            "name": name,
+            "unit": unit,
+            "known": name in (*names, *OF_ROWS),
+            "meant": None if name in (*names, *OF_ROWS) else meant_by(name, absent),
+        }
+        for name, unit, _ in found
+    ]
+
+
+@cache
+def _needed() -> Mapping[str, tuple[tuple[str, str, tuple[str, ...]], ...]]:
+    """Return by table what families cannot do without: family, slot, and the names of which one is enough."""
+    found: dict[str, dict[tuple[str, str, tuple[str, ...]], None]] = {}
+    for family in families():
+        for part, names in needed_columns(load(family).declaration(frozenset(), as_catalogs(None))):
+            found.setdefault(part.table, {})[family, part.slot, names] = None
+    return {table: tuple(needed) for table, needed in found.items()}
+
+
+def _remarks(
+    written: DelimitedText,
+    columns: Sequence[Mapping[str, Any]],
+    missing: Sequence[tuple[str, str, tuple[str, ...]]],
+) -> list[str]:
+    """Return in sentences what whoever brings a table should look at."""
+    told = [written.sentence()] if written.sentence() else []
+    for column in columns:
+        if not column["known"]:
+            meant = f"; did you mean {column['meant']}?" if column["meant"] else ""
+            told.append(f"column {column['name']}: no family knows it, and it is carried along{meant}")
+    lacking: dict[str, dict[str, None]] = {}
+    for family, slot, names in missing:
+        lacking.setdefault(" or ".join(names), {})[f"{slot} of {family}"] = None
+    told += [f"column {name} is missing, which {', '.join(users)} cannot do without" for name, users in lacking.items()]
+    return [printable(shortened(text, KIND_SETTINGS.remark)) for text in told]

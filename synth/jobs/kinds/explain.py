@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from synth.errors import InputError
 from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
     by_name,
@@ -51,6 +52,16 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         families=(asked.problem.name,),
         tables=digests(stated.get("catalogs"), sources),
     )
+
+
+def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
+    """Return the spec in a request, and what is wrong beside it."""
+    spec = {key: value for key, value in request.items() if key != PHYSICS}
+    try:
+        flag(PHYSICS, False if request.get(PHYSICS) is None else request[PHYSICS])
+    except InputError as fault:
+        return spec, [fault]
+    return spec, []
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:

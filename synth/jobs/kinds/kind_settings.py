@@ -22,6 +22,8 @@ class KindSettings:
         Requirements that a title repeats.
     title : int
         Characters of a title.
+    remark : int
+        Characters of a remark on a table that was brought: it may name a slot of every family.
     digits : int
         Of the values that a summary repeats.
     rounds : int
@@ -41,6 +43,7 @@ class KindSettings:
     posed_steps: int = 40
     titled: int = 2
     title: int = 160
+    remark: int = 600
     digits: int = 4
     rounds: int = 12
     seconds: float = 2.0

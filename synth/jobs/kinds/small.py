@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,14 +16,26 @@ from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
 from synth.errors import InputError, SeveralErrors, at
 from synth.jobs.kinds import comparison, synthesis
-from synth.jobs.kinds.asked import FAMILY, OF, SPEC, WHERE, catalogs_of, checked_keys, digests, settings_of, spec_of
+from synth.jobs.kinds.asked import (
+    FAMILY,
+    OF,
+    SPEC,
+    WHERE,
+    WORKERS,
+    catalogs_of,
+    checked_keys,
+    digests,
+    one_thread,
+    settings_of,
+    spec_of,
+)
 from synth.jobs.kinds.contract import NOTHING, Sources
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS, KindSettings
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.registry import families as registered
 from synth.model.registry import load
-from synth.question.catalogs import as_catalogs, refuse_unused
+from synth.question.catalogs import as_catalogs, lacking_columns, misspelt_columns, refuse_unused
 from synth.question.examples import Example, examples_of
 from synth.question.examples import examples as all_examples
 from synth.question.names import requirement_named
@@ -43,6 +55,7 @@ from synth.units import format_quantity
 
 T = TypeVar("T")
 SECTIONS = {"option": "option", "slot": "part", "objective": "objective"}  # of a form, by kind of row
+CATALOGS = "catalogs"
 NEEDED, LIMIT, ASSUMPTION = "needed", "limit", "assumption"
 MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "robust")  # keys with entries of their own
 
@@ -199,33 +212,65 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
     -------
     dict
         ``ready``: whether it can be asked; ``problems``: ``path``, ``value``, ``expected`` and ``message`` of each
-        fault; ``read``: the requirements stated, as they are understood; ``combinations`` of parts and counts, where
-        it is ready and asks one family.
+        fault; ``read``: the requirements stated, as they are understood; ``remarks``: ``path`` and ``message`` of what
+        is no fault and perhaps not meant; ``combinations`` of parts and counts, where it is ready and asks one family.
     """
     return _Check(sources, settings).of(request)
 
 
-def all_faults(request: Mapping[str, Any], sources: Sources, first: InputError) -> InputError:
-    """Return a refusal that has, beside the fault that was found first, everything else that is wrong with a spec."""
+def all_faults(
+    spec: Mapping[str, Any],
+    sources: Sources,
+    first: InputError,
+    keys: Sequence[str] = (),
+    more: Sequence[InputError] = (),
+) -> InputError:
+    """Return a refusal that has, beside the fault that was found first, everything else that is wrong.
+
+    Parameters
+    ----------
+    spec : mapping
+        What a request asks as a spec.
+    sources : Sources
+    first : InputError
+    keys : sequence of str
+        That may stand beside those of a spec.
+    more : sequence of InputError
+        What is wrong under those.
+    """
     if first.path[:1] == (FAMILY,):
         return first  # of another family all else would be another fault
-    check = _Check(sources, KIND_SETTINGS)
-    check.of({key: value for key, value in request.items() if key in (*SPEC, OF)})
-    found = check.faults if any(fault.path == first.path for fault in check.faults) else [first, *check.faults]
+    check = _Check(sources, KIND_SETTINGS, keys)
+    check.of(spec)
+    found = [*check.faults, *more]
+    if not any(fault.path == first.path for fault in found):
+        found.insert(0, first)
     return SeveralErrors(found) if len(found) > 1 else first
 
 
 class _Check:
     """One check: what is understood goes on, what is not is a fault and is left out."""
 
-    def __init__(self, sources: Sources, settings: KindSettings) -> None:
-        self.sources, self.settings = sources, settings
+    def __init__(self, sources: Sources, settings: KindSettings, more: Sequence[str] = ()) -> None:
+        self.sources, self.settings, self.keys = sources, settings, (*SPEC, OF, *more)
         self.faults: list[InputError] = []
         self.read: dict[str, str] = {}
+        self.remarks: list[dict[str, Any]] = []
         self.combinations: int | None = None
         self.end = time.monotonic() + settings.seconds
 
     def of(self, request: Any) -> dict[str, Any]:
+        self._caught(self._looked_at, request)
+        return {
+            "ready": not self.faults,
+            "problems": [fault.told() for fault in self.faults],
+            "read": self.read,
+            "remarks": self.remarks,
+            "combinations": None if self.faults else self.combinations,
+        }
+
+    def _looked_at(self, request: Any) -> None:
+        """Note all that is wrong; what is raised is one fault more, after which nothing is looked at."""
         spec = self._entries(request)
         family = spec.get(FAMILY)
         if family is None:
@@ -236,19 +281,13 @@ class _Check:
                 self._caught(comparison.read, spec, self.sources)
         else:
             self._one_family(spec)
-        return {
-            "ready": not self.faults,
-            "problems": [fault.told() for fault in self.faults],
-            "read": self.read,
-            "combinations": None if self.faults else self.combinations,
-        }
 
     def _caught(self, act: Callable[..., T], *given: Any) -> T | None:
         """Return what a reader returns; None where it refuses, which is noted."""
         try:
             return act(*given)
         except InputError as fault:
-            self.faults.append(fault)
+            self.faults += fault.every()
             return None
 
     def _late(self) -> bool:
@@ -260,8 +299,8 @@ class _Check:
     def _entries(self, request: Any) -> dict[str, Any]:
         """Return what stands under the keys of a spec and is of its kind."""
         if isinstance(request, Mapping):
-            for key in [key for key in request if key not in (*SPEC, OF)]:
-                self._caught(checked_keys, {key: 0}, (*SPEC, OF))
+            for key in [key for key in request if key not in self.keys]:
+                self._caught(checked_keys, {key: 0}, self.keys)
             request = {key: value for key, value in request.items() if key in (*SPEC, OF)}
         found = self._caught(spec_of, request, self.sources)
         spec = found[0] if found is not None else {}
@@ -273,6 +312,8 @@ class _Check:
             return value  # read where it is known which tables there are
 
         def kept(entries: Any) -> Any:
+            if key == WORKERS:
+                one_thread(entries)
             with at(key):
                 FIELDS[key](f"{WHERE}: {key}", entries)
             return entries
@@ -322,6 +363,20 @@ class _Check:
         def read() -> Catalogs:
             tables = catalogs_of(spec.get("catalogs"), self.sources)
             refuse_unused(problem, tables)
+            self.remarks += [
+                {
+                    "path": [CATALOGS, table, column],
+                    "message": f"table {table}, column {column}: no family knows it, and it is carried along; "
+                    f"did you mean {meant}?",
+                }
+                for table, column, meant in misspelt_columns(tables)
+            ]
+            try:
+                problem.model(frozenset(), tables)
+            except InputError as fault:
+                if fault.path[:1] != (CATALOGS,):
+                    raise
+                raise SeveralErrors(lacking_columns(problem, tables) or [fault]) from None
             return tables
 
         found = self._caught(read)

@@ -13,12 +13,16 @@ from typing import Any
 from synth.errors import InputError, at
 from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
+    FAMILY,
     OF,
+    SPEC,
     WHERE,
     by_name,
+    catalogs_of,
     digests,
     flag,
     json_record,
+    noted,
     of_files,
     question_of,
     question_record,
@@ -32,15 +36,21 @@ from synth.jobs.kinds.asked import (
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.model.model import Model
+from synth.model.registry import load
+from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
+from synth.question.spec_keys import FIELDS, shown_kind
 from synth.results.plain import plain
 from synth.studies.whatif.run import POINTS, study_of
 from synth.studies.whatif.steps import check_steps
 from synth.studies.whatif.study_record import study_record
+from synth.studies.whatif.vary import Varied, read_vary
 
 MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
+VARIES = "names with values, {'load_torque': '500:700:50 N*m'}"
 ENDS = ("from", "to", "count")
 
 
@@ -69,6 +79,46 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         steps=count,
         tables=digests(stated.get("catalogs"), sources),
     )
+
+
+def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
+    """Return the spec in a request, and what is wrong with what varies.
+
+    A requirement that is varied need not be stated: its first value stands in the spec then.
+    """
+    spec = {key: value for key, value in request.items() if key not in (VARY, BREAKS)}
+    faults: list[InputError] = []
+    with noted(faults):
+        flag(BREAKS, True if request.get(BREAKS) is None else request[BREAKS])
+    stated, vary = request.get(VARY), dict[str, Any]()
+    if not isinstance(stated, Mapping) or not stated:
+        with noted(faults):
+            raise _no_vary(stated)
+        return spec, faults
+    for name, values in stated.items():
+        with noted(faults):
+            vary |= _vary({name: values})
+    with noted([]):  # of the spec: its check tells it
+        known = {key: value for key, value in spec.items() if key in (*SPEC, OF)}
+        whole, _ = spec_of(known, sources)
+        tables = catalogs_of(whole.get("catalogs"), sources)
+        problem = load(whole[FAMILY], **FIELDS["options"](WHERE, whole.get("options")))
+        declared = problem.model(frozenset(), tables).declaration
+        names, given = declared.names(), dict(whole.get("requirements") or {})
+        there = {names.get(str(word)) for word in given}
+        stated_names = {str(name) for name in (there | {names.get(name) for name in vary}) & {*declared.requirements}}
+        model = problem.model(frozenset(stated_names), tables)
+        chosen = _objectives(model, whole.get("objectives"))
+        found: list[Varied] = []
+        for name, values in vary.items():
+            with noted(faults):
+                found += read_vary({name: values}, model, chosen)
+        if not faults:
+            with noted(faults):
+                read_vary(vary, model, chosen)
+        given |= {x.name: x.asked(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
+        return {**spec, **whole, "requirements": given}, faults
+    return spec, faults
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
@@ -103,6 +153,14 @@ def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSe
     return question_of(spec, sources), settings_of(spec, points=POINTS)
 
 
+def _objectives(model: Model, stated: Any) -> list[str]:
+    """Return the objectives of a spec; where they are wrong, which its check tells, those of the family."""
+    try:
+        return list(chosen_objectives(model, stated))
+    except InputError:
+        return list(chosen_objectives(model, None))
+
+
 def _vary(stated: Any) -> dict[str, Any]:
     """Return what varies as the verb takes it.
 
@@ -112,12 +170,16 @@ def _vary(stated: Any) -> dict[str, Any]:
         It is no mapping, or ends and a count are not stated as such.
     """
     if not isinstance(stated, Mapping):
-        raise InputError(f"{WHERE}: vary", stated, "names with values, {'load_torque': '500:700:50 N*m'}", (VARY,))
+        raise _no_vary(stated)
     found = dict[str, Any]()
     for name, values in stated.items():
         with at(VARY, str(name)):
             found[str(name)] = _ends(values) if isinstance(values, Mapping) else values
     return found
+
+
+def _no_vary(stated: Any) -> InputError:
+    return InputError(f"{WHERE}: vary", None if stated is None else shown_kind(stated), VARIES, (VARY,))
 
 
 def _ends(values: Mapping[str, Any]) -> tuple[Any, ...]:

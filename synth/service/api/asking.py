@@ -19,11 +19,11 @@ from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.service.auth import Anybody, principal_of
 from synth.service.context import Context
-from synth.service.errors import ServiceError, not_found
+from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
+from synth.service.wording import WORD
 
 ID = re.compile(r"[0-9A-Za-z_]{1,64}")
-WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0
 LONGEST = 200
 LARGEST = 2**53  # that JSON tells exactly, everywhere
 CHECKED = 16  # digits of a place in a list that tell whether it belongs to the list
@@ -164,6 +164,12 @@ def tagged(
     if knows(request, etag):
         return Response(status_code=304, headers=more)
     return Response(content, media_type=media, headers=more)
+
+
+def tagged_json(request: Request, told: Any, version: str) -> Response:
+    """Return what depends on the code or the tables of this server alone, with their digest as the tag."""
+    content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
+    return tagged(request, content, JSON, f'"{version}"')
 
 
 def tag_of(content: bytes) -> str:

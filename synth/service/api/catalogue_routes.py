@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request, Response
@@ -13,6 +11,7 @@ from synth.jobs.engine_tasks import PART_TABLE_TASK
 from synth.jobs.models import Catalogue
 from synth.jobs.shelf import NAME, Shelf, text_of
 from synth.service.api.schemas import (
+    BroughtCatalogue,
     CatalogueAnswer,
     CatalogueDiff,
     CatalogueEntry,
@@ -23,6 +22,7 @@ from synth.service.api.schemas import (
 from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, not_found
+from synth.tables.delimited_text import delimited_text
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 LARGEST_VERSION = 999_999_999  # as references have it
@@ -43,8 +43,11 @@ async def list_catalogues(principal: Reader, context: Context) -> CatalogueList:
 @router.post("/catalogues", status_code=201, responses=KEPT, summary="Bring a part table")
 async def add_catalogue(
     request: Request, response: Response, asked: CatalogueRequest, principal: Submitter, context: Context
-) -> CatalogueEntry:
-    """Keep a part table as the next version of its name, after it was read as questions will read it."""
+) -> BroughtCatalogue:
+    """Keep a part table as the next version of its name, after it was read as questions will read it.
+
+    The answer tells how it was read, which columns no family knows, and what slots of families lack in it.
+    """
     if not NAME.fullmatch(asked.name):
         right = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
         raise InputError("name", asked.name, right, ("name",))
@@ -60,7 +63,8 @@ async def add_catalogue(
         same = f"{added.name}@{added.version} has the same content"
         raise ServiceError(409, same, "same_content", headers={"Location": place})
     response.headers["Location"] = place
-    return _entry(added)
+    understood = {key: told[key] for key in ("reading", "columns", "missing", "remarks")}
+    return BroughtCatalogue(**_entry(added).model_dump(), **understood)
 
 
 @router.get("/catalogues/{name}/{version}", summary="A version of a part table")
@@ -69,7 +73,10 @@ async def read_catalogue(name: Name, version: Version, principal: Reader, contex
     found = await _own(context, principal.tenant, name, version)
     text = text_of(found)
     used = await in_thread(Shelf(context.store).uses, principal.tenant, text.reference)
-    return CatalogueAnswer(entry=_entry(found), csv=text.csv, schema=text.schema, used_by=used)
+    written = delimited_text(text.csv.encode(), text.reference)
+    return CatalogueAnswer(
+        entry=_entry(found), csv=text.csv, separator=written.delimiter, schema=text.schema, used_by=used
+    )
 
 
 @router.get("/catalogues/{name}/{version}/changes", summary="What a version has changed")
@@ -144,7 +151,8 @@ def difference(before: Catalogue, after: Catalogue) -> CatalogueDiff:
 
 def _cells(text: str) -> dict[str, dict[str, str]]:
     """Return the rows of a table by their first cell."""
-    header, *rows = [[cell.strip() for cell in line] for line in csv.reader(io.StringIO(text)) if any(line)]
+    lines = [cells for _, cells in delimited_text(text.encode(), "table").lines()]
+    header, *rows = [[cell.strip() for cell in line] for line in lines if any(line)]
     return {row[0]: dict(zip(header, [*row, *[""] * (len(header) - len(row))], strict=False)) for row in rows}
 
 

@@ -19,13 +19,14 @@ from synth.jobs.accounts import Principal
 from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.jobs.views import Standing
-from synth.service.api.asking import LARGEST, LONGEST, WORD, OwnJob, own_job
+from synth.service.api.asking import LARGEST, LONGEST, OwnJob, own_job
 from synth.service.api.presenting import job_answer
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, again
 from synth.service.event_hub import END, RESYNC, SNAPSHOT, EventHub, Listener, StreamEvent, end_of, remark_of, told_of
 from synth.service.recording import log
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["events"])
 MEDIA = "text/event-stream"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Path, Query, Request, Response
@@ -10,7 +9,7 @@ from fastapi import APIRouter, Body, Path, Query, Request, Response
 from synth.errors import InputError
 from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
 from synth.jobs.shelf import Shelf
-from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.schemas import (
     EXAMPLES,
     CheckAnswer,
@@ -20,7 +19,8 @@ from synth.service.api.schemas import (
 )
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
-from synth.service.errors import JSON, not_found
+from synth.service.errors import not_found
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["families"])
 OPTIONS = "such as lubrication:dry,guide_model:cz"
@@ -49,16 +49,16 @@ async def must_be_family(context: ServiceContext, name: str) -> None:
         raise InputError("family", name, f"one of {', '.join(known)}", ("family",))
 
 
-async def _answer(request: Request, context: ServiceContext, task: str, name: str) -> Response:
+async def listed(request: Request, context: ServiceContext, task: str, name: str) -> Response:
+    """Answer with a list that depends on the code alone: what a task tells under a name."""
     found = await remembered(context, (task,), task, {})
-    content = json.dumps({name: found[name]}, ensure_ascii=False, allow_nan=False).encode()
-    return tagged(request, content, JSON, f'"{found["code"]}"')
+    return tagged_json(request, {name: found[name]}, found["code"])
 
 
 @router.get("/families", response_model=FamilyList, responses=NOT_MODIFIED, summary="The families")
 async def list_families(request: Request, principal: Reader, context: Context) -> Response:
     """Tell which families there are, with their options and the names of their examples."""
-    return await _answer(request, context, FAMILIES_TASK, "families")
+    return await listed(request, context, FAMILIES_TASK, "families")
 
 
 @router.get(
@@ -80,8 +80,7 @@ async def read_family(
     found = await remembered(context, key, DECLARATION_TASK, {"family": name, "options": chosen})
     if found["declaration"] is None:
         raise not_found()
-    content = json.dumps(found["declaration"], ensure_ascii=False, allow_nan=False).encode()
-    return tagged(request, content, JSON, f'"{found["code"]}"')
+    return tagged_json(request, found["declaration"], found["code"])
 
 
 def read_options(stated: str | None) -> dict[str, str]:
@@ -111,7 +110,7 @@ def read_options(stated: str | None) -> dict[str, str]:
 @router.get("/examples", response_model=ExampleList, responses=NOT_MODIFIED, summary="The examples")
 async def list_examples(request: Request, principal: Reader, context: Context) -> Response:
     """Give the examples of all families: specs to begin with."""
-    return await _answer(request, context, EXAMPLES_TASK, "examples")
+    return await listed(request, context, EXAMPLES_TASK, "examples")
 
 
 @router.post("/check", summary="Check a spec")

@@ -17,7 +17,6 @@ from synth.service.api.asking import (
     ENDED,
     LONGEST,
     NOT_MODIFIED,
-    WORD,
     Cursor,
     Limit,
     OwnJob,
@@ -37,6 +36,7 @@ from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
+from synth.service.wording import PRINTED, WORD
 
 router = APIRouter(prefix=API, tags=["jobs"])
 YAML = "application/yaml"
@@ -56,7 +56,7 @@ IdempotencyKey = Annotated[
     Header(
         min_length=1,
         max_length=LONGEST,
-        pattern=r"^[\x21-\x7e]+$",
+        pattern=PRINTED,
         description="Chosen by the client: said again with the same body it makes no second job.",
     ),
 ]

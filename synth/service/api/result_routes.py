@@ -19,7 +19,6 @@ from synth.service.api.asking import (
     ENDED,
     LONGEST,
     NOT_MODIFIED,
-    WORD,
     Cursor,
     Limit,
     OwnJob,
@@ -34,6 +33,7 @@ from synth.service.api.schemas import ColumnAnswer, DesignPage, RowAnswer, RowPa
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, not_found
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["results"])
 LARGEST_LINE = 2**53

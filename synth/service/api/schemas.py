@@ -9,14 +9,15 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from synth.jobs.kinds import KINDS
-from synth.service.api.asking import LONGEST, WORD
+from synth.service.api.asking import LONGEST
 from synth.service.errors import Problem
+from synth.service.wording import TITLE, WORD
 
 # Bodies to begin with. They name families, which the programs do not.
 EXAMPLES: dict[str, Any] = json.loads((files("synth.service.api") / "examples.json").read_text(encoding="utf-8"))
 
 Words = Annotated[str, Field(max_length=LONGEST, pattern=WORD)]
-Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=r"^[^\x00-\x1f\x7f]*$")]
+Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=TITLE)]
 
 
 def _example(body: Any) -> ConfigDict:
@@ -83,12 +84,20 @@ class ExampleList(BaseModel):
     examples: list[ExampleAnswer]
 
 
+class Remark(BaseModel):
+    """What is no fault, and perhaps not meant."""
+
+    path: list[str | int]
+    message: str
+
+
 class CheckAnswer(BaseModel):
     """What is wrong with a spec, and how it is understood."""
 
     ready: bool
     problems: list[Problem]
     read: dict[str, str]
+    remarks: list[Remark]
     combinations: int | None
 
 
@@ -333,6 +342,40 @@ class CatalogueEntry(BaseModel):
     note: str
 
 
+class TableReading(BaseModel):
+    """How the text of a table is written, as it was recognised."""
+
+    separator: str = Field(description="Between the columns.")
+    encoding: str
+    decimal_commas: list[str] = Field(description="Headings of the columns whose numbers have them.")
+
+
+class BroughtColumn(BaseModel):
+    """A column of a part table that was brought."""
+
+    name: str
+    unit: str | None
+    known: bool = Field(description="Whether families, or the schema that came with it, know the name.")
+    meant: str | None = Field(description="Of one that is not known: which known name it looks like.")
+
+
+class MissingColumns(BaseModel):
+    """What a slot of a family cannot do without and a table lacks, with the options as they are by default."""
+
+    family: str
+    slot: str
+    columns: list[str]
+
+
+class BroughtCatalogue(CatalogueEntry):
+    """A version of a part table that was brought, and how it was understood."""
+
+    reading: TableReading
+    columns: list[BroughtColumn]
+    missing: list[MissingColumns]
+    remarks: list[str] = Field(description="What of this is not as it should be, in sentences.")
+
+
 class CatalogueList(BaseModel):
     """All versions of all part tables that you have brought."""
 
@@ -344,6 +387,7 @@ class CatalogueAnswer(BaseModel):
 
     entry: CatalogueEntry
     csv: str
+    separator: str = Field(description="Between the columns of `csv`.")
     schema_: str = Field(alias="schema")
     used_by: list[str]
 

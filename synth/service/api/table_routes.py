@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel
 
 from synth.jobs.engine_tasks import TABLE_TASK, TABLES_TASK
-from synth.service.api.asking import LONGEST, NOT_MODIFIED, WORD, tagged
-from synth.service.api.family_routes import remembered
+from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
+from synth.service.api.family_routes import listed, remembered
 from synth.service.auth import Reader
 from synth.service.context import API, Context
-from synth.service.errors import JSON, not_found
+from synth.service.errors import not_found
+from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 
@@ -55,8 +55,7 @@ class TableAnswer(BaseModel):
 @router.get("/tables", response_model=TableList, responses=NOT_MODIFIED, summary="Tables of the families")
 async def list_tables(request: Request, principal: Reader, context: Context) -> Response:
     """Tell which part tables there are before anybody brings one, and which families take parts from them."""
-    found = await remembered(context, (TABLES_TASK,), TABLES_TASK, {})
-    return _answer(request, {"tables": found["tables"]}, found["code"])
+    return await listed(request, context, TABLES_TASK, "tables")
 
 
 @router.get("/tables/{name}", response_model=TableAnswer, responses=NOT_MODIFIED, summary="One of these tables")
@@ -71,9 +70,4 @@ async def read_table(
     if name not in {one["name"] for one in known["tables"]}:
         raise not_found()
     found = await remembered(context, (TABLE_TASK, name), TABLE_TASK, {"table": name})
-    return _answer(request, found["table"], found["code"])
-
-
-def _answer(request: Request, told: Any, digest: str) -> Response:
-    content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
-    return tagged(request, content, JSON, f'"{digest}"')
+    return tagged_json(request, found["table"], found["code"])

@@ -21,10 +21,13 @@ from synth.jobs.job_table import BATCH
 from synth.service.api.asking import OwnJob
 from synth.service.api.result_routes import LARGEST_LINE
 from synth.service.auth import Administrator, Reader
+from synth.service.context import API
 from synth.service.errors import ServiceError, not_found, request_id_of
 from synth.service.pages.assets import EXPLORER_MODULE, assets, static_place
+from synth.service.security import header
 
 SIGN_IN = "/sign-in"
+INTERFACE = f"/{API.split('/')[1]}/"  # below which programs ask, whatever the version
 PACKAGE = files("synth.service.pages")
 
 
@@ -118,6 +121,13 @@ def _refused(request: Request, error: ServiceError) -> Response:
     page = shown("refusal", title, "", principal, error.status, message=error.message, number=request_id_of(request))
     page.headers.update(error.headers)
     return page
+
+
+def unknown(request: Request) -> Response | None:
+    """Return the page for an address where nothing stands; None where a program asks, or something of the interface."""
+    if request.url.path.startswith(INTERFACE) or "text/html" not in header(request.scope, "accept"):
+        return None
+    return _refused(request, not_found("there is no page at this address"))
 
 
 router = APIRouter(route_class=PageRoute, default_response_class=HTMLResponse)

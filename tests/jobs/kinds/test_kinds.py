@@ -92,7 +92,7 @@ def test_the_same_meaning_is_the_same_request() -> None:
     turned = {**dict(reversed(list(DISC.items()))), "requirements": dict(reversed(list(DISC["requirements"].items())))}
     symbols = {**DISC["requirements"], "M_load": DISC["requirements"]["load_torque"]}
     del symbols["load_torque"]
-    said = {**DISC, "gap": 0.001, "grid": True, "seed": 0, "workers": 2, "limits": {}}
+    said = {**DISC, "gap": 0.001, "grid": True, "seed": 0, "workers": 1, "limits": {}}
     for other in (turned, {**DISC, "requirements": symbols}, said):
         assert posed("synthesis", other).text == posed("synthesis", DISC).text
     assert posed("synthesis", {**DISC, "gap": 0.01}).text != posed("synthesis", DISC).text
@@ -118,6 +118,7 @@ def test_a_request_of_an_earlier_job_changes_entries_of_its_own() -> None:
         ),
         ("synthesis", {"colour": "red"}, ("colour",)),
         ("synthesis", {"points": 10**9}, ("points",)),
+        ("synthesis", {"workers": 2}, ("workers",)),
         ("synthesis", {"limits": {"mass": ["<= 3 kg", "<= 3 s"]}}, ("limits", "mass", 1)),
         ("synthesis", {"family": "any"}, ("family",)),
         ("synthesis", {"values": {}}, ("values",)),

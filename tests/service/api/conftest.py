@@ -7,14 +7,18 @@ from collections.abc import Iterator
 import pytest
 
 from synth.jobs.engine_process import Engines
+from synth.jobs.engine_tasks import FAMILIES_TASK
 from tests.service.calling import Service
 from tests.service.working import BATCH, FRONT, Client, working
+
+WARM = 120.0  # s
 
 
 @pytest.fixture(scope="session")
 def engines() -> Iterator[Engines]:
     """Yield one engine process."""
     found = Engines(1)
+    found.call(FAMILIES_TASK, {}, WARM)  # what a test asks first is not to wait for a process that begins
     yield found
     found.close()
 

@@ -106,6 +106,11 @@ def test_every_kind_can_be_asked(client: Client, front: str) -> None:
         ({"kind": "synthesis", "request": QUICK, "priority": 2}, ["priority"]),
         ({"kind": "synthesis", "request": QUICK, "seconds_limit": "5"}, ["seconds_limit"]),
         ({"kind": "synthesis", "request": QUICK, "folder": "/tmp"}, ["folder"]),
+        ({"kind": "synthesis", "request": QUICK, "title": " "}, ["title"]),
+        ({"kind": "synthesis", "request": QUICK, "title": "\u00a0"}, ["title"]),
+        ({"kind": "synthesis", "request": {**QUICK, "workers": 64}}, ["workers"]),
+        ({"kind": "compare", "request": {**QUICK, "family": "any", "workers": 64}}, ["workers"]),
+        ({"kind": "batch", "request": {**BATCH, "workers": 64}}, ["workers"]),
         ({"kind": "whatif", "request": {**QUICK, "vary": {"load_torque": "400:700:1 N*m"}}}, ["vary"]),
         ({"kind": "batch", "request": {"family": FAMILY, "upload": "nothing"}}, ["upload"]),
         ({"kind": "batch", "request": {"family": FAMILY, "upload": "/etc/passwd"}}, ["upload"]),
@@ -119,6 +124,22 @@ def test_what_cannot_be_asked_is_refused_with_its_place(
     assert (answer.status_code, code_of(answer)) == (422, "bad_input")
     (problem,) = answer.json()["error"]["problems"]
     assert path is None or problem["path"] == path
+
+
+def test_more_threads_are_refused_with_the_reason_and_one_is_taken(client: Client) -> None:
+    for path in ("check", "batches", "batches/check"):
+        asked = QUICK if path == "check" else {**BATCH, "seed": 64}  # a batch of its own
+        answer = client.post(path, {**asked, "workers": 64}).json()
+        (problem,) = (answer if path == "check" else answer["error"])["problems"]
+        assert problem["path"] == ["workers"], path
+        assert "a job is searched by one thread" in problem["expected"]
+        taken = client.post(path, {**asked, "workers": 1})
+        assert taken.status_code < 300, taken.text
+
+
+def test_a_title_may_have_blanks_and_is_more_than_that(client: Client, front: str) -> None:
+    assert client("PATCH", f"jobs/{front}", json={"title": " "}).status_code == 422
+    assert client("PATCH", f"jobs/{front}", json={"title": " a\u00a0lift "}).status_code == 200
 
 
 def test_a_tenant_has_what_it_may_have(works: Service) -> None:
@@ -250,3 +271,54 @@ def test_only_what_has_not_been_done_can_go_on(works: Service, client: Client, f
         answer = client.post(f"jobs/{table}/resume")
         assert answer.status_code == status, answer.text
     assert client.ended(table)["state"] == "done"
+
+
+WRONG = {**QUICK, "requirements": {**DUTY, "load_torque": "much", "jerk_limit": "9 kg"}, "limits": {"mas": "< 5 kg"}}
+
+
+def faults_of(client: Client, kind: str, request: dict[str, Any]) -> list[tuple[Any, ...]]:
+    answer = client.post("jobs", {"kind": kind, "request": request})
+    assert (answer.status_code, code_of(answer)) == (422, "bad_input")
+    return [tuple(problem["path"]) for problem in answer.json()["error"]["problems"]]
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "paths"),
+    [
+        ("synthesis", {"colour": "red"}, [("colour",)]),
+        ("explain", {"physics": 3}, [("physics",)]),
+        ("whatif", {"vary": {"nothing": "1, 2", "weights.mass": 5}, "breaks": "yes"}, [("breaks",)]),
+        (
+            "whatif",
+            {"vary": {"nothing": "1, 2", "wear_life_min": "a:b"}},
+            [("vary", "nothing"), ("vary", "wear_life_min")],
+        ),
+        ("whatif", {"colour": "red", "shape": 1}, [("vary",), ("colour",), ("shape",)]),
+    ],
+)
+def test_every_kind_that_takes_a_spec_tells_all_faults_at_once(
+    client: Client, kind: str, more: dict[str, Any], paths: list[tuple[Any, ...]]
+) -> None:
+    found = faults_of(client, kind, {**WRONG, **more})
+    spec = [tuple(one["path"]) for one in client.post("check", WRONG).json()["problems"]]
+    assert len(spec) == 3
+    assert {*spec, *paths} <= {*found}
+    assert len(found) == len({*found})
+
+
+def test_a_batch_tells_all_that_is_wrong_beside_its_rows(client: Client) -> None:
+    wrong = {"points": 0, "gap": "x", "grid": 3, "family": "nothing", "mapping": [], "catalogs": {"x": "/etc"}}
+    wrong |= {"seed": -1.5, "time_limit": "soon"}
+    assert sorted(path[0] for path in faults_of(client, "batch", {**BATCH, **wrong})) == sorted(wrong)
+    assert faults_of(client, "batch", {**BATCH, "colour": 1, "shape": 2}) == [("colour",), ("shape",)]
+
+
+def test_what_varies_may_be_left_out_of_the_spec_and_is_no_fault(client: Client) -> None:
+    requirements = {name: value for name, value in DUTY.items() if name != "load_torque"}
+    asked = {**QUICK, "requirements": requirements, "vary": {"load_torque": "500, 600 N*m"}}
+    assert faults_of(client, "whatif", {**asked, "limits": {"mas": "< 5 kg"}, "breaks": 1}) == [
+        ("limits", "mas"),
+        ("breaks",),
+    ]
+    job = client.submit("whatif", asked)
+    assert client("DELETE", f"jobs/{job}").status_code == 204

@@ -11,7 +11,7 @@ import pytest
 from synth.jobs.job_table import NewJob
 from synth.service.pages.assets import assets, static_place
 from synth.service.security import POLICY
-from tests.service.calling import Service, bearer
+from tests.service.calling import Service, bearer, code_of
 
 ROOT = Path(__file__).parents[3]
 PAGES = ROOT / "synth" / "service" / "pages"
@@ -89,6 +89,29 @@ def test_a_title_is_text_whatever_stands_in_it(service: Service) -> None:
 @pytest.mark.parametrize("address", ["/families/..%2f..%2fetc", "/families/A-B", "/jobs/%00", "/static/x/../app.py"])
 def test_what_is_no_page_is_not_found(service: Service, address: str) -> None:
     assert service("GET", address).status_code == 404
+
+
+BROWSER = {"accept": "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"}
+
+
+@pytest.mark.parametrize("address", ["/nothing", "/jobs", "/a/<b>/c", "/api"])
+def test_a_browser_is_shown_a_page_where_none_is(service: Service, address: str) -> None:
+    for headers in ({}, bearer(service.token())):
+        shown = service("GET", address, headers={**BROWSER, **headers})
+        assert shown.status_code == 404
+        assert shown.headers["content-type"].startswith("text/html")
+        assert shown.headers["content-security-policy"] == POLICY
+        assert "There is no page at this address." in shown.text
+        assert 'href="/"' in shown.text
+        assert "<b>" not in shown.text
+    told = service("GET", address)
+    assert (told.status_code, code_of(told)) == (404, "not_found")
+
+
+def test_programs_are_told_in_their_way_whatever_they_take(service: Service) -> None:
+    for address in ("/api/v1/nothing", "/api/nothing", "/api/v1/jobs/x"):
+        told = service("GET", address, headers=BROWSER)
+        assert (told.status_code, code_of(told)) == (404, "not_found"), address
 
 
 def test_static_files_are_kept_by_browsers_and_change_their_address_with_their_content(service: Service) -> None:

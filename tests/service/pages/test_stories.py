@@ -283,6 +283,21 @@ def test_tokens_are_made_shown_once_and_revoked(site: Site, visited: Visit) -> N
         assert page.locator("code.token").count() == 0
 
 
+def test_whoever_brings_a_part_table_sees_how_it_was_read(site: Site, visited: Visit) -> None:
+    with visited(site.tenant("tables")) as found:
+        page = found.page
+        found.goes("/catalogues")
+        page.locator("#name").fill("my_linings")
+        page.locator("#table").select_option("friction_materials")
+        page.locator("#csv").fill("designation;mu_dynamics [-]\nL1;0,12\n")
+        page.get_by_role("button", name="Keep as a new version").click()
+        found.sees("#kept li", "did you mean mu_dynamic?")
+        page.locator("#kept a").click()
+        page.wait_for_url("**/catalogues?own=my_linings%401")
+        found.sees("table.sheet th", "mu dynamics")
+        found.sees("table.sheet td", "0,12")
+
+
 # ---- texts of others ------------------------------------------------------------------------------------------------
 
 

@@ -86,7 +86,7 @@ function shippedTable(table) {
 async function ownTable(name, stated) {
   const version = Number(stated), path = `/catalogues/${encodeURIComponent(name)}/${version}`;
   const [own, { catalogues }] = await Promise.all([get(path), get("/catalogues")]);
-  const { entry, csv, used_by: users } = own;
+  const { entry, csv, separator, used_by: users } = own;
   const others = catalogues.filter((one) => one.name === name && one.version !== version);
   const jobs = await Promise.all(users.slice(0, SHOWN_JOBS).map((id) => get(`/jobs/${id}`).catch(() => null)));
   const changed = h("div", { class: "stack" }), rows = h("div", { class: "stack" }), fault = h("p", { class: "fault", role: "alert" });
@@ -95,7 +95,7 @@ async function ownTable(name, stated) {
   async function compare(since) {
     const changes = since ? await get(`${path}/changes?since=${since}`) : null;
     const cells = new Map(changes?.changed.map((cell) => [`${cell.designation}\n${headingOf(cell.column).name}`, cell]) ?? []), added = new Set(changes?.added ?? []);
-    const [header, ...lines] = cellsOf(csv), order = inOrder(header.map((text) => headingOf(text).name));
+    const [header, ...lines] = cellsOf(csv, separator), order = inOrder(header.map((text) => headingOf(text).name));
     const table = sheet([header, ...lines].map((line) => order.map((k) => line[k] ?? "")), { label: "Rows", most: MOST, tone: (column, line) => (added.has(line[0]) ? "added" : cells.has(`${line[0]}\n${column}`) ? "changed" : ""),
       cell: (text, column) => (column === "confidence" && text ? trust(text) : null) });
     rows.replaceChildren(h("h2", {}, count(entry.rows, "row")), found(table), table);
@@ -153,9 +153,11 @@ function bringing(tables) {
   };
   const file = h("input", { type: "file", id: "csv-file", class: "unseen", accept: ".csv,text/csv", onchange: async () => { if (file.files[0]) fields.csv.value = await file.files[0].text(); } });
   const fault = h("p", { class: "fault", role: "alert" });
+  const kept = h("div", { id: "kept", role: "status" });
   return h("form", { class: "card stack", id: "bring", novalidate: true, onsubmit: async (event) => {
     event.preventDefault();
     fault.textContent = "";
+    kept.replaceChildren();
     for (const [name, own] of Object.entries(faults)) {
       own.textContent = "";
       fields[name].removeAttribute("aria-invalid");
@@ -163,7 +165,8 @@ function bringing(tables) {
     try {
       const made = await post("/catalogues", { name: fields.name.value.trim(), table: fields.table.value, csv: fields.csv.value, schema: fields.schema.value, note: fields.note.value.trim() });
       say(`${made.reference} is kept`);
-      location.assign(ownPlace(made.reference));
+      if (made.remarks.length) kept.replaceChildren(h("p", {}, h("a", { href: ownPlace(made.reference) }, made.reference), " is kept. As it was read:"), h("ul", {}, made.remarks.map((text) => h("li", {}, sentence(text)))));
+      else location.assign(ownPlace(made.reference));
     } catch (error) {
       const left = error.problems.filter((problem) => {
         const name = problem.path[0];
@@ -181,7 +184,7 @@ function bringing(tables) {
     labelled("note", "Note", h("input", { id: "note", maxlength: "200", autocomplete: "off", placeholder: "what is new in it" }))),
   h("div", { class: "stack" }, h("p", {}, h("label", { class: "button small", for: "csv-file" }, "Rows from a file"), file), labelled("csv", "Rows as CSV", h("textarea", { id: "csv", rows: "8", class: "wide", spellcheck: "false" }))),
   h("details", { class: "more" }, h("summary", {}, "Schema, for a table that is none of ours"), labelled("schema", "Columns as CSV", h("textarea", { id: "schema", rows: "5", class: "wide", spellcheck: "false", placeholder: "column,type,unit,minimum,maximum,required,symbol,description" }))),
-  fault, h("p", {}, h("button", { type: "submit", class: "primary" }, "Keep as a new version")));
+  fault, kept, h("p", {}, h("button", { type: "submit", class: "primary" }, "Keep as a new version")));
 }
 
 begin();

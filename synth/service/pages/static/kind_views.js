@@ -1,7 +1,7 @@
 // What kinds of jobs have found that are no front: each as curve, table or sentence.
 
 import { API, get, sentence } from "./api.js";
-import { tableOf, tableView } from "./csv_rows.js";
+import { tableOf, tableView } from "./csv.js";
 import { curveOf } from "./curve.js";
 import { amount, duration, h, s, unitText, words } from "./dom.js";
 import { marksOf } from "./what_if_track.js";

@@ -65,6 +65,7 @@ export function sideView({ start, spec, fieldAt }) {
       points.replaceChildren(
         ...wrong.map(([field]) => line("✗", "fault", words(field.row.name), field.path)),
         ...[...other, ...loose].map((problem) => line("✗", "fault", problem.message)),
+        ...(answer.remarks ?? []).map((remark) => line("○", "note", remark.message)),
         ...missing.map(([field]) => line("○", "note", words(field.row.name), field.path)),
         ...(answer.ready ? [line("✓", "good", `${facts.stated} requirements stated, all others by default`), facts.slots.length ? line("✓", "good", `Searched among parts: ${facts.slots.join(", ")}`) : null].filter(Boolean) : []));
       cost.textContent = answer.combinations ? `${amount(answer.combinations)} combinations of parts and counts. You can close the page; the job goes on.` : "";

@@ -5,6 +5,7 @@ import { h, say, when } from "./dom.js";
 
 const place = document.getElementById("tokens");
 const SCOPES = [["read", "see the jobs of its tenant"], ["submit", "ask for jobs, cancel and delete them"], ["admin", "make tokens for all tenants"]];
+let none = false; // whether this is to be the first one
 const listed = h("div"), made = h("div", { role: "status" });
 
 async function begin() {
@@ -19,6 +20,7 @@ async function begin() {
 
 async function list() {
   const { tokens } = await get("/tokens");
+  none = !tokens.length;
   const over = (token) => Boolean(token.revoked) || (token.expires !== null && token.expires < Date.now() / 1000);
   tokens.sort((a, b) => over(a) - over(b) || b.created - a.created);
   listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
@@ -26,7 +28,7 @@ async function list() {
     h("tbody", {}, tokens.map((token) => h("tr", { class: over(token) ? "over" : "" }, h("th", { scope: "row", class: "text" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, when(token.created)), h("td", {}, token.used ? when(token.used) : "never"),
       h("td", {}, token.expires ? new Date(1000 * token.expires).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" }) : "for ever"),
       h("td", {}, over(token) ? h("span", { class: "badge" }, token.revoked ? "revoked" : "run out") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
-    : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. Make one that may admin first, or you lock yourself out."));
+    : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. The first one must be one that may admin: from then on nobody comes in without a token."));
 }
 
 async function revoke(token, button) {
@@ -49,7 +51,7 @@ function making() {
   const name = h("input", { id: "name", autocomplete: "off", spellcheck: "false", placeholder: "whom or what it is for" });
   const tenant = h("input", { id: "tenant", autocomplete: "off", spellcheck: "false", placeholder: "your own" });
   const days = h("input", { id: "days", inputmode: "numeric", autocomplete: "off", placeholder: "365" });
-  const boxes = SCOPES.map(([scope, text]) => h("label", {}, h("input", { type: "checkbox", value: scope, checked: scope !== "admin" }), scope, h("span", { class: "note" }, text)));
+  const boxes = SCOPES.map(([scope, text]) => h("label", {}, h("input", { type: "checkbox", value: scope, checked: none || scope !== "admin" }), scope, h("span", { class: "note" }, text)));
   const fault = h("p", { class: "fault", role: "alert" });
   const faults = {};
   const labelled = (text, field) => {
