@@ -14,7 +14,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -105,6 +105,12 @@ def apart() -> dict[str, Any]:
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
     return {"start_new_session": True}
+
+
+def after_fork(call: Callable[[], object]) -> None:
+    """Have something called in every process that is forked off from this one, where processes are."""
+    if sys.platform != "win32":
+        os.register_at_fork(after_in_child=call)
 
 
 def end_with_all(process: subprocess.Popen[bytes]) -> None:

@@ -344,7 +344,7 @@ def _complete(folder: Path, new: Replacement) -> None:
         place.parent.mkdir(parents=True, exist_ok=True)
     dropped = sorted(set(new.dropped) - set(new.names))
     text = json.dumps({"files": new.names, "dropped": dropped})
-    with (new.staging / MANIFEST).open("w", encoding="utf-8") as file:
+    with (new.staging / MANIFEST).open("w", encoding="utf-8", newline="\n") as file:
         file.write(text)
         file.flush()
         os.fsync(file.fileno())

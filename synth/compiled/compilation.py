@@ -22,7 +22,7 @@ from pathlib import Path
 from synth import deadline
 from synth.file_locks import alone, is_taken
 from synth.native_switch import native_wanted
-from synth.operating_system import LIBRARY, apart, end_with_all, put_in_place
+from synth.operating_system import LIBRARY, after_fork, apart, end_with_all, put_in_place
 from synth.tuning import CompilingEffort
 
 PREFIX = "compiling_"  # of the folders it works in, beside what is finished
@@ -99,7 +99,7 @@ class Compilation:
             folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=path.parent))
             self._left.callback(shutil.rmtree, folder, ignore_errors=True)
             origin, self._made = folder / "code.c", folder / f"code{LIBRARY}"
-            origin.write_text(text, encoding="utf-8")
+            origin.write_text(text, encoding="utf-8", newline="\n")
             command = [compiler, *flags, "-o", str(self._made), str(origin), "-lm"]
             # In a session of its own: it is not the terminal that ends it but we, with all that it has started.
             self.process: subprocess.Popen[bytes] = subprocess.Popen(
@@ -159,8 +159,7 @@ def _leave_to_parent() -> None:
 
 
 atexit.register(_end_all)
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_leave_to_parent)
+after_fork(_leave_to_parent)
 
 
 def _begin_beside(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:

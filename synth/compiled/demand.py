@@ -17,7 +17,7 @@ from pathlib import Path
 
 from synth.compiled.compilation import PREFIX
 from synth.file_locks import locked
-from synth.operating_system import CAN_LEAVE_BEHIND, LIBRARY, leave_behind
+from synth.operating_system import CAN_LEAVE_BEHIND, LIBRARY, after_fork, leave_behind
 from synth.tuning import CompilingEffort
 
 
@@ -57,7 +57,7 @@ class Demand:
 
     def note(self) -> None:
         """Keep how much it was, for programs to come."""
-        self._noted.write_text(f"{self.total():.0f}", encoding="ascii")
+        self._noted.write_text(f"{self.total():.0f}", encoding="ascii", newline="\n")
 
     def compile(self) -> None:
         """Begin to compile the library, by a process that goes on where this one ends."""
@@ -68,7 +68,7 @@ class Demand:
         try:
             folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=self.path.parent))
             origin, made = folder / "code.c", folder / f"code{LIBRARY}"
-            origin.write_text(self._text, encoding="utf-8")
+            origin.write_text(self._text, encoding="utf-8", newline="\n")
             command = [*self._command, "-o", str(made), str(origin), "-lm"]
             leave_behind(command, self._effort.most, folder, made, self.path, lock, handle)
         finally:
@@ -104,5 +104,4 @@ def leave() -> None:
 
 
 atexit.register(leave)
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_known.clear)
+after_fork(_known.clear)
