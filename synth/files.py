@@ -92,6 +92,8 @@ def _opened(path: str | Path, field: str, right: str, most: int) -> int:
     except FileNotFoundError:
         raise InputError(field, shown, f"{right} that exists (No such file or directory)") from None
     except (OSError, ValueError) as error:
+        if isinstance(error, PermissionError) and Path(path).is_dir():  # where folders cannot be opened at all
+            raise InputError(field, shown, f"{right} that can be read; this is a folder") from error
         reason = getattr(error, "strerror", None) or "not a possible file name"
         raise InputError(field, shown, f"{right} that can be read ({reason})") from error
     found = os.fstat(handle)
