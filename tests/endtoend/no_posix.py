@@ -2,7 +2,7 @@
 
 What is ours finds no ``fcntl`` and its like, an ``os`` and a ``signal`` without the names of POSIX, and branches as on
 Windows, whose own functions are stood in for; a file that is open can be neither removed nor replaced, as there. The
-libraries of others go on as on Linux: what they do on Windows is not shown by this.
+libraries of others go on as on Linux, and files that other processes have open can go: nothing is shown of those.
 """
 
 from __future__ import annotations
@@ -104,26 +104,23 @@ class _Loader(importlib.machinery.SourceFileLoader):
     seen: dict[str, types.ModuleType]
 
     def exec_module(self, module: types.ModuleType) -> None:
-        own = module.__name__ == "synth.operating_system"
         real = {name: sys.modules.get(name) for name in self.seen}
-        before = sys.platform
-        if own:  # it imports nothing that is not imported already
+        if module.__name__ == "synth.operating_system":
+            before = sys.platform
             sys.platform = "win32"
             sys.modules.update(self.seen)
-        try:
+            try:
+                super().exec_module(module)
+            finally:
+                sys.platform = before
+                sys.modules.update({name: old for name, old in real.items() if old is not None})
+                del sys.modules["msvcrt"]  # by which libraries would take this for Windows
+            module.sys = types.SimpleNamespace(platform="win32")  # type: ignore[attr-defined]
+        else:
             super().exec_module(module)
-        finally:
-            sys.platform = before
-            for name, old in real.items():
-                if old is None:
-                    sys.modules.pop(name, None)
-                else:
-                    sys.modules[name] = old
         for name, seen in self.seen.items():
-            if module.__dict__.get(name) is real[name] is not None:
+            if real[name] is not None and module.__dict__.get(name) is real[name]:
                 setattr(module, name, seen)
-        if own:
-            module.sys = types.SimpleNamespace(platform="win32")
 
 
 class _Finder:
