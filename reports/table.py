@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
+from typing import Any
 
 from rich import box
 from rich.console import Console
@@ -17,6 +18,7 @@ from reports.sizing import sizing_line
 from synth.plain_text import plain_number
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
+from synth.results.rating_tables import rating_row
 
 SHOWN = 10  # designs on one screen
 EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something
@@ -57,12 +59,10 @@ def print_front(
 
 
 def _counted(front: ParetoFront) -> str:
-    designs = len(front.designs)
-    if designs == 1:
-        return "1 design"
-    if len(front.frame.objectives) == 1:
-        return f"{designs} designs"
-    return f"{designs} designs; #1 comes nearest to the best {_listed(map(words, front.frame.objectives))}"
+    number = _number(front.designs, "design", "designs")
+    if len(front.designs) == 1 or len(front.frame.objectives) == 1:
+        return number
+    return f"{number}; #1 comes nearest to the best {_listed(map(words, front.frame.objectives))}"
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -137,15 +137,24 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
     names = _quantities(frame.headline, frame.objectives)
     if not frame.headline:
         names += [n for n, kind in frame.kinds.items() if kind in ("variable", "count") and n not in names]
-    columns = [
-        _column(words(n), unit_text(frame.units[n]), [in_unit(d.values[n], frame.units[n]) for d in shown])
-        for n in names
-    ]
-    if frame.sized_by:
-        columns.insert(len(frame.objectives), _column("reserve of torque", "%", [_reserve(d) for d in shown]))
+    columns = _number_columns(shown, names, len(frame.objectives))
     first = shown[0]
     columns += [_column(words(n), "", [words(d.choices[n]) for d in shown]) for n in first.choices]
     columns += [_column(words(slot), "", [str(d.parts[slot]) for d in shown]) for slot in first.parts]
+    return _side_by_side(shown, columns, width)
+
+
+def _number_columns(shown: Sequence[Design], names: Sequence[str], objectives: int) -> list[_Column]:
+    """Return quantities as columns, behind the objectives the reserve of torque."""
+    units = shown[0].frame.units
+    columns = [_column(words(n), unit_text(units[n]), [in_unit(d.values[n], units[n]) for d in shown]) for n in names]
+    if any(d.frame.sized_by for d in shown):
+        columns.insert(objectives, _column("reserve of torque", "%", [_reserve(d) for d in shown]))
+    return columns
+
+
+def _side_by_side(shown: Sequence[Design], columns: Iterable[_Column], width: int) -> list[Table]:
+    """Return columns as tables no wider than a screen, each begun with the rank; last what limits each design."""
     ranks = _column("rank", "", [f"#{design.rank}" for design in shown])
     groups: list[list[_Column]] = [[ranks]]
     room = width - ranks.width
@@ -162,6 +171,50 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
     wrapped = ["\n".join(textwrap.wrap(text, room - BETWEEN, break_long_words=True)) for text in limits]
     groups[-1].append(_column("limited by", "", wrapped))
     return [_grid(group) for group in groups]
+
+
+def print_common_front(found: Any, console: Console, every: bool = False) -> None:
+    """Print the common front of several families by what one decides by, as far as all of them have it.
+
+    Parameters
+    ----------
+    found : Comparison
+        With designs.
+    console, every
+        As for :func:`print_front`.
+    """
+    count = len(found.designs) if every else min(SHOWN, len(found.designs))
+    shown = list(found.designs[:count])
+    families = dict.fromkeys(found.families)
+    designs, kinds = _number(found.designs, "design", "designs"), _number(families, "family", "families")
+    first = f"; #1 comes nearest to the best {_listed(map(words, found.objectives))}" if len(found.designs) > 1 else ""
+    _print_wrapped(console, f"{designs} of {kinds}{first}", 0)
+    console.print()
+    one_each = [next(d for d, own in zip(found.designs, found.families, strict=True) if own == f) for f in families]
+    names = _quantities(_shared_headline(one_each), found.objectives)
+    columns = _number_columns(shown, names, len(found.objectives))
+    columns.insert(0, _column("family", "", list(found.families[:count])))
+    if any(d.robust for d in found.designs):
+        columns.append(_column("robust", "", [rating_row(d)[0] or "not rated" for d in shown]))
+    for table in _side_by_side(shown, columns, console.width):
+        console.print(table)
+        console.print()
+    for design in shown:
+        if design.note:
+            _print_wrapped(console, f"#{design.rank}: {words(design.note)}", 0)
+    if count < len(found.designs):
+        console.print(f"{len(found.designs) - count} more with --all, and in designs.csv")
+
+
+def _number(things: Sized, one: str, more: str) -> str:
+    return f"1 {one}" if len(things) == 1 else f"{len(things)} {more}"
+
+
+def _shared_headline(designs: Sequence[Design]) -> list[str]:
+    """Return what some family decides by and all of them have, measured alike."""
+    units = [d.frame.units for d in designs]
+    shown = dict.fromkeys(name for d in designs for name in d.frame.headline)
+    return [n for n in shown if all(n in own for own in units) and len({own[n] for own in units}) == 1]
 
 
 def _reserve(design: Design) -> str:

@@ -137,10 +137,27 @@ class Scale:
 def as_good(signed: np.ndarray) -> np.ndarray:
     """Return, per objective, up to where a design is as good as the best one.
 
-    What is surely positive may be worse by a share ``NEAR`` of itself, anything else by that share of its range.
+    Parameters
+    ----------
+    signed : array (designs, objectives)
+        Of a front, or its ends alone.
     """
-    best = signed.min(axis=0)
-    near: np.ndarray = best + NEAR * np.where(best > 0, best, np.ptp(signed, axis=0))
+    best, worst = signed.min(axis=0), signed.min(axis=0)
+    for k in range(signed.shape[1]):
+        np.maximum(worst, signed[signed[:, k] <= best[k]].min(axis=0), out=worst)
+    return nearly(best, worst)
+
+
+def nearly(best: np.ndarray, worst: np.ndarray) -> np.ndarray:
+    """Return up to where a design is as good as the best: by a share of the best that is positive, else of the range.
+
+    Parameters
+    ----------
+    best : array (objectives,)
+    worst : array (objectives,)
+        What each objective is where another one is best.
+    """
+    near: np.ndarray = best + NEAR * np.where(best > 0, best, worst - best)
     return near
 
 

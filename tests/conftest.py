@@ -17,13 +17,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Hear of Ctrl-C and look for no garbage among the tests that are being collected.
+    """Hear of Ctrl-C, have no terminal's width, and look for no garbage among the tests that are being collected.
 
     A shell that runs the tests in the background has Ctrl-C ignored, in them and in what they start. Collecting makes
     what lives to the end: looking for garbage in it would be a third of its time.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    os.environ.pop("COLUMNS", None)  # processes that share tests set it
     if config.getoption("--thorough"):
         os.environ[SWITCH] = "1"  # read while tests are collected
     gc.disable()

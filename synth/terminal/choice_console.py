@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from synth.plain_text import percent, plain_number
-from synth.results.rating_tables import rating_row
+from synth.results.drawings import report
 from synth.robust.rate import told_of
 from synth.studies.prices.price_list import NOTHING
 from synth.terminal.console import explanation_text, plain_table
@@ -89,35 +89,24 @@ def _shown(price: float | None) -> str:
 
 def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:
     """Print the common front, what became of each family, and how far it is proven."""
-    count = len(found.designs) if every else min(SHOWN, len(found.designs))
-    names = list(found.objectives)
     if found.designs:
-        number = "1 design" if len(found.designs) == 1 else f"{len(found.designs)} designs"
-        families = len(set(found.families))
-        console.print(f"{number} of {'1 family' if families == 1 else f'{families} families'}")
-        console.print()
-        rated = ["robust"] if any(d.robust for d in found.designs) else []
-        last = 3 + len(names) + len(rated)
-        table = plain_table(
-            "rank", "score", "family", *names, *rated, "note", right=(1, *range(3, 3 + len(names))), wide=last
-        )
-        for design, family in list(zip(found.designs, found.families, strict=True))[:count]:
-            values = [format_quantity(design.values[n], design.frame.units[n], 5) for n in names]
-            values += [rating_row(design)[0] or "not rated"] if rated else []
-            table.add_row(f"#{design.rank}", f"{design.score:.4f}", family, *values, design.note)
-        console.print(table)
-        if count < len(found.designs):
-            console.print(f"{len(found.designs) - count} more with --all, and in designs.csv")
+        (report("comparison_table") or _plain_common_front)(found, console, every)
         console.print()
     table = plain_table("family", "outcome", "why", wide=2)
     for outcome in found.outcomes:
         table.add_row(outcome.family, outcome.outcome, outcome.sentence)
     console.print(table)
     console.print()
-    for name in names:
-        meanings = {x.family: x.meanings[name] for x in found.outcomes if x.listed and x.meanings.get(name)}
-        if len(set(meanings.values())) > 1:
-            console.print(f"{name} means: " + "; ".join(f"{text} ({family})" for family, text in meanings.items()))
+    for name in found.objectives:
+        meanings: dict[str, list[str]] = {}
+        for x in found.outcomes:
+            if x.meanings.get(name) and x.outcome != "refused":
+                meanings.setdefault(x.meanings[name], []).append(x.family)
+        if len(meanings) > 1:
+            told_of_each = "; ".join(f"{text} ({', '.join(families)})" for text, families in meanings.items())
+            console.print(f"{name.replace('_', ' ')} means: {told_of_each}")
+    for sentence in found.not_compared:
+        console.print(sentence)
     told = [d for d in found.designs if d.robust]
     if told:
         console.print(told_of(told, told[0].frame.restated["robust"]["samples"]))
@@ -128,6 +117,13 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
     console.print(found.sentence())
+
+
+def _plain_common_front(found: Comparison, console: Console, every: bool) -> None:
+    """Print ranks, families and objectives, where reports are not installed."""
+    shown = found.to_frame() if every else found.to_frame().head(SHOWN)
+    names = [c for c in shown.columns if c.split(" [")[0] in ("rank", "family", *found.objectives)]
+    console.print(shown[names].to_string(index=False))
 
 
 def comparison_explanation(found: Comparison) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -70,9 +71,19 @@ def tell_written(target: Path | None, folder: Path | None, files: Iterable[str])
     if target is None:
         print("nothing is written; -o DIR keeps the result")
         return
-    print(f"written to {target}: {', '.join(files)}")
+    say(f"written to {target}: {', '.join(files)}")
     if target != folder:
-        print(f"the earlier result in {folder} stays as it was, as this one is not finished")
+        say(f"the earlier result in {folder} stays as it was, as this one is not finished")
+
+
+def say(sentence: str) -> None:
+    """Print a sentence on lines no wider than the terminal; names of files stay whole."""
+    from synth.terminal.console import output
+
+    lines = textwrap.wrap(
+        sentence, output().width, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False
+    )
+    print("\n".join(lines))
 
 
 @contextmanager

@@ -54,7 +54,10 @@ def _scale_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -
     """
     assert front.scale is not None
     low, high = signed.min(axis=0), signed.max(axis=0)
-    near = low + limits.nearly * np.where(low > 0, low, high - low)
+    worst = low.copy()
+    for k in range(len(low)):
+        worst = np.maximum(worst, signed[signed[:, k] <= low[k]].min(axis=0))
+    near = low + limits.nearly * np.where(low > 0, low, worst - low)
     most = near.copy()
     for k in range(len(low)):
         most = np.maximum(most, signed[signed[:, k] <= near[k]].min(axis=0))

@@ -1,10 +1,12 @@
 """Several families asked the same: who serves, who loses and why, and one front against plain enumeration of all."""
 
+import io
 import json
 
 import numpy as np
 import pandas as pd
 import pytest
+from rich.console import Console
 
 import synth
 import synth.robust.robust_front
@@ -17,6 +19,7 @@ from synth.search.stages.challenge import Challenge
 from synth.studies.families.compare import compare
 from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
 from synth.tables.catalogs import Catalogs
+from synth.terminal.choice_console import print_comparison
 from synth.tuning import TUNING
 from synth.units import format_quantity
 from tests.sample_problems.shaft_brake import CATALOGS, NEEDED, ShaftBrake
@@ -199,6 +202,27 @@ def test_objectives_in_common_are_chosen_with_the_defaults_first():
         with pytest.raises(synth.InputError) as error:
             common_objectives(applicants([Solid, Tube], sheet, tables), asked)
         assert all(word in str(error.value) for word in words)
+
+
+def test_objectives_of_some_families_alone_are_told_not_to_count():
+    families = [Solid, Tube, {"family": Stranger, "requirements": {"colour": 1}}]
+    mixed = compare(families, {"load": LOAD}, catalogs=OWN, points=4)
+    assert list(mixed.objectives) == ["mass"]
+    assert mixed.not_compared == ["not compared by sag, an objective of solid alone: stranger has no such objective"]
+    assert compare(families, {"load": LOAD}, catalogs=OWN, points=4, objectives=["mass"]).not_compared == []
+    alike = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4)
+    assert alike.not_compared == []
+
+
+def test_a_screen_shows_what_all_families_have_and_what_each_means(found):
+    stream = io.StringIO()
+    print_comparison(found, Console(file=stream, width=80, markup=False, highlight=False), every=True)
+    output = stream.getvalue()
+    assert max(map(len, output.splitlines())) <= 80
+    words = " ".join(output.split())
+    assert f"{len(found.designs)} designs of 2 families; #1 comes nearest to the best mass and sag" in words
+    # Also of families that were searched and have no design there.
+    assert "mass means: Of the bar (solid, padded, weak); With end caps (tube)" in words
 
 
 def test_what_a_family_does_not_understand_makes_it_step_back():
@@ -451,7 +475,9 @@ def brakes(limits=None, tuning=TUNING):
     found = applicants([Brake, OtherBrake], sheet, tables)
     ranked = {"objectives": common_objectives(found, {"size": "min", "worth": "min"}), "weights": None, "grid": True}
     settings = SearchSettings(points=3)
-    return synth.studies.families.compare._Comparing(found, sheet, ranked, tables, settings, None, tuning).run(None)
+    return synth.studies.families.compare._Comparing(found, sheet, ranked, tables, settings, None, False, tuning).run(
+        None
+    )
 
 
 def test_limits_that_fail_between_corners_are_posed_for_every_family():

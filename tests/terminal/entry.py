@@ -31,20 +31,22 @@ def clutchsynth(*words: object, folder: Path | None = None, **environment: str) 
     )
 
 
-def at_once(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+def at_once(*words: object, folder: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run it in this process: where a search is short or none is made, imports cost most."""
     out, err = io.StringIO(), io.StringIO()
     texts = [str(word) for word in words]
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
         patch.setattr(sys, "argv", ["clutchsynth", *texts])
         patch.chdir(folder)
+        for name, value in environment.items():
+            patch.setenv(name, value)
         with pytest.raises(SystemExit) as end:
             main()
     return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
 
 
-def in_process(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+def in_process(*words: object, folder: Path = ROOT, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run it in this process, and the workers of a batch too."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(batch_commands, "_processes", lambda workers: None)
-        return at_once(*words, folder=folder)
+        return at_once(*words, folder=folder, **environment)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.pareto import Scale, as_good
+from synth.pareto import Scale, nearly
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState
 from synth.search.nearest_ideal import NearestIdeal, ScoredFront
@@ -42,14 +42,16 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
 
 
 def first_is_listed(state: FrontState) -> bool:
-    """Tell whether the design that comes first is one of those that are listed."""
+    """Tell whether the design that comes first is listed, with what is best in each objective, and none is beaten."""
     m, rounded = state.task.m, state.task.tuning.tolerances.rounded
-    phi = state.form.archive.phi[:, :m]
-    scored = state.scored
+    phi, scored = state.form.archive.phi[:, :m], state.scored
     if scored is None or not len(state.front):
         return True
-    first = phi[scored.best(phi)]
-    return bool(np.any(np.all(state.phi_listed() <= first + rounded, axis=1)))
+    listed, known = state.phi_listed(), {row.tobytes() for row in phi}
+    beaten = any(row.tobytes() not in known for row in listed)
+    if beaten or np.any(phi.min(axis=0) < listed.min(axis=0) - rounded):
+        return False
+    return bool(np.any(np.all(listed <= phi[scored.best(phi)] + rounded, axis=1)))
 
 
 def _scale(state: FrontState) -> Scale:
@@ -58,16 +60,23 @@ def _scale(state: FrontState) -> Scale:
     for k in range(m):
         _least_in(state, k, np.full(len(form.goals), np.inf))
     polish_extremes(form, m, float(state.rule.tolerance.max()))
-    known = form.objectives.values_of(form.archive.phi[:, :m])
-    ideal, nadir = known.min(axis=0), as_good(known)
-    near = form.objectives.phi_of(nadir[None, :])[0]
+    ideal = form.objectives.values_of(form.archive.phi[:, :m]).min(axis=0)
+    worst = ideal if np.all(ideal > 0) else _worst_at_ends(state, ideal)
+    near = nearly(ideal, worst)
+    return Scale(ideal, np.maximum(near, _worst_at_ends(state, near)))
+
+
+def _worst_at_ends(state: FrontState, ends: np.ndarray) -> np.ndarray:
+    """Return the most that each objective must be, for another one to be as good as its end (objectives, in SI)."""
+    form, m = state.form, state.task.m
+    phi, worst = form.objectives.phi_of(ends[None, :])[0], np.full(m, -np.inf)
     for k in range(m):
         cutoffs = np.full(len(form.goals), np.inf)
-        cutoffs[k] = near[k]
+        cutoffs[k] = max(phi[k], float(form.archive.phi[:, k].min()))
         for j in range(m):
             if j != k:
-                nadir[j] = max(nadir[j], _least_in(state, j, cutoffs))
-    return Scale(ideal, nadir)
+                worst[j] = max(worst[j], _least_in(state, j, cutoffs))
+    return worst
 
 
 def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:

@@ -110,7 +110,7 @@ def compare(
     chosen = common_objectives(found, objectives)
     refuse_all(found, sheet)
     ranked = {"objectives": chosen, "weights": weights, "grid": grid}
-    return _Comparing(found, sheet, ranked, tables, settings, progress).run(finished)
+    return _Comparing(found, sheet, ranked, tables, settings, progress, objectives is not None).run(finished)
 
 
 class _Comparing:
@@ -124,8 +124,10 @@ class _Comparing:
         tables: Catalogs,
         settings: SearchSettings,
         progress: Progress | None,
+        chosen: bool,
         tuning: Tuning = TUNING,
     ) -> None:
+        self.chosen = chosen  # whether objectives were asked for by name
         self.started, self.tuning = time.monotonic(), tuning
         self.found, self.sheet, self.ranked, self.tables = found, sheet, ranked, tables
         self.settings, self.progress = settings, progress
@@ -245,7 +247,7 @@ class _Comparing:
             replace(d, status=d.status if proven else Status.FEASIBLE, gap=certificate.gap if proven else None)
             for d in designs
         ]
-        outcomes = Outcomes(self.front, designs, owners, every, self.faults, self.interrupted)
+        outcomes = Outcomes(self.front, designs, owners, every, self.faults, self.interrupted, self.chosen)
         settings = {
             "points": self.settings.points,
             "weights": self.ranked["weights"],

@@ -29,7 +29,8 @@ class FamilyOutcome:
 
     ``outcome`` is listed (it has designs on the common front), beaten, infeasible, refused (it does not understand the
     sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why. ``front`` is its own front, where it
-    was searched, ``listed`` how many of its designs are on the common one, ``meanings`` what the objectives mean in it.
+    was searched, ``listed`` how many of its designs are on the common one, ``meanings`` what the objectives mean in it,
+    ``offers`` its own objectives, and whether they count where none is named; nothing where some were named.
     """
 
     family: str
@@ -40,6 +41,7 @@ class FamilyOutcome:
     front: ParetoFront | None = None
     beaten_by: Design | None = None
     meanings: Mapping[str, str] = field(default_factory=dict)
+    offers: Mapping[str, bool] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,19 @@ class Comparison:
         if self.designs:
             return Status.OPTIMAL if self.certificate.kind == "global" else Status.FEASIBLE
         return Status.NOT_SOLVED if self.interrupted else Status.INFEASIBLE
+
+    @property
+    def not_compared(self) -> list[str]:
+        """Return, in a sentence each, objectives that families have by themselves and that are none here."""
+        searched = [x for x in self.outcomes if x.front is not None]
+        names = dict.fromkeys(n for x in searched for n, default in x.offers.items() if default)
+        sentences = []
+        for name in (n for n in names if n not in self.objectives):
+            whose = ", ".join(x.family for x in searched if x.offers.get(name))
+            lacking = ", ".join(x.family for x in searched if name not in x.offers)
+            why = f"{lacking} has no such objective" if lacking else "name it under objectives to compare by it"
+            sentences.append(f"not compared by {name}, an objective of {whose} alone: {why}")
+        return sentences
 
     def sentence(self) -> str:
         """Return how far the common front is proven."""

@@ -35,6 +35,8 @@ class Outcomes:
         Label of a family -> why it could not be searched.
     interrupted : str
         What stopped the comparison; nothing where it was finished.
+    chosen : bool
+        Whether the objectives were asked for by name.
     """
 
     front: CommonFront
@@ -43,13 +45,15 @@ class Outcomes:
     every: Sequence[tuple[Competitor, Design]]
     faults: Mapping[str, InputError]
     interrupted: str
+    chosen: bool
 
     def of(self, one: Applicant) -> FamilyOutcome:
         """Return what becomes of a family."""
         d = one.declaration
         quantities: Mapping[str, Any] = {**d.variables, **d.counts, **d.derived}
         meanings = {n: quantities[n].text for n in self.front.objectives if n in quantities}
-        told = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings)
+        offers = {} if self.chosen else {n: objective.default for n, objective in d.objectives.items()}
+        told = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings, offers=offers)
         if one.misfits:
             return replace(told, sentence=f"it {' and '.join(one.misfits)}")
         if one.label in self.faults:
