@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-try:
-    import fcntl
-except ImportError:  # a system without these locks: nobody is kept out
-    fcntl = None  # type: ignore[assignment]
-
-SAFELY = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0)
-NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
+from synth import operating_system
+from synth.operating_system import SAFELY, lock
 
 
 @contextmanager
@@ -43,7 +37,7 @@ def locked(path: Path) -> int | None:
             return None
         taken = False
         try:
-            taken = has_lock(handle, shared=False)
+            taken = lock(handle, shared=False)
             if taken and is_at(handle, path):
                 return handle
         except OSError:
@@ -60,34 +54,24 @@ def is_taken(path: Path) -> bool:
     except OSError:
         return False
     try:
-        return not has_lock(handle, shared=True)
+        return not lock(handle, shared=True)
     except OSError:
         return False
     finally:
         os.close(handle)
 
 
-def has_lock(handle: int, shared: bool) -> bool:
-    """Lock an open file if nobody else has it; tell whether it is locked, as it counts where there are no locks."""
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-    except OSError as error:
-        if error.errno in NO_LOCKS:
-            return True
-        if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
-            return False
-        raise
-    return True
-
-
 def unlock(path: Path, handle: int) -> None:
     """Let go of a locked file; the last one takes it away."""
+    last = False
     with suppress(OSError):
-        if has_lock(handle, shared=False) and is_at(handle, path):
+        last = lock(handle, shared=False) and is_at(handle, path)
+        if last and operating_system.OPEN_FILES_CAN_GO:
             path.unlink()
     os.close(handle)
+    if last and not operating_system.OPEN_FILES_CAN_GO:
+        with suppress(OSError):  # whoever has opened it meanwhile keeps it
+            path.unlink()
 
 
 def is_at(handle: int, path: Path) -> bool:

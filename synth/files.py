@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
+from synth.operating_system import AS_BYTES, NO_WAIT, put_in_place
 from synth.plain_text import UNSAFE, csv_cell, escaped, file_text
 
 if TYPE_CHECKING:
     import pandas as pd
-
-NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # a pipe that nobody writes into would be waited for
 
 KINDS = {
     stat.S_ISDIR: "a folder",
@@ -89,10 +88,12 @@ def _opened(path: str | Path, field: str, right: str, most: int) -> int:
     """Return the handle of a regular file that is not too large."""
     shown = str(path)
     try:
-        handle = os.open(path, os.O_RDONLY | NO_WAIT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0))
+        handle = os.open(path, os.O_RDONLY | NO_WAIT | AS_BYTES)
     except FileNotFoundError:
         raise InputError(field, shown, f"{right} that exists (No such file or directory)") from None
     except (OSError, ValueError) as error:
+        if isinstance(error, PermissionError) and Path(path).is_dir():  # where folders cannot be opened at all
+            raise InputError(field, shown, f"{right} that can be read; this is a folder") from error
         reason = getattr(error, "strerror", None) or "not a possible file name"
         raise InputError(field, shown, f"{right} that can be read ({reason})") from error
     found = os.fstat(handle)
@@ -179,6 +180,6 @@ def write_atomically(path: Path, text: str) -> None:
     temporary = path.with_name(f".{path.name}.{hashlib.sha256(str(path).encode()).hexdigest()[:8]}.tmp")
     try:
         temporary.write_text(file_text(path.name, text), encoding="utf-8", newline="")
-        temporary.replace(path)
+        put_in_place(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)

@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+from synth.operating_system import ENDING
+
 TWICE = 1.0  # seconds; what comes from a terminal, and again from whoever started the program, is one wish
 
 
@@ -38,7 +40,7 @@ def held_back() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield  # signals arrive in the main thread alone
         return
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING)}
     heard: dict[int, FrameType | None] = {}
     try:
         with _handled([n for n, handler in before.items() if callable(handler)], heard.__setitem__):
@@ -73,7 +75,7 @@ def heard_again() -> Iterator[Callable[[], None]]:
 def _heard_signals() -> list[signal.Signals]:
     """Return the signals that end a program; who starts one with Ctrl-C switched off does not want it heard."""
     deaf = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    return [signal.SIGTERM, *([] if deaf else [signal.SIGINT])]
+    return [*ENDING, *([] if deaf else [signal.SIGINT])]
 
 
 @contextmanager

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-import shutil
+
+from synth.operating_system import find_compiler
 
 VARIABLE = "CLUTCHSYNTH_NATIVE"
 
@@ -15,4 +16,4 @@ def native_wanted() -> bool:
 
 def c_compiler() -> str | None:
     """Return the path of the system's C compiler; None where there is none."""
-    return shutil.which("cc")
+    return find_compiler()

@@ -17,13 +17,14 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path, PureWindowsPath
 from typing import TextIO
 
 from synth.errors import InputError
-from synth.file_locks import SAFELY, has_lock, is_at, unlock
+from synth.file_locks import is_at, unlock
 from synth.files import read_json
 from synth.interrupts import held_back
+from synth.operating_system import OPEN_FILES_CAN_GO, SAFELY, is_held, lock, put_in_place, sync_folder
 from synth.plain_text import file_text
 
 LOCK = ".clutchsynth.lock"  # who works for the folder
@@ -126,6 +127,17 @@ def check_kind(folder: Path, kind: ResultKind) -> None:
         if other is not kind and shared and holds(folder, other):
             wanted = f"another folder: {', '.join(shared)} of clutchsynth {other.command} would be lost"
             raise InputError("output", str(folder), wanted)
+
+
+def check_not_held(folder: Path, kind: ResultKind) -> None:
+    """Refuse a folder with a file of an earlier result that a program of Windows has open, such as a table in Excel.
+
+    Raises
+    ------
+    InputError
+    """
+    if not OPEN_FILES_CAN_GO and folder.is_dir():
+        _refuse_held(folder, _left_behind(folder, kind), "it would be replaced")
 
 
 def save_result(
@@ -302,11 +314,11 @@ def replaced(folder: Path) -> Iterator[Replacement]:
             (new.staging / "files").mkdir(parents=True)
             yield new
             _complete(folder, new)
-            new.staging.rename(folder / READY)  # from here on the result is the new one
+            put_in_place(new.staging, folder / READY)  # from here on the result is the new one
         except BaseException:
             shutil.rmtree(new.staging, ignore_errors=True)
             raise
-        _sync(folder)
+        sync_folder(folder)
         _move(folder)
 
 
@@ -332,12 +344,12 @@ def _complete(folder: Path, new: Replacement) -> None:
         place.parent.mkdir(parents=True, exist_ok=True)
     dropped = sorted(set(new.dropped) - set(new.names))
     text = json.dumps({"files": new.names, "dropped": dropped})
-    with (new.staging / MANIFEST).open("w", encoding="utf-8") as file:
+    with (new.staging / MANIFEST).open("w", encoding="utf-8", newline="\n") as file:
         file.write(text)
         file.flush()
         os.fsync(file.fileno())
     for inner, _, _ in os.walk(new.staging):
-        _sync(Path(inner))
+        sync_folder(Path(inner))
 
 
 def _move(folder: Path) -> None:
@@ -354,34 +366,34 @@ def _move(folder: Path) -> None:
         raise InputError("output", str(folder), f"a folder of ours; what stands in {READY} is not") from error
     if not all(_is_inside(name) for name in (*files, *dropped)):
         raise InputError("output", str(folder), f"a folder of ours; what stands in {READY} is not")
+    _refuse_held(
+        folder, (*files, *dropped), f"the new result stands complete in {READY}, and moves when this is said again"
+    )
     for name in files:
         if (ready / "files" / name).exists():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            (ready / "files" / name).replace(folder / name)
+            put_in_place(ready / "files" / name, folder / name)
     for name in dropped:
         (folder / name).unlink(missing_ok=True)
         if "/" in name:
             with suppress(OSError):  # other files are in it
                 (folder / name).parent.rmdir()
-    _sync(folder)
+    sync_folder(folder)
     (ready / MANIFEST).unlink()
     shutil.rmtree(ready, ignore_errors=True)
 
 
+def _refuse_held(folder: Path, names: Iterable[str], then: str) -> None:
+    """Refuse to exchange files of which a program of Windows has one open: all are exchanged, or none."""
+    held = next((folder / name for name in names if is_held(folder / name)), None)
+    if held is not None:
+        raise InputError("output", str(held), f"a file that no other program has open; {then}")
+
+
 def _is_inside(name: str) -> bool:
     """Tell whether a name is one of a file in a folder or below it."""
-    parts = PurePosixPath(name).parts
-    return bool(parts) and ".." not in parts and not PurePosixPath(name).is_absolute() and "\0" not in name
-
-
-def _sync(folder: Path) -> None:
-    """Have the entries of a folder on the disk, where the system can."""
-    with suppress(OSError):
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
+    path = PureWindowsPath(name)  # knows drives and both strokes; where they mean nothing, no name of ours has them
+    return bool(path.parts) and ".." not in path.parts and not path.anchor and "\\" not in name and "\0" not in name
 
 
 @contextmanager
@@ -476,11 +488,11 @@ def _lock(path: Path, job: str, patience: float) -> int | None:
             _take_away(path)
             handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
         try:
-            taken = has_lock(handle, shared=False)
+            taken = lock(handle, shared=False)
             if taken:
                 _sign(handle, job)
             if job:
-                taken = has_lock(handle, shared=True)
+                taken = lock(handle, shared=True)
             # Whoever let go of the file has taken it away, or another job came between.
             if taken and is_at(handle, path) and (not job or _signed(handle) == job):
                 return handle
@@ -498,7 +510,7 @@ def _take_away(path: Path) -> None:
     """Take away what somebody else has left whose program is gone; it is in the way where one cannot write into it."""
     handle = os.open(path, os.O_RDONLY | SAFELY)
     try:
-        if has_lock(handle, shared=False) and is_at(handle, path):
+        if lock(handle, shared=False) and is_at(handle, path):
             path.unlink()
     finally:
         os.close(handle)
@@ -508,14 +520,16 @@ def _sign(handle: int, job: str) -> None:
     """Say who has the lock; where others may share it they must find the job."""
     try:
         os.ftruncate(handle, 0)
-        os.pwrite(handle, f"{job}\nprocess {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
+        os.lseek(handle, 0, os.SEEK_SET)
+        os.write(handle, f"{job}\nprocess {os.getpid()} on {socket.gethostname()}\n".encode())
     except OSError:
         if job:
             raise
 
 
 def _signed(handle: int) -> str:
-    return os.pread(handle, 200, 0).decode(errors="replace").split("\n")[0]
+    os.lseek(handle, 0, os.SEEK_SET)
+    return os.read(handle, 200).decode(errors="replace").split("\n")[0]
 
 
 def _who(path: Path) -> str:

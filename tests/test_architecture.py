@@ -175,7 +175,11 @@ def test_tests_stand_in_folders_named_like_what_they_test() -> None:
     packages = {path.name for path in (ROOT / "synth").iterdir() if path.is_dir() and any(path.rglob("*.py"))}
     assert folders("tests") == packages | set(KINDS)
     assert folders("tests/problems") <= folders("problems")
-    assert {path.name for path in (ROOT / "tests").glob("test_*.py")} == {"test_architecture.py", "test_layers.py"}
+    assert {path.name for path in (ROOT / "tests").glob("test_*.py")} == {
+        "test_architecture.py",
+        "test_layers.py",
+        "test_portability.py",
+    }
 
 
 def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ ENGINE = ROOT / "synth"
 
 # From the ground up; each place, a package or a module, may import what stands in lines before its own.
 LAYERS = (
+    ("operating_system",),
     ("special", "margins", "pareto", "feasibility", "interrupts", "deadline", "file_locks", "native_switch", "plugins"),
     ("plain_text", "input_limits", "tuning", "proof_limits", "study_limits", "row_cells"),
     ("errors",),

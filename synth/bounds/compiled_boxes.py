@@ -21,11 +21,12 @@ from synth.bounds.contractor import Code
 from synth.bounds.interpreted_boxes import ListedCode, listed_code
 from synth.bounds.interpreted_boxes import source as interpreter_source
 from synth.compiled.compilation import NotCompiled, switched_on
-from synth.compiled.compiler import FLAGS, QUICK, LibraryBeside, library
+from synth.compiled.compiler import QUICK, LibraryBeside, library
+from synth.operating_system import COMPILER_FLAGS
 from synth.tuning import CompilingEffort, CompilingLimits
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
-BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
+BOX_FLAGS = (*COMPILER_FLAGS, "-O2", "-ffp-contract=off")
 GENERAL_FLAGS = (*QUICK, "-ffp-contract=off")
 
 

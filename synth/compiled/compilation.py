@@ -10,7 +10,6 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -23,6 +22,7 @@ from pathlib import Path
 from synth import deadline
 from synth.file_locks import alone, is_taken
 from synth.native_switch import native_wanted
+from synth.operating_system import LIBRARY, after_fork, apart, end_with_all, put_in_place
 from synth.tuning import CompilingEffort
 
 PREFIX = "compiling_"  # of the folders it works in, beside what is finished
@@ -98,8 +98,8 @@ class Compilation:
             self._keep_others_out(path.with_suffix(".lock"))
             folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=path.parent))
             self._left.callback(shutil.rmtree, folder, ignore_errors=True)
-            origin, self._made = folder / "code.c", folder / "code.so"
-            origin.write_text(text)
+            origin, self._made = folder / "code.c", folder / f"code{LIBRARY}"
+            origin.write_text(text, encoding="utf-8", newline="\n")
             command = [compiler, *flags, "-o", str(self._made), str(origin), "-lm"]
             # In a session of its own: it is not the terminal that ends it but we, with all that it has started.
             self.process: subprocess.Popen[bytes] = subprocess.Popen(
@@ -107,10 +107,10 @@ class Compilation:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
-                start_new_session=True,
-                env={**os.environ, "TMPDIR": str(folder)},
+                env={**os.environ, **dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))},
+                **apart(),
             )
-            self._left.callback(_end, self.process)
+            self._left.callback(end_with_all, self.process)
         except BaseException:
             self._left.close()
             raise
@@ -128,7 +128,7 @@ class Compilation:
         try:
             if self.process.returncode != 0:
                 raise subprocess.CalledProcessError(self.process.returncode, str(self.process.args))
-            self._made.replace(self._path)
+            put_in_place(self._made, self._path)
         finally:
             self.end()
 
@@ -159,8 +159,7 @@ def _leave_to_parent() -> None:
 
 
 atexit.register(_end_all)
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_leave_to_parent)
+after_fork(_leave_to_parent)
 
 
 def _begin_beside(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:
@@ -270,14 +269,6 @@ def _wait(ready: Callable[[], bool], begun: float, effort: CompilingEffort) -> N
             work = None
         else:
             time.sleep(effort.look)
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a compiler that is still at work, with the programs that it has started."""
-    if process.poll() is None:
-        with suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
 
 
 def _clear_away(folder: Path, age: float) -> None:

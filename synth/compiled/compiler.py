@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
-import platform
 import subprocess
 from collections.abc import Sequence
 from functools import cache
@@ -14,13 +13,13 @@ from pathlib import Path
 from synth.compiled.compilation import compile_beside, compile_shared, switched_on
 from synth.compiled.demand import Demand, demand_for
 from synth.native_switch import c_compiler
+from synth.operating_system import COMPILER_FLAGS, LIBRARY, cache_home, processor, version_of
 from synth.tuning import CompilingEffort
 
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
-QUICK = (*FLAGS, "-O1")  # for what the first answer waits for: half the time, a tenth slower
+QUICK = (*COMPILER_FLAGS, "-O1")  # for what the first answer waits for: half the time, a tenth slower
 
 
-def library(name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
+def library(name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = COMPILER_FLAGS) -> ctypes.CDLL | None:
     """Return a C source as loaded code; None where it cannot be compiled, kept or loaded.
 
     Parameters
@@ -61,7 +60,7 @@ class LibraryBeside:
         As for :func:`library`.
     """
 
-    def __init__(self, name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = FLAGS) -> None:
+    def __init__(self, name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = COMPILER_FLAGS) -> None:
         self._text, self._effort, self._flags = text, effort, flags
         self._place = _place(name, text, flags)
         self._loaded: ctypes.CDLL | None = None
@@ -94,15 +93,14 @@ def _place(name: str, text: str, flags: Sequence[str]) -> tuple[str, Path] | Non
     compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
     if compiler is None or folder is None:
         return None
-    key = hashlib.sha256("\0".join([text, *flags, *compiler, _machine()]).encode()).hexdigest()[:32]
-    return compiler[0], folder / f"{name}_{key}.so"
+    key = hashlib.sha256("\0".join([text, *flags, *compiler, processor()]).encode()).hexdigest()[:32]
+    return compiler[0], folder / f"{name}_{key}{LIBRARY}"
 
 
 def cache_folder() -> Path | None:
     """Return the folder for compiled code, made if need be; None where it cannot be written."""
-    given = os.environ.get("XDG_CACHE_HOME")
     try:
-        folder = (Path(given) if given else Path.home() / ".cache") / "clutchsynth"
+        folder = cache_home() / "clutchsynth"
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, RuntimeError):
         return None
@@ -115,19 +113,5 @@ def _compiler() -> tuple[str, str] | None:
     path = c_compiler()
     if path is None:
         return None
-    try:
-        done = subprocess.run([path, "--version"], capture_output=True, text=True, timeout=30, check=True)
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return path, done.stdout
-
-
-@cache
-def _machine() -> str:
-    """Return what code for this very processor depends on: a cache folder may be shared between machines."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        lines = [platform.processor()]
-    flags = next((line for line in lines if line.startswith(("flags", "Features"))), "")
-    return "\n".join([platform.machine(), platform.system(), flags])
+    version = version_of(path)
+    return None if version is None else (path, version)

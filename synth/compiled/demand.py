@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import atexit
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -18,14 +17,8 @@ from pathlib import Path
 
 from synth.compiled.compilation import PREFIX
 from synth.file_locks import locked
+from synth.operating_system import CAN_LEAVE_BEHIND, LIBRARY, after_fork, leave_behind
 from synth.tuning import CompilingEffort
-
-# Compiles in a folder of its own and moves what was made to its place at once; nothing else is left.
-SCRIPT = """
-ulimit -t "$1"; folder=$2 place=$3 lock=$4; shift 4
-nice "$@" && mv -f "$folder/code.so" "$place"
-rm -rf "$folder" "$lock"
-"""
 
 
 class Demand:
@@ -58,13 +51,13 @@ class Demand:
     def total(self) -> float:
         """Return how much it was, by earlier programs as well."""
         try:
-            return self.here + float(self._noted.read_text())
+            return self.here + float(self._noted.read_text(encoding="ascii"))
         except (OSError, ValueError):
             return self.here
 
     def note(self) -> None:
         """Keep how much it was, for programs to come."""
-        self._noted.write_text(f"{self.total():.0f}")
+        self._noted.write_text(f"{self.total():.0f}", encoding="ascii", newline="\n")
 
     def compile(self) -> None:
         """Begin to compile the library, by a process that goes on where this one ends."""
@@ -73,18 +66,11 @@ class Demand:
         if handle is None:
             return  # another process compiles it
         try:
-            folder = tempfile.mkdtemp(prefix=PREFIX, dir=self.path.parent)
-            Path(folder, "code.c").write_text(self._text)
-            made = [*self._command, "-o", f"{folder}/code.so", f"{folder}/code.c", "-lm"]
-            process = subprocess.Popen(
-                ["/bin/sh", "-c", SCRIPT, "sh", f"{self._effort.most:.0f}", folder, self.path, lock, *made],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                start_new_session=True,
-                pass_fds=[handle],  # who has it keeps others out, as long as it works
-            )
-            process.returncode = 0  # nobody waits for it
+            folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=self.path.parent))
+            origin, made = folder / "code.c", folder / f"code{LIBRARY}"
+            origin.write_text(self._text, encoding="utf-8", newline="\n")
+            command = [*self._command, "-o", str(made), str(origin), "-lm"]
+            leave_behind(command, self._effort.most, folder, made, self.path, lock, handle)
         finally:
             os.close(handle)
         self._noted.unlink(missing_ok=True)
@@ -111,12 +97,11 @@ def leave() -> None:
     most = max(asked, key=Demand.total, default=None)
     for demand in asked:
         with suppress(OSError):  # the folder may be gone, or full
-            if demand is most and demand.total() >= demand.enough:
+            if CAN_LEAVE_BEHIND and demand is most and demand.total() >= demand.enough:
                 demand.compile()
             else:
                 demand.note()
 
 
 atexit.register(leave)
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_known.clear)
+after_fork(_known.clear)

@@ -17,12 +17,12 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError, where_raised
 from synth.jobs.engine_tasks import task_of
 from synth.jobs.job_settings import JOBS, EngineSettings
+from synth.operating_system import ENDING, bound_memory, give_way, resident
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"
@@ -336,13 +336,12 @@ class Engines:
 
 def _serve(pipe: Connection, settings: EngineSettings) -> None:
     """Do what is asked, one thing after the other, until the other side is gone."""
-    for number in (signal.SIGINT, signal.SIGTERM):  # whole groups of processes get them; the master decides
+    for number in (signal.SIGINT, *ENDING):  # whole groups of processes get them; the master decides
         signal.signal(number, signal.SIG_IGN)
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
-    if settings.nice and hasattr(os, "nice"):
-        os.nice(settings.nice)
-    _bound_memory(settings.addresses)
+    give_way(settings.nice)
+    bound_memory(settings.addresses)  # the supervisor looks at what is really used
     asked: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(pipe, asked), name="lifeline", daemon=True).start()
     from synth.jobs.engine_work import warm_up
@@ -387,22 +386,3 @@ class _Speaker:
         if now - self._told >= self._pause:
             self._told = now
             self(TOLD, dict(state))
-
-
-def _bound_memory(size: int) -> None:
-    """Let no allocation go beyond a size, where the system can; the supervisor looks at what is really used."""
-    try:
-        import resource
-    except ImportError:
-        return
-    with contextlib.suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_AS, (size, size))
-
-
-def resident(pid: int) -> int:
-    """Return the memory that a process uses, in bytes; 0 where the system does not tell."""
-    try:
-        pages = Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]
-    except (OSError, IndexError):
-        return 0
-    return int(pages) * os.sysconf("SC_PAGE_SIZE")

@@ -20,6 +20,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, ClusterSettings
 from synth.jobs.signs import share
+from synth.operating_system import ENDING
 
 LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -112,7 +113,7 @@ def _begin(lifeline: Connection, found: Any) -> None:
     share(found)
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
-    for number in (signal.SIGINT, signal.SIGTERM):  # whole groups of processes get them; the master decides
+    for number in (signal.SIGINT, *ENDING):  # whole groups of processes get them; the master decides
         signal.signal(number, signal.SIG_IGN)
 
     def watch() -> None:

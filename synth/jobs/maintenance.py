@@ -15,6 +15,7 @@ from sqlalchemy.exc import DBAPIError
 from synth.errors import InputError
 from synth.jobs.database import HEAD, WHOLE, Database, engine_for, version_of
 from synth.jobs.job_settings import JOBS
+from synth.operating_system import put_in_place
 
 SHOWN = 5  # faults of a damaged file that are told
 
@@ -98,7 +99,7 @@ def back_up(url: str, file: Path) -> None:
     half.unlink(missing_ok=True)  # left by a backup that was interrupted
     try:
         (_copy_file if engine.dialect.name == "sqlite" else _dump)(engine, half)
-        half.replace(file)
+        put_in_place(half, file)
     finally:
         half.unlink(missing_ok=True)
         engine.dispose()
@@ -127,7 +128,7 @@ def _dump(engine: sa.Engine, file: Path) -> None:
         [program, "--format=custom", "--no-password", f"--file={file}", f"--dbname={address}"],
         env={**os.environ, **password},
         capture_output=True,
-        text=True,
+        encoding="utf-8",
         errors="replace",
         check=False,
     )

@@ -27,7 +27,6 @@ from synth.jobs.engine_process import (
     EngineProcess,
     Failure,
     Message,
-    resident,
 )
 from synth.jobs.engine_tasks import PLAN_TASK, ROWS_TASK, WORK_TASK
 from synth.jobs.job_queue import Claim
@@ -40,6 +39,7 @@ from synth.jobs.shelf import Shelf
 from synth.jobs.solve import is_group
 from synth.jobs.store import Store
 from synth.jobs.unit_results import sorted_out
+from synth.operating_system import resident
 
 T = TypeVar("T")
 BROKEN = "something went wrong in the program that computes; what the worker has said tells where"

@@ -20,6 +20,7 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.file_locks import alone
 from synth.nlp.batch import Tasks
+from synth.operating_system import cache_home
 from synth.question.instance import Instance
 from synth.results.provenance import hash_of
 from synth.search.budget import Clock
@@ -115,7 +116,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tun
     """
     own = instance.fingerprint()
     asked, computed = hash_of([own.question, list(objectives.items()), seed]), hash_of([own.computation, repr(tuning)])
-    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "clutchsynth" / "studies"
+    folder = cache_home() / "clutchsynth" / "studies"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:

@@ -25,6 +25,7 @@ from synth.jobs.accounts import Accounts
 from synth.jobs.engine_process import Engines
 from synth.jobs.job_settings import StoreSettings
 from synth.jobs.store import Store
+from synth.operating_system import ENDING
 from synth.service.app import create_app
 from synth.service.context import ServiceContext
 from synth.service.protocol import bounded
@@ -78,7 +79,7 @@ class ServiceServer(uvicorn.Server):
         if threading.current_thread() is not threading.main_thread():
             yield
             return
-        before = {number: signal.signal(number, self.handle_exit) for number in (signal.SIGINT, signal.SIGTERM)}
+        before = {number: signal.signal(number, self.handle_exit) for number in (signal.SIGINT, *ENDING)}
         try:
             yield
         finally:

@@ -6,7 +6,6 @@ What is stated later wins: the file, then variables ``CLUTCHSYNTH_...`` (the sam
 from __future__ import annotations
 
 import ipaddress
-import os
 import tomllib
 import types
 from collections.abc import Mapping
@@ -17,7 +16,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 from synth.errors import InputError
-from synth.jobs.owners import cores
+from synth.operating_system import cores, data_home
 
 FILE = "clutchsynth.toml"  # read from the folder in which the service starts, where there is one
 PREFIX = "CLUTCHSYNTH_"
@@ -31,7 +30,7 @@ WORDS: Mapping[type, str] = types.MappingProxyType(
 
 def _own_folder() -> Path:
     """Return where programs of this user keep what they must not lose."""
-    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "clutchsynth"
+    return data_home() / "clutchsynth"
 
 
 def _within(default: Any, least: float, most: float) -> Any:

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import IO
 
+from synth.operating_system import apart
 from synth.service.recording import log
 from synth.service.settings import ServiceSettings
 
@@ -106,7 +107,7 @@ class Supervisor:
                 self._command,
                 stdin=subprocess.PIPE,
                 env={**os.environ, **self._environment},
-                start_new_session=True,  # Ctrl-C is for the server, which ends its worker
+                **apart(),  # Ctrl-C is for the server, which ends its worker
             )
         self._begun()
         log("worker_begun", pid=process.pid)

@@ -156,7 +156,7 @@ def _tell_no_room(error: OSError | InputError) -> None:
 
 
 def _processes(workers: int | None) -> int:
-    from synth.jobs.owners import cores
+    from synth.operating_system import cores
 
     return cores() if workers is None else workers
 

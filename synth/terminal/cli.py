@@ -16,6 +16,7 @@ from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.interrupts import taken_alike
+from synth.operating_system import reader_has_gone
 from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
@@ -95,11 +96,10 @@ def _run() -> None:
     except InputError as error:
         tell(" ".join(f"{error}{COMMANDS.get(error.expected, '')}".split()))
         sys.exit(BAD_INPUT)
-    except BrokenPipeError:
-        # Whoever read the output has gone (``| head``); there is nobody left to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(INTERNAL)
     except OSError as error:
+        if reader_has_gone(error):  # ``| head``: there is nobody left to tell
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(INTERNAL)
         if error.filename is None:
             _give_up(error)
         tell(f"{error.filename}: got what cannot be read or written; expected a place where it can ({error.strerror})")

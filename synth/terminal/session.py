@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from synth.errors import InputError
 from synth.files import frame_csv
-from synth.output_folder import ResultKind, check_kind, claimed
+from synth.output_folder import ResultKind, check_kind, check_not_held, claimed
 from synth.results.drawings import report
 
 if TYPE_CHECKING:
@@ -108,6 +108,7 @@ def claim_output(folder: Path, kind: ResultKind | None = None, job: str = "") ->
     check_output(folder)
     if kind is not None:
         check_kind(folder, kind)
+        check_not_held(folder, kind)
     _for_this_command.enter_context(claimed(folder, job))
 
 

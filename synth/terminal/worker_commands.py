@@ -13,6 +13,7 @@ import typer
 
 from synth.errors import whole_number
 from synth.input_limits import INPUT_LIMITS
+from synth.operating_system import ENDING, cores
 from synth.terminal.batch_commands import DATABASE_VARIABLE
 from synth.terminal.session import tell
 
@@ -40,7 +41,6 @@ def register(app: typer.Typer) -> None:
 
 def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: Follow = False) -> None:
     """Work at the jobs of a database until stopped; any number of workers may, on any machines."""
-    from synth.jobs.owners import cores
     from synth.jobs.store import Store
     from synth.jobs.worker import Worker
 
@@ -48,7 +48,7 @@ def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: F
         whole_number(slots, "--slots", INPUT_LIMITS.workers, path=("slots",))
     with Store(database, create=False) as store:
         serving = Worker(store, slots or cores(), spare=spare, say=tell)
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in (signal.SIGINT, *ENDING):
             signal.signal(number, lambda *_: serving.stop())
         if follow:
             threading.Thread(target=_follow, args=(serving.stop,), name="follow", daemon=True).start()

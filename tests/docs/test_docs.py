@@ -2,8 +2,9 @@
 
 On each page, in order: a ``console`` block runs its ``$`` lines and compares what stands below them, a ``python``
 block is executed (as doctest where it has prompts), ``yaml`` and ``csv`` blocks that are named become files. In what
-is compared ``...`` stands for anything and white space counts as one blank. ``sh`` blocks are for installing; they
-are not run. Lines are as wide as where no terminal is; a ``console`` block marked ``80-columns`` shows a narrower screen.
+is compared ``...`` stands for anything and white space counts as one blank. ``sh`` and ``powershell`` blocks are for
+installing; they are not run. Lines are as wide as where no terminal is; a ``console`` block marked ``80-columns`` shows
+a narrower screen.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from tests.terminal.entry import in_process
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-LANGUAGES = {"console", "python", "yaml", "csv", "sh", "text", "toml"}
+LANGUAGES = {"console", "python", "yaml", "csv", "sh", "powershell", "text", "toml"}
 COMPARE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 FIGURES_VARY, NARROW = "figures-vary", "80-columns"
 NUMBER = re.compile(r"\d+(\.\d+)?")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.pareto import non_dominated, rank, spread_subset
+from synth.pareto import Scale, non_dominated, rank, signs_of, spread_subset
 
 
 def dominated_by_hand(phi):
@@ -105,13 +105,38 @@ def test_a_single_design_is_ideal():
 
 @given(st.integers(0, 10**6), st.integers(1, 4), st.integers(1, 20))
 @settings(deadline=None, derandomize=True, max_examples=60)
-def test_scores_lie_between_zero_and_one(seed, objectives, count):
+def test_scores_tell_how_far_from_the_ideal_designs_are(seed, objectives, count):
     rng = np.random.default_rng(seed)
     senses = {f"o{k}": rng.choice(["min", "max"]) for k in range(objectives)}
-    ranking = rank(senses, rng.normal(size=(count, objectives)), rng.random(objectives) + 0.1)
+    values, weights = rng.normal(size=(count, objectives)), rng.random(objectives) + 0.1
+    ranking = rank(senses, values, weights)
     assert sorted(ranking.order) == list(range(count))
-    assert np.all((ranking.scores >= 0) & (ranking.scores <= 1 + 1e-12))
-    assert np.all(np.diff(ranking.scores[ranking.order]) >= -1e-12)
+    assert np.all(np.diff(ranking.scores[ranking.order]) >= 0)
+    signed = values * signs_of(senses)
+    within = np.all(signed <= ranking.scale.nadir, axis=1)
+    assert np.all((ranking.scores[within] >= 0) & (ranking.scores[within] <= 1))
+    assert np.all((ranking.scores == 0) == np.all(ranking.scale.units(signed) == 0, axis=1))
+
+
+def test_an_end_that_costs_much_for_little_stretches_no_scale():
+    chosen = {"diameter": "min", "mass": "min"}
+    front = np.array([[1.0, 40.0], [1.0004, 7.0], [1.2, 5.0], [1.5, 4.0]])
+    ranking = rank(chosen, front, [1.0, 1.0])
+    assert ranking.scale.nadir.tolist() == [1.5, 7.0]
+    assert ranking.notes == ["smallest diameter, which costs much for little", "", "knee", "smallest mass"]
+    assert (ranking.order[0], ranking.order[-1]) == (2, 0)
+    assert ranking.scores[0] > 1.0 > ranking.scores[1:].max()
+    # A front all of which is as good in an objective is ranked by what else it has.
+    flat = rank(chosen, np.array([[1.0, 40.0], [1.004, 7.0]]), [1.0, 1.0])
+    assert flat.order == [1, 0]
+
+
+def test_a_scale_is_told_and_read_with_the_signs_of_the_objectives():
+    chosen = {"mass": "min", "torque": "max"}
+    scale = Scale.of(np.array([[1.0, -10.0], [2.0, -30.0]]))
+    assert scale.told(chosen) == {"mass": [1.0, 2.0], "torque": [30.0, 10.0]}
+    again = Scale.read(scale.told(chosen), chosen)
+    assert np.array_equal([again.ideal, again.nadir], [scale.ideal, scale.nadir])
 
 
 # -- whole fronts of discrete problems ---------------------------------------------------------------

@@ -23,6 +23,7 @@ from synth.nlp import interior_point_c_interpreted as native_general
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.operating_system import COMPILER_FLAGS
 from synth.question.catalogs import as_catalogs
 from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 from tests.asking import instance_of
@@ -38,7 +39,7 @@ NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
 def solver_of(program: Program, n: int, rows: Rows, code: Code, settings: NlpSettings = TUNING.nlp) -> BatchNlp:
     """Return a solver whose own code is compiled without optimisation: that of a clutch is, below."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(native, "library", partial(native.library, flags=(*compiler.FLAGS, "-O0")))
+        patch.setattr(native, "library", partial(native.library, flags=(*COMPILER_FLAGS, "-O0")))
         return BatchNlp(program, n, rows, code, settings=settings)
 
 

@@ -483,12 +483,12 @@ def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
         return rated[len(rated) - len(designs) :]
 
     monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", standing)
-    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=6, robust=SCATTER)
     assert found.certificate.kind == "global"
     assert [d.robust["holds"] for d in rated] == [True]
     # Where it fails nothing says that what is left cannot be beaten.
     monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", lambda self, designs, deadline: [])
-    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=6, robust=SCATTER)
     assert found.certificate.kind == "heuristic"
 
 

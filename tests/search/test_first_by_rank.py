@@ -1,0 +1,112 @@
+"""The design that comes first: the same however many are listed, and the nearest to the ideal that there is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import synth
+from synth.pareto import NEAR, rank, signs_of
+from synth.question.spec import read_spec
+from synth.search.synthesize import find_front
+from tests.repetitions import repetitions
+
+EXAMPLES = [
+    path
+    for path in sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
+    if read_spec(path).values is None and not read_spec(path).compares
+]
+POINTS = (3, 6, 20, 30, 100)
+EQUAL = 1e-3  # relative; half of what a gap lets two designs differ by
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_the_first_design_of_an_example_is_the_same_however_many_are_asked_for(example: Path) -> None:
+    first: list[list[float]] = []
+    for points in POINTS:
+        asked = read_spec(example).merged(points=points)
+        front = find_front(asked.request(), asked.settings())
+        first.append([front.designs[0].values[name] for name in front.frame.objectives])
+    assert np.allclose(first, first[0], rtol=EQUAL, atol=0.0), first
+
+
+# ---- beside brute force ---------------------------------------------------------------------------------------------
+
+
+def lattice(rows: Sequence[Sequence[float]], senses: Mapping[str, str]) -> synth.DesignProblem:
+    """Return a problem whose designs are some points, one per count."""
+
+    class Lattice(synth.DesignProblem):
+        name = "lattice"
+
+        def declare(self, d: synth.Declaration) -> None:
+            n = d.count("number", 1, len(rows))
+            for k, (name, sense) in enumerate(senses.items()):
+                value = rows[-1][k]
+                for j, row in enumerate(rows[:-1]):
+                    value = np.where(n == j + 1, row[k], value)
+                d.derive(name, "-", value + 0 * n)
+                d.objective(name, sense)
+
+    return Lattice()
+
+
+def first_by_hand(rows: np.ndarray, senses: Mapping[str, str], weights: Sequence[float]) -> np.ndarray:
+    """Return the best score of all points: what each objective costs for another to be nearly as good as it can be."""
+    signed = rows * signs_of(senses)
+    best, worst = signed.min(axis=0), np.array([-np.inf] * len(senses))
+    for k in range(len(senses)):
+        room = NEAR * (best[k] if best[k] > 0 else np.ptp(signed[:, k]))
+        worst[k] = max(worst[k], best[k] + room)
+        as_good = [row for row in signed if row[k] <= best[k] + room]
+        for j in range(len(senses)):
+            worst[j] = max(worst[j], min(row[j] for row in as_good))
+    share = np.array(weights) / sum(weights)
+    scores = [float(np.sqrt(share @ np.maximum((row - best) / (worst - best), 0) ** 2)) for row in signed]
+    return rows[int(np.argmin(scores))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(repetitions(6, 60)))
+@pytest.mark.parametrize("count", [2, 3])
+def test_the_first_design_is_the_nearest_to_the_ideal(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    senses = {f"objective_{k}": "min" if seed % 3 or k else "max" for k in range(count)}
+    weights = [1.0, 1.0, 1.0][:count] if seed % 2 else list(rng.uniform(0.2, 3.0, count))
+    shift = 0.0 if seed % 4 == 3 else 1.0  # without it objectives are small, and may be next to nothing
+    rows = np.round(shift + rng.random((60, count)) ** 3, 4)
+    wanted = first_by_hand(rows, senses, weights)
+    for points in (count + 1, 8, 60):
+        front = synth.synthesize(
+            lattice(rows.tolist(), senses), {}, points=points, weights=dict(zip(senses, weights, strict=True))
+        )
+        assert [front.designs[0].values[name] for name in senses] == pytest.approx(wanted.tolist(), rel=1e-6, abs=1e-6)
+        assert front.verify(lattice(rows.tolist(), senses)).holds
+
+
+def test_an_end_that_costs_much_for_little_is_not_first_and_is_told_to() -> None:
+    rows = [(1.0, 40.0), (1.0004, 7.0), (1.2, 5.0), (1.5, 4.0), (1.45, 4.6)]
+    front = synth.synthesize(lattice(rows, {"diameter": "min", "mass": "min"}), {}, points=10)
+    assert [front.designs[0].values[n] for n in ("diameter", "mass")] == pytest.approx([1.2, 5.0])
+    dear = next(d for d in front.designs if d.values["mass"] > 30)
+    assert dear.note == "smallest diameter, which costs much for little"
+    assert dear.rank == len(front.designs)
+    told = front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
+    assert told["mass"] == pytest.approx([4.0, 7.0])
+
+
+def test_a_front_that_is_saved_is_ranked_again_by_its_own_scale(tmp_path: Path) -> None:
+    rows = [(1.0, 40.0), (1.0004, 7.0), (1.2, 5.0), (1.5, 4.0)]
+    problem = lattice(rows, {"diameter": "min", "mass": "min"})
+    front = synth.synthesize(problem, {}, points=4)
+    again = synth.load_front(front.save(tmp_path / "front"))
+    assert again.scale is not None
+    assert again.scale.told(again.frame.objectives) == front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
+    values = np.array([[d.values[n] for n in again.frame.objectives] for d in again.designs])
+    ranking = rank(again.frame.objectives, values, [1.0, 1.0], scale=again.scale)
+    assert ranking.order == list(range(len(again.designs)))
+    assert ranking.scores.tolist() == [d.score for d in again.designs]
