@@ -56,7 +56,8 @@ def why(front: ParetoFront, design: Design) -> str:
     limits = binding(design)
     clauses.append(f"at the limit of {', '.join(map(words, limits))}" if limits else "no limit is reached")
     if design.alternatives:
-        clauses.append(f"{len(design.alternatives)} others with the same objectives")
+        others_like_it = "1 other" if len(design.alternatives) == 1 else f"{len(design.alternatives)} others"
+        clauses.append(f"{others_like_it} with the same objectives")
     return "; ".join(clause for clause in clauses if clause)
 
 

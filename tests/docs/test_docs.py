@@ -3,7 +3,8 @@
 On each page, in order: a ``console`` block runs its ``$`` lines and compares what stands below them, a ``python``
 block is executed (as doctest where it has prompts), ``yaml`` and ``csv`` blocks that are named become files. In what
 is compared ``...`` stands for anything and white space counts as one blank. ``sh`` and ``powershell`` blocks are for
-installing; they are not run.
+installing; they are not run. Lines are as wide as where no terminal is; a ``console`` block marked ``80-columns`` shows
+a narrower screen.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").g
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 LANGUAGES = {"console", "python", "yaml", "csv", "sh", "powershell", "text", "toml"}
 COMPARE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-FIGURES_VARY = "figures-vary"
+FIGURES_VARY, NARROW = "figures-vary", "80-columns"
 NUMBER = re.compile(r"\d+(\.\d+)?")
 SENT = re.compile(r" (2?)> (\S+)")  # an output that goes to a file
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)")
@@ -93,14 +94,16 @@ class Reader:
         shutil.copytree(ROOT / "examples", folder / "examples")
         paths = [str(Path(sys.executable).parent), os.environ["PATH"]]
         self.environment = {**os.environ, "PATH": os.pathsep.join(paths), "PYTHONPATH": str(ROOT)}
+        self.columns = ""  # of the screen; none asked for
 
     def follow(self, block: Block) -> None:
         where = f"{self.page.name}, line {block.line}"
         if block.language == "console":
-            shown = commands(block.text)
+            shown, marks = commands(block.text), block.name.split()
+            self.columns = NARROW.removesuffix("-columns") if NARROW in marks else ""
             for k, (command, output) in enumerate(shown):
                 asks_code = k + 1 < len(shown) and shown[k + 1][0] == "echo $?"
-                self.run(command, output, asks_code, where, block.name == FIGURES_VARY)
+                self.run(command, output, asks_code, where, FIGURES_VARY in marks)
         elif block.language == "python":
             self.execute(block, where)
         elif block.language in ("yaml", "csv") and block.name:
@@ -126,7 +129,9 @@ class Reader:
         lexer.whitespace_split, lexer.commenters = True, ""
         program, *words = lexer
         if program == "clutchsynth" and not any(set(word) <= set("();<>|&") for word in words):
-            done = in_process(*words, folder=self.folder)
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setenv("COLUMNS", self.columns)
+                done = in_process(*words, folder=self.folder)
             for number, name in SENT.findall(command):
                 stream = "stderr" if number else "stdout"
                 (self.folder / name).write_text(getattr(done, stream), encoding="utf-8")
@@ -136,7 +141,7 @@ class Reader:
             command,
             shell=True,
             cwd=self.folder,
-            env=self.environment,
+            env={**self.environment, "COLUMNS": self.columns},
             capture_output=True,
             text=True,
             timeout=300,

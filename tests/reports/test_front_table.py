@@ -69,6 +69,13 @@ def test_why_names_best_knee_neighbours_and_binding_limits() -> None:
     assert why(shown, weak).startswith("smallest actuation force; 67 % more mass and 33 % less actuation force than #1")
 
 
+def test_others_with_the_same_objectives_are_counted() -> None:
+    alone = design(1, 10, 1000)
+    one, two = (replace(alone, alternatives=("plate B", "plate C")[:count]) for count in (1, 2))
+    assert why(front(one), one).endswith("no limit is reached; 1 other with the same objectives")
+    assert why(front(two), two).endswith("no limit is reached; 2 others with the same objectives")
+
+
 def test_why_with_an_objective_to_be_made_large() -> None:
     frame = replace(FRAME, objectives={"mass": "max", "actuation_force": "min"})
     light, middle, heavy = (design(k, *x, frame=frame) for k, x in enumerate([(10, 1000), (12, 1500), (20, 2000)], 1))

@@ -107,7 +107,7 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
     assert "lubrication == 'dry'" in " ".join(done.stdout.split())
     for heading in ("Options", "Requirements", "Variables", "Counts", "Parts", "Derived", "Limits", "Objectives"):
         assert f"\n{heading}" in done.stdout
-    assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1e+06")
+    assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1 000 000")
     assert quantity(done.stdout, "friction_pair.p_allow").startswith("friction_pair.p_allow N/mm2 0.001 .. 500")
     assert quantity(done.stdout, "friction_pair.mu_static").startswith(
         "friction_pair.mu_static - optional 0.001 .. 1.2"
@@ -305,8 +305,13 @@ def test_run_finds_ranks_saves_and_explains(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     # More plates need less force and weigh more: each of the three numbers is on the front.
     assert sorted(float(row["friction_surfaces [-]"]) for row in rows) == [10, 12, 14]
-    for word in ("smallest mass", "smallest actuation_force", "torque_capacity", "combinations 3", "written to out"):
+    assert "#1 comes nearest to the best mass and actuation force\nsized for 600 N m x 1.5 / (0.85" in done.stdout
+    for word in ("smallest mass", "smallest actuation force", "torque capacity", "3 combinations", "written to out"):
         assert word in done.stdout
+    assert "boxes" not in done.stdout
+    verbose = at_once("run", "small.yaml", "--verbose", folder=tmp_path)
+    assert "\ncombinations 3, " in verbose.stdout
+    assert "boxes" in verbose.stdout
     assert max(len(line) for line in done.stdout.splitlines()) <= 100
     # A design that was saved reads back as it was.
     assert at_once("check", tmp_path / "out" / "design_01.yaml").returncode == 0
