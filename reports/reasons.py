@@ -27,7 +27,7 @@ def significant(value: float, digits: int = 5) -> str:
     return f"{value:.0f}" if "e" in text and 1 <= abs(value) < 1e12 else text
 
 
-def why(front: ParetoFront, design: Design) -> str:
+def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
     """Return in one sentence why a design is on the front: what it is best in, what it trades, which limits it meets.
 
     Parameters
@@ -36,6 +36,8 @@ def why(front: ParetoFront, design: Design) -> str:
         The front it belongs to.
     design : Design
         One of its designs.
+    limits : bool
+        Name also the limits that it meets.
     """
     objectives = front.frame.objectives
     clauses = [
@@ -53,8 +55,9 @@ def why(front: ParetoFront, design: Design) -> str:
     elif len(objectives) > 2 and others:
         nearest = min(others, key=lambda d: _distance(front, design, d))
         clauses.append(f"against #{nearest.rank} next to it {_comparison(design, nearest, list(objectives))}")
-    limits = binding(design)
-    clauses.append(f"at the limit of {', '.join(map(words, limits))}" if limits else "no limit is reached")
+    if limits:
+        met = binding(design)
+        clauses.append(f"at the limit of {', '.join(map(words, met))}" if met else "no limit is reached")
     if design.alternatives:
         others_like_it = "1 other" if len(design.alternatives) == 1 else f"{len(design.alternatives)} others"
         clauses.append(f"{others_like_it} with the same objectives")

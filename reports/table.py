@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
@@ -13,16 +14,17 @@ from rich.table import Table
 
 from reports.numbers import unit_text
 from reports.reasons import binding, why
-from reports.screen_numbers import in_unit, words
+from reports.screen_numbers import alike, in_unit, words
 from reports.sizing import sizing_line
-from synth.plain_text import plain_number
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 from synth.results.rating_tables import rating_row
+from synth.units import finite_from_si
 
 SHOWN = 10  # designs on one screen
 EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something
 BETWEEN = 3  # blanks between two columns
+SOURCE = re.compile(r" \[[^\[\]]*\]$")
 NARROWEST = 18  # of the column of what limits a design
 
 
@@ -51,6 +53,10 @@ def print_front(
     for table in ranked_tables(front, count, console.width):
         console.print(table)
         console.print()
+    shared = shared_parts(shown)
+    if shared:
+        _print_wrapped(console, f"all of these: {', '.join(f'{words(n)} {part}' for n, part in shared.items())}", 0)
+        console.print()
     for design in shown:
         if design.rank is not None and (design.rank <= EXPLAINED or design.note or every):
             _print_reason(front, design, console)
@@ -72,7 +78,7 @@ def _listed(names: Iterable[str]) -> str:
 
 def _print_reason(front: ParetoFront, design: Design, console: Console) -> None:
     """Print why a design is on the front; of the first one also its other sizes, and what there is to remark."""
-    _print_wrapped(console, f"#{design.rank}: {why(front, design)}", 0)
+    _print_wrapped(console, f"#{design.rank}: {why(front, design, limits=False)}", 0)
     if design is not front.designs[0]:
         return
     sizes = _other_sizes(design)
@@ -81,9 +87,14 @@ def _print_reason(front: ParetoFront, design: Design, console: Console) -> None:
     for name, row in design.next_rows.items():
         _print_wrapped(console, f"next in the tables: {words(name)} {row}", 4)
     for remark in design.advice:
-        _print_wrapped(console, f"remark: {remark.partition(': ')[2] or remark}", 4)
+        _print_wrapped(console, f"remark: {_bare(remark)}", 4)
     for remark in design.not_checked:
         _print_wrapped(console, remark, 4)
+
+
+def _bare(remark: str) -> str:
+    """Return a remark without its code and source, which the sheet of the design tells."""
+    return SOURCE.sub("", remark.partition(": ")[2] or remark)
 
 
 def _print_wrapped(console: Console, text: str, indent: int) -> None:
@@ -138,18 +149,32 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
     if not frame.headline:
         names += [n for n, kind in frame.kinds.items() if kind in ("variable", "count") and n not in names]
     columns = _number_columns(shown, names, len(frame.objectives))
-    first = shown[0]
-    columns += [_column(words(n), "", [words(d.choices[n]) for d in shown]) for n in first.choices]
-    columns += [_column(words(slot), "", [str(d.parts[slot]) for d in shown]) for slot in first.parts]
+    shared = shared_parts(shown)
+    columns += [_column(words(n), "", cells) for n, cells in _parts(shown).items() if n not in shared]
     return _side_by_side(shown, columns, width)
+
+
+def _parts(shown: Sequence[Design]) -> dict[str, list[str]]:
+    """Return choices and parts by name, design by design."""
+    first = shown[0]
+    choices = {n: [words(d.choices[n]) for d in shown] for n in first.choices}
+    return choices | {slot: [str(d.parts[slot]) for d in shown] for slot in first.parts}
+
+
+def shared_parts(shown: Sequence[Design]) -> dict[str, str]:
+    """Return what all of several designs have in common, by name of the choice or slot."""
+    return {n: cells[0] for n, cells in _parts(shown).items() if len(shown) > 1 and len(set(cells)) == 1}
 
 
 def _number_columns(shown: Sequence[Design], names: Sequence[str], objectives: int) -> list[_Column]:
     """Return quantities as columns, behind the objectives the reserve of torque."""
     units = shown[0].frame.units
-    columns = [_column(words(n), unit_text(units[n]), [in_unit(d.values[n], units[n]) for d in shown]) for n in names]
+    columns = [
+        _column(words(n), unit_text(units[n]), alike([finite_from_si(d.values[n], units[n], None) for d in shown]))
+        for n in names
+    ]
     if any(d.frame.sized_by for d in shown):
-        columns.insert(objectives, _column("reserve of torque", "%", [_reserve(d) for d in shown]))
+        columns.insert(objectives, _column("torque reserve", "%", alike([_reserve(d) for d in shown], 1)))
     return columns
 
 
@@ -217,10 +242,10 @@ def _shared_headline(designs: Sequence[Design]) -> list[str]:
     return [n for n in shown if all(n in own for own in units) and len({own[n] for own in units}) == 1]
 
 
-def _reserve(design: Design) -> str:
+def _reserve(design: Design) -> float | None:
     """Return by how many per cent a design carries more than it is sized for."""
     carried, needed = design.limits.get(design.frame.sized_by, (0.0, 0.0))
-    return plain_number(round(100 * (carried / needed - 1), 1) + 0.0) if needed else ""
+    return round(100 * (carried / needed - 1), 1) + 0.0 if needed else None
 
 
 def _column(name: str, unit: str, cells: Sequence[str]) -> _Column:

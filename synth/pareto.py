@@ -171,7 +171,7 @@ class Ranking:
     scale: Scale
 
 
-AT_A_PRICE = ", which costs much for little"
+AT_A_PRICE = ", whose last 0.5 % costs much"
 
 
 def signs_of(objectives: Mapping[str, str]) -> np.ndarray:

@@ -431,7 +431,7 @@ def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -
     if front.designs and few:
         best = [name.replace("_", " ") for name in front.frame.objectives][: len(front.designs)]
         console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
-    if front.complete and front.designs:
+    if front.complete and front.designs and len(front.frame.objectives) > 1:
         console.print("the front is complete: beyond that gap there is no other design that none beats in everything")
     left_out = front.statistics.get("rows_left_out", ())
     if verbose:

@@ -12,7 +12,7 @@ from synth.proof_limits import ProofLimits
 if TYPE_CHECKING:
     from synth.results import ParetoFront
 
-DEARLY = ", which costs much for little"
+DEARLY = ", whose last 0.5 % costs much"
 
 
 def ranking_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -> Iterator[str]:

@@ -123,7 +123,7 @@ def test_an_end_that_costs_much_for_little_stretches_no_scale():
     front = np.array([[1.0, 40.0], [1.0004, 7.0], [1.2, 5.0], [1.5, 4.0]])
     ranking = rank(chosen, front, [1.0, 1.0])
     assert ranking.scale.nadir.tolist() == [1.5, 7.0]
-    assert ranking.notes == ["smallest diameter, which costs much for little", "", "knee", "smallest mass"]
+    assert ranking.notes == ["smallest diameter, whose last 0.5 % costs much", "", "knee", "smallest mass"]
     assert (ranking.order[0], ranking.order[-1]) == (2, 0)
     assert ranking.scores[0] > 1.0 > ranking.scores[1:].max()
     # A front all of which is as good in an objective is ranked by what else it has.

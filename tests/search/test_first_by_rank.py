@@ -96,7 +96,7 @@ def test_an_end_that_costs_much_for_little_is_not_first_and_is_told_to() -> None
     front = synth.synthesize(lattice(rows, {"diameter": "min", "mass": "min"}), {}, points=10)
     assert [front.designs[0].values[n] for n in ("diameter", "mass")] == pytest.approx([1.2, 5.0])
     dear = next(d for d in front.designs if d.values["mass"] > 30)
-    assert dear.note == "smallest diameter, which costs much for little"
+    assert dear.note == "smallest diameter, whose last 0.5 % costs much"
     assert dear.rank == len(front.designs)
     told = front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
     assert told["mass"] == pytest.approx([4.0, 7.0])
