@@ -76,6 +76,7 @@ FRONT = ResultKind(
         "explanation.txt",
         "comparison.json",
         "families.csv",
+        "front.svg",
         *REPORT_FILES,
     ),
     ("designs",),
