@@ -5,7 +5,7 @@ with ``label``, ``columns``, ``log``, ``points``, ``apart`` where points are not
 as values hold up to the next row or from the row before, ``height`` over that of an ordinary panel), ``ticks`` (words
 along the horizontal axis: ``x``, ``label``), ``marks`` (vertical lines: ``x``, ``label``), ``spans`` (``from``, ``to``,
 ``label``, ``shaded``: by default every second one), ``lines`` (horizontal lines: ``panel``, ``y``, ``label``),
-``source`` (footer).
+``notes`` (lines below the panels: what the labels of marks stand for), ``source`` (footer).
 """
 
 from __future__ import annotations
@@ -65,6 +65,7 @@ WIDTH, ONE, MORE = 7.1, 3.9, 1.62  # inches: the text width of an A4 page, one p
 PREFIXED = ("W", "J", "N", "N*m", "Pa")
 ROW = 0.155  # inches between two rows of labels above the panels
 LETTER = 0.066  # inches, width of a letter of such a label
+NOTE_ROW, NOTE_LETTERS = 0.155, 108  # inches between two lines below the panels, and letters on one
 TICK_LETTER, TICK_ROW = 0.072, 0.14  # inches, of words along the horizontal axis
 MOST_TICK_ROWS, UPRIGHT_LETTERS = 4, 24
 
@@ -140,7 +141,9 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     strips = _label_rows(spans, marks, limits, axis_width)
     title = textwrap.wrap(str(attrs.get("title", "")), 76)
     footer = textwrap.wrap(str(attrs.get("source", "")), 115)
-    bottom += 0.15 * len(footer)
+    notes = _notes([str(note) for note in attrs.get("notes", ())])
+    foot = 0.06 + 0.15 * len(footer)
+    bottom += foot - 0.06 + NOTE_ROW * len(notes) + 0.06 * bool(notes)
     top = 0.16 + 0.19 * len(title) + ROW * (1 + max((row for _, _, row, _ in strips), default=-1))
     gap = 0.21
     heights = [float(panel.get("height", 1)) * (MORE if len(panels) > 1 else ONE - top / 2) for panel in panels]
@@ -179,6 +182,9 @@ def make_figure(frame: pd.DataFrame) -> Figure:
         )
     for k, text in enumerate(title):
         figure.text(left / WIDTH, 1 - (0.1 + 0.19 * k) / height, text, ha="left", va="top", fontsize=10, weight="bold")
+    for k, text in enumerate(reversed(notes)):
+        below = (foot + 0.06 + NOTE_ROW * k) / height
+        figure.text(left / WIDTH, below, text, ha="left", va="bottom", fontsize=7.5, color="#222222")
     for k, text in enumerate(reversed(footer)):
         figure.text(left / WIDTH, (0.06 + 0.15 * k) / height, text, ha="left", va="bottom", fontsize=7, color="#555555")
     return figure
@@ -196,6 +202,18 @@ def _tick_words(ticks: Sequence[Mapping[str, Any]], axis_width: float) -> tuple[
     upright = [_wrapped(str(tick["label"]), UPRIGHT_LETTERS) for tick in ticks]
     longest = max(len(line) for lines in upright for line in lines)
     return ["\n".join(lines) for lines in upright], 90, TICK_LETTER * longest - TICK_ROW
+
+
+def _notes(texts: Sequence[str]) -> list[str]:
+    """Return the lines of notes; a number, which a tab follows, stands left of all lines of its note."""
+    parts = [text.rpartition("\t") for text in texts]
+    digits = max((len(number) for number, _, _ in parts), default=0)
+    lines = []
+    for number, tab, said in parts:
+        beside = number.ljust(digits + 2) if tab else ""
+        for k, line in enumerate(textwrap.wrap(JOINT.sub("\u00a0", said), NOTE_LETTERS)):
+            lines.append((" " * len(beside) if k else beside).replace(" ", "\u2007") + line)  # as wide as a digit
+    return lines
 
 
 def _wrapped(text: str, letters: int) -> list[str]:
