@@ -39,6 +39,7 @@ DASHES: tuple[Any, ...] = (
     (0, (3, 1)),
 )
 LEGEND_LETTERS = 21  # of a line beside the panels
+LEGEND_ROW, LEGEND_LINE = 0.165, 0.125  # inches of a name in a legend, and of each further line of it
 JOINT = re.compile(r"(?<=[0-9]) (?=[^0-9\s])")  # between a number and its unit no line is broken
 BESIDE = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
@@ -285,8 +286,10 @@ def _draw_panel(
     names = [_legend(column, name) for column in columns]
     logarithmic, apart = bool(panel.get("log", False)), bool(panel.get("apart", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
-    named = len(columns) > 1 or names[0] != name.replace("_", " ")
-    for column, called in zip(columns, names, strict=True):
+    # A single line whose name stands at the axis already needs no legend.
+    named = len(columns) > 1 or not name.replace("_", " ").startswith(names[0])
+    rows = [textwrap.fill(JOINT.sub("\u00a0", called), LEGEND_LETTERS) for called in names]
+    for column, called, row in zip(columns, names, rows, strict=True):
         k = styles.setdefault(called, len(styles)) if named else 0
         axis.plot(
             frame[x].to_numpy(),
@@ -296,7 +299,7 @@ def _draw_panel(
             marker=MARKERS[k % len(MARKERS)] if apart or panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
             markersize=4.5 if apart else 3.5,
-            label=textwrap.fill(JOINT.sub("\u00a0", called), LEGEND_LETTERS),
+            label=row,
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )
     for line in lines:
@@ -314,7 +317,7 @@ def _draw_panel(
     # A legend that says the same as the one above, which may be long, is left out.
     if named and (names != above or lines):
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
-    _name_lines(axis, lines, factor, len(columns) if named else 0)
+    _name_lines(axis, lines, factor, sum(LEGEND_ROW + LEGEND_LINE * row.count("\n") for row in rows) if named else 0.0)
     return names
 
 
@@ -334,15 +337,15 @@ def _prefix(
     return (1e-3, f"k{unit}") if max(values) >= 1e4 else (1.0, unit)
 
 
-def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, in_legend: int) -> None:
-    """Name horizontal lines at the right of the panel, below the legend and none on top of another.
+def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, legend: float) -> None:
+    """Name horizontal lines at the right of the panel, below the legend (inches) and none on top of another.
 
     A name that had to give way is joined to its line.
     """
     height = axis.get_position().height * axis.get_figure(root=True).get_figheight()  # type: ignore[union-attr]
     transform = axis.yaxis.get_transform()
     bottom, top = transform.transform(list(axis.get_ylim()))
-    ceiling = height - 0.165 * in_legend + 0.03
+    ceiling = height - legend + 0.03
     for line in sorted(lines, key=lambda line: -float(line["y"])):
         texts = textwrap.wrap(str(line.get("label", "")), 27)
         level = height * (transform.transform([float(line["y"]) * factor])[0] - bottom) / (top - bottom)
