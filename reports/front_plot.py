@@ -21,7 +21,8 @@ from synth.units import from_si
 MOST_PANELS = 3  # of objectives that are drawn in pairs
 LABELLED = 20  # designs up to which every point has its rank beside it
 WIDE, HIGH = 640, 400  # of one panel, in points of the drawing
-LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58
+LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58  # left of the field at least
+BESIDE = 38  # of that for the name of the axis, and between it and the numbers
 TICKS = 6
 ROOM = 0.04  # beside the outermost values, as a share of the range
 ALIKE = 1e-9  # share of their size by which values differ that are drawn as one
@@ -241,23 +242,25 @@ def _and(names: Sequence[str]) -> str:
 def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[int], linked: bool) -> str:
     columns = [drawn.values(n) for n in pair]
     x_axis, y_axis = (drawn.axis(n) for n in pair)
-    width, height, top = WIDE - LEFT - RIGHT, HIGH - TOP - BOTTOM, above + TOP
+    numbers = [significant(tick) for tick in y_axis.ticks]
+    left = max(LEFT, BESIDE + LETTER * max(map(len, numbers)))
+    width, height, top = WIDE - left - RIGHT, HIGH - TOP - BOTTOM, above + TOP
 
     def place(x: float, y: float) -> tuple[float, float]:
-        return LEFT + width * x_axis.share(x), top + height * (1 - y_axis.share(y))
+        return left + width * x_axis.share(x), top + height * (1 - y_axis.share(y))
 
     parts = [
-        f'<rect class="field" x="{LEFT}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#cfd6de"/>'
+        f'<rect class="field" x="{left:g}" y="{top}" width="{width:g}" height="{height}" fill="none" stroke="#cfd6de"/>'
     ]
     for tick in x_axis.ticks:
         x, _ = place(tick, y_axis.low)
         parts.append(_line(x, top, x, top + height))
         parts.append(_text(x, top + height + 18, significant(tick), "middle"))
-    for tick in y_axis.ticks:
+    for tick, number in zip(y_axis.ticks, numbers, strict=True):
         _, y = place(x_axis.low, tick)
-        parts.append(_line(LEFT, y, LEFT + width, y))
-        parts.append(_text(LEFT - 8, y + 4, significant(tick), "end"))
-    parts.append(_text(LEFT + width / 2, top + height + 42, x_axis.title(), "middle"))
+        parts.append(_line(left, y, left + width, y))
+        parts.append(_text(left - 8, y + 4, number, "end"))
+    parts.append(_text(left + width / 2, top + height + 42, x_axis.title(), "middle"))
     middle = top + height / 2
     parts.append(
         f'<text class="ink" transform="translate(24 {middle:.1f}) rotate(-90)" text-anchor="middle">'
@@ -274,7 +277,7 @@ def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[i
     for k, (design, x, y, said) in reversed(list(enumerate(points))):  # the best ranks on top
         family = drawn.families[k] if drawn.families else ""
         parts.append(_point(design, x, y, said, design.rank in chosen, linked, (family, drawn.listed().get(family, 0))))
-    field = Box(LEFT, top, LEFT + width, top + height)
+    field = Box(left, top, left + width, top + height)
     parts += _ranks(drawn, [(x, y) for _, x, y, _ in points], stairs, field)
     return "".join(parts)
 

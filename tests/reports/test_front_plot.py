@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
@@ -97,6 +98,17 @@ def test_a_file_of_several_families_tells_them_apart(front):
 def test_a_file_of_what_is_no_front_is_not_made(front):
     assert front_file(front.designs[:1], front.frame.objectives, "Beam") == ""
     assert front_file(front.designs, {"width": "min"}, "Beam") == ""
+
+
+def test_long_numbers_keep_clear_of_the_name_of_their_axis(front):
+    objectives = {"width": "min", "height": "max"}
+    grown = [replace(d, objectives={"width": 1.0, "height": 123.4567 * d.rank}) for d in front.designs]
+    drawn = ElementTree.fromstring(front_file(grown, objectives, "Beam"))
+    numbers = [t for t in drawn.iter(f"{SVG}text") if t.get("text-anchor") == "end"]
+    assert max(len(t.text) for t in numbers) >= 6
+    name = next(t for t in drawn.iter(f"{SVG}text") if t.get("transform"))
+    across = float(name.get("transform").split("(")[1].split()[0])
+    assert all(float(t.get("x")) - 8 * len(t.text) > across + 4 for t in numbers)
 
 
 def test_ranks_do_not_cover_each_other(front):
