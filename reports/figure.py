@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 from matplotlib.ticker import LogFormatter, MaxNLocator, ScalarFormatter
 
+from reports.numbers import unit_text
 from synth.errors import InputError
 from synth.units import split_header
 
@@ -261,11 +262,7 @@ def _label(header: str) -> str:
 
 
 def _unit_text(unit: str) -> str:
-    if unit == "-":
-        return ""
-    for plain, raised in (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("s3", "s³")):
-        unit = unit.replace(plain, raised)
-    return f" [{unit.replace('*', ' ')}]"
+    return f" [{unit_text(unit)}]" if unit_text(unit) else ""
 
 
 # ---- one panel ------------------------------------------------------------------------------------------------------
