@@ -1,4 +1,4 @@
-# make demo, make check, make test, make thorough, make lint, make mechanics, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make mechanics, make picture, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/operating_system.py
 
-.PHONY: demo check test thorough lint mechanics lock clean
+.PHONY: demo check test thorough lint mechanics picture lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -41,6 +41,11 @@ lint: $(DEV)
 # The page of the formulas, from their docstrings; a test compares it.
 mechanics: $(DEV)
 	$(BIN)/python -m tests.docs.mechanics_page
+
+# The picture on the first screen of the README, as the program draws it; a test compares it.
+picture: $(RUNTIME)
+	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml --plot -o out/ --quiet
+	cp out/front.svg docs/pictures/front.svg
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -5,7 +5,7 @@ with ``label``, ``columns``, ``log``, ``points``, ``apart`` where points are not
 as values hold up to the next row or from the row before, ``height`` over that of an ordinary panel), ``ticks`` (words
 along the horizontal axis: ``x``, ``label``), ``marks`` (vertical lines: ``x``, ``label``), ``spans`` (``from``, ``to``,
 ``label``, ``shaded``: by default every second one), ``lines`` (horizontal lines: ``panel``, ``y``, ``label``),
-``source`` (footer).
+``notes`` (lines below the panels: what the labels of marks stand for), ``source`` (footer).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 from matplotlib.ticker import LogFormatter, MaxNLocator, ScalarFormatter
 
+from reports.numbers import unit_text
 from synth.errors import InputError
 from synth.units import split_header
 
@@ -39,6 +40,7 @@ DASHES: tuple[Any, ...] = (
     (0, (3, 1)),
 )
 LEGEND_LETTERS = 21  # of a line beside the panels
+LEGEND_ROW, LEGEND_LINE = 0.165, 0.125  # inches of a name in a legend, and of each further line of it
 JOINT = re.compile(r"(?<=[0-9]) (?=[^0-9\s])")  # between a number and its unit no line is broken
 BESIDE = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
@@ -65,6 +67,7 @@ WIDTH, ONE, MORE = 7.1, 3.9, 1.62  # inches: the text width of an A4 page, one p
 PREFIXED = ("W", "J", "N", "N*m", "Pa")
 ROW = 0.155  # inches between two rows of labels above the panels
 LETTER = 0.066  # inches, width of a letter of such a label
+NOTE_ROW, NOTE_LETTERS = 0.155, 108  # inches between two lines below the panels, and letters on one
 TICK_LETTER, TICK_ROW = 0.072, 0.14  # inches, of words along the horizontal axis
 MOST_TICK_ROWS, UPRIGHT_LETTERS = 4, 24
 
@@ -140,7 +143,9 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     strips = _label_rows(spans, marks, limits, axis_width)
     title = textwrap.wrap(str(attrs.get("title", "")), 76)
     footer = textwrap.wrap(str(attrs.get("source", "")), 115)
-    bottom += 0.15 * len(footer)
+    notes = _notes([str(note) for note in attrs.get("notes", ())])
+    foot = 0.06 + 0.15 * len(footer)
+    bottom += foot - 0.06 + NOTE_ROW * len(notes) + 0.06 * bool(notes)
     top = 0.16 + 0.19 * len(title) + ROW * (1 + max((row for _, _, row, _ in strips), default=-1))
     gap = 0.21
     heights = [float(panel.get("height", 1)) * (MORE if len(panels) > 1 else ONE - top / 2) for panel in panels]
@@ -179,6 +184,9 @@ def make_figure(frame: pd.DataFrame) -> Figure:
         )
     for k, text in enumerate(title):
         figure.text(left / WIDTH, 1 - (0.1 + 0.19 * k) / height, text, ha="left", va="top", fontsize=10, weight="bold")
+    for k, text in enumerate(reversed(notes)):
+        below = (foot + 0.06 + NOTE_ROW * k) / height
+        figure.text(left / WIDTH, below, text, ha="left", va="bottom", fontsize=7.5, color="#222222")
     for k, text in enumerate(reversed(footer)):
         figure.text(left / WIDTH, (0.06 + 0.15 * k) / height, text, ha="left", va="bottom", fontsize=7, color="#555555")
     return figure
@@ -196,6 +204,18 @@ def _tick_words(ticks: Sequence[Mapping[str, Any]], axis_width: float) -> tuple[
     upright = [_wrapped(str(tick["label"]), UPRIGHT_LETTERS) for tick in ticks]
     longest = max(len(line) for lines in upright for line in lines)
     return ["\n".join(lines) for lines in upright], 90, TICK_LETTER * longest - TICK_ROW
+
+
+def _notes(texts: Sequence[str]) -> list[str]:
+    """Return the lines of notes; a number, which a tab follows, stands left of all lines of its note."""
+    parts = [text.rpartition("\t") for text in texts]
+    digits = max((len(number) for number, _, _ in parts), default=0)
+    lines = []
+    for number, tab, said in parts:
+        beside = number.ljust(digits + 2) if tab else ""
+        for k, line in enumerate(textwrap.wrap(JOINT.sub("\u00a0", said), NOTE_LETTERS)):
+            lines.append((" " * len(beside) if k else beside).replace(" ", "\u2007") + line)  # as wide as a digit
+    return lines
 
 
 def _wrapped(text: str, letters: int) -> list[str]:
@@ -242,11 +262,7 @@ def _label(header: str) -> str:
 
 
 def _unit_text(unit: str) -> str:
-    if unit == "-":
-        return ""
-    for plain, raised in (("m2", "m²"), ("m3", "m³"), ("s2", "s²"), ("s3", "s³")):
-        unit = unit.replace(plain, raised)
-    return f" [{unit.replace('*', ' ')}]"
+    return f" [{unit_text(unit)}]" if unit_text(unit) else ""
 
 
 # ---- one panel ------------------------------------------------------------------------------------------------------
@@ -267,8 +283,10 @@ def _draw_panel(
     names = [_legend(column, name) for column in columns]
     logarithmic, apart = bool(panel.get("log", False)), bool(panel.get("apart", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
-    named = len(columns) > 1 or names[0] != name.replace("_", " ")
-    for column, called in zip(columns, names, strict=True):
+    # A single line whose name stands at the axis already needs no legend.
+    named = len(columns) > 1 or not name.replace("_", " ").startswith(names[0])
+    rows = [textwrap.fill(JOINT.sub("\u00a0", called), LEGEND_LETTERS) for called in names]
+    for column, called, row in zip(columns, names, rows, strict=True):
         k = styles.setdefault(called, len(styles)) if named else 0
         axis.plot(
             frame[x].to_numpy(),
@@ -278,7 +296,7 @@ def _draw_panel(
             marker=MARKERS[k % len(MARKERS)] if apart or panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
             markersize=4.5 if apart else 3.5,
-            label=textwrap.fill(JOINT.sub("\u00a0", called), LEGEND_LETTERS),
+            label=row,
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )
     for line in lines:
@@ -296,7 +314,7 @@ def _draw_panel(
     # A legend that says the same as the one above, which may be long, is left out.
     if named and (names != above or lines):
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
-    _name_lines(axis, lines, factor, len(columns) if named else 0)
+    _name_lines(axis, lines, factor, sum(LEGEND_ROW + LEGEND_LINE * row.count("\n") for row in rows) if named else 0.0)
     return names
 
 
@@ -316,15 +334,15 @@ def _prefix(
     return (1e-3, f"k{unit}") if max(values) >= 1e4 else (1.0, unit)
 
 
-def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, in_legend: int) -> None:
-    """Name horizontal lines at the right of the panel, below the legend and none on top of another.
+def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, legend: float) -> None:
+    """Name horizontal lines at the right of the panel, below the legend (inches) and none on top of another.
 
     A name that had to give way is joined to its line.
     """
     height = axis.get_position().height * axis.get_figure(root=True).get_figheight()  # type: ignore[union-attr]
     transform = axis.yaxis.get_transform()
     bottom, top = transform.transform(list(axis.get_ylim()))
-    ceiling = height - 0.165 * in_legend + 0.03
+    ceiling = height - legend + 0.03
     for line in sorted(lines, key=lambda line: -float(line["y"])):
         texts = textwrap.wrap(str(line.get("label", "")), 27)
         level = height * (transform.transform([float(line["y"]) * factor])[0] - bottom) / (top - bottom)

@@ -3,26 +3,40 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import TypeAlias
 
+from reports.label_spots import Box, label_spots
 from reports.numbers import unit_text
 from reports.reasons import significant
+from reports.screen_numbers import words
+from synth.plain_text import printable
 from synth.results import Design, ParetoFront
 from synth.units import from_si
 
 MOST_PANELS = 3  # of objectives that are drawn in pairs
 LABELLED = 20  # designs up to which every point has its rank beside it
 WIDE, HIGH = 640, 400  # of one panel, in points of the drawing
-LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58
+LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58  # left of the field at least
+BESIDE = 38  # of that for the name of the axis, and between it and the numbers
 TICKS = 6
 ROOM = 0.04  # beside the outermost values, as a share of the range
+ALIKE = 1e-9  # share of their size by which values differ that are drawn as one
 WIDE_RANGE = 20  # largest over smallest value from which on an axis is logarithmic
 MANY_DECADES = 2000
 FONTS = "system-ui, Noto Sans, DejaVu Sans, sans-serif"
+LETTER, LINE = 8.0, 13.0  # of a rank beside its point: width of a character, height
+DOT, KNEE = 5.5, 10.0  # radii
+ACCENT = "#0b5cad"
+# Of families: the colours of M. Okabe and K. Ito that are dark enough on white, each with a shape, for print without.
+FAMILY_COLOURS = ("#0072B2", "#C24E00", "#00795A", "#B0487F", "#000000", "#8A6100", "#2A7FA8")
+FAMILY_SHAPES = ("circle", "square", "triangle", "diamond")
+HEAD, LINE_HIGH, FOOT = 30, 18, 16  # of a file: its margin above, lines of text, the foot
+TITLE_LETTERS, TEXT_LETTERS, FOOT_LETTERS = 66, 88, 100  # on a line
 Place: TypeAlias = Callable[[float, float], tuple[float, float]]
 
 
@@ -43,7 +57,9 @@ class Axis:
         low, high = min(values), max(values)
         if low > 0 and high / low >= WIDE_RANGE:
             return Axis._logarithmic(name, unit, low, high)
-        span = (high - low) or abs(high) or 1.0
+        span = high - low
+        if span <= ALIKE * max(abs(low), abs(high)):
+            span = abs(high) or 1.0
         step = _round_step(span / TICKS)
         first, last = math.floor((low - ROOM * span) / step), math.ceil((high + ROOM * span) / step)
         if low >= 0:
@@ -76,6 +92,56 @@ def _round_step(size: float) -> float:
     return next(step * power for step in (1, 2, 5, 10) if step * power >= size)
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """What is drawn: ranked designs, what they are measured by, and the family of each where there are several."""
+
+    designs: Sequence[Design]
+    objectives: Mapping[str, str]
+    families: Sequence[str] = ()
+
+    def why_not(self) -> str:
+        """Return why there is nothing to draw; nothing where there is."""
+        if not self.designs:
+            return "there is no design"
+        if len(self.objectives) < 2:
+            return f"{next(iter(self.objectives), 'one objective')} is the only objective, and a front has two or more"
+        return "one design alone is no line" if len(self.designs) < 2 else ""
+
+    def values(self, name: str) -> list[float]:
+        """Return the values of an objective, in the unit in which it is shown."""
+        return [float(from_si(d.objectives[name], self.unit(name))) for d in self.designs]
+
+    def unit(self, name: str) -> str:
+        """Return the unit in which an objective is shown."""
+        return self.designs[0].frame.units[name]
+
+    def axis(self, name: str) -> Axis:
+        """Return the axis of an objective; it tells where more is better."""
+        told = "" if self.objectives[name] == "min" else ", more is better"
+        return Axis.of(f"{words(name)}{told}", self.unit(name), self.values(name))
+
+    def listed(self) -> dict[str, int]:
+        """Return the families in the order of their best designs, with their numbers."""
+        return {name: k for k, name in enumerate(dict.fromkeys(self.families))}
+
+    def label(self, design: Design) -> str:
+        """Return what stands beside a point: its rank, where all of them have room, or it is one to look at."""
+        return f"#{design.rank}" if len(self.designs) <= LABELLED or design.note or design.rank == 1 else ""
+
+    def staircase(self, pair: tuple[str, str]) -> list[tuple[float, float]]:
+        """Return the border of what the designs dominate: what lies on its good side no design reaches.
+
+        None of fronts of more objectives, of which two do not tell what is dominated.
+        """
+        if len(self.objectives) != 2:
+            return []
+        sign = 1 if self.objectives[pair[0]] == "min" else -1
+        ordered = sorted(zip(self.values(pair[0]), self.values(pair[1]), strict=True), key=lambda p: sign * p[0])
+        corners = [((x2, y1), (x2, y2)) for (_, y1), (x2, y2) in pairwise(ordered)]
+        return [ordered[0], *(point for both in corners for point in both)]
+
+
 def front_svg(front: ParetoFront, chosen: Sequence[int] = (), linked: bool = True) -> str:
     """Return the designs of a front as SVG; nothing where there are no two objectives.
 
@@ -87,53 +153,152 @@ def front_svg(front: ParetoFront, chosen: Sequence[int] = (), linked: bool = Tru
     linked : bool
         Whether a point leads to its design in the document.
     """
-    pairs = list(combinations(front.frame.objectives, 2))[:MOST_PANELS]
-    if not pairs or len(front.designs) < 2:
+    drawn = Drawn(front.designs, front.frame.objectives)
+    if drawn.why_not():
         return ""
-    panels = [_panel(front, pair, k, chosen, linked) for k, pair in enumerate(pairs)]
-    high = HIGH * len(pairs)
+    pairs = _pairs(drawn)
+    panels = [_panel(drawn, pair, k * HIGH, chosen, linked) for k, pair in enumerate(pairs)]
+    return _document("".join(panels), HIGH * len(pairs))
+
+
+def front_file(
+    designs: Sequence[Design],
+    objectives: Mapping[str, str],
+    title: str,
+    proven: str = "",
+    families: Sequence[str] = (),
+) -> str:
+    """Return the designs of a front as an SVG file that says by itself what it shows; nothing where there is no front.
+
+    Parameters
+    ----------
+    designs : list of Design
+    objectives : mapping
+        Names and senses.
+    title : str
+        What was designed.
+    proven : str
+        How far the front is proven.
+    families : list of str
+        The family of each design, where there are several.
+    """
+    drawn = Drawn(designs, objectives, families)
+    if drawn.why_not():
+        return ""
+    pairs = _pairs(drawn)
+    left, parts, y = LEFT - 54, [], HEAD
+    shown = list(dict.fromkeys(name for pair in pairs for name in pair))
+    for line in textwrap.wrap(f"{printable(title)}: {_and([words(n) for n in shown])}", TITLE_LETTERS):
+        parts.append(f'<text x="{left}" y="{y}" font-size="16" font-weight="600">{escape(line)}</text>')
+        y += LINE_HIGH + 3
+    for line in textwrap.wrap(_told(drawn, shown), TEXT_LETTERS):
+        parts.append(f'<text x="{left}" y="{y}" fill="#5b6775">{escape(line)}</text>')
+        y += LINE_HIGH
+    for name, k in drawn.listed().items():
+        parts.append(_shape(left + 6, y - 4.5, FAMILY_SHAPES[k % 4], FAMILY_COLOURS[k % 7], FAMILY_COLOURS[k % 7]))
+        parts.append(f'<text x="{left + 20}" y="{y}">{escape(printable(words(name)))}</text>')
+        y += LINE_HIGH
+    y -= LINE_HIGH - 4
+    chosen = [d.rank or 0 for d in designs]
+    parts += [_panel(drawn, pair, y + k * HIGH, chosen, False) for k, pair in enumerate(pairs)]
+    y += HIGH * len(pairs)
+    foot = textwrap.wrap(printable(proven), FOOT_LETTERS)
+    for k, line in enumerate(foot):
+        parts.append(f'<text x="{left}" y="{y + 8 + FOOT * k}" font-size="11.5" fill="#5b6775">{escape(line)}</text>')
+    high = y + (FOOT * len(foot) + 4 if foot else 0)
+    paper = f'<rect x="0.5" y="0.5" width="{WIDE - 1}" height="{high - 1}" rx="8" fill="#ffffff" stroke="#d5dbe2"/>'
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + _document(paper + "".join(parts), high) + "\n"
+
+
+def _document(content: str, high: int) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDE} {high}" width="{WIDE}" height="{high}" '
-        f'font-family="{FONTS}" font-size="13" fill="#1b2430">{"".join(panels)}</svg>'
+        f'font-family="{FONTS}" font-size="13" fill="#1b2430">{content}</svg>'
     )
 
 
-def _panel(front: ParetoFront, pair: tuple[str, str], number: int, chosen: Sequence[int], linked: bool) -> str:
-    units = front.frame.units
-    columns = [[float(from_si(d.objectives[n], units[n])) for d in front.designs] for n in pair]
-    x_axis, y_axis = (Axis.of(n, units[n], v) for n, v in zip(pair, columns, strict=True))
-    width, height, top = WIDE - LEFT - RIGHT, HIGH - TOP - BOTTOM, number * HIGH + TOP
+def _pairs(drawn: Drawn) -> list[tuple[str, str]]:
+    return list(combinations(drawn.objectives, 2))[:MOST_PANELS]
+
+
+def _told(drawn: Drawn, shown: Sequence[str]) -> str:
+    """Return in a line what is drawn, and what is not."""
+    of = "both" if len(drawn.objectives) == 2 else "all objectives"
+    told = [f"{len(drawn.designs)} designs, #1 nearest to the best of {of}"]
+    if any("knee" in d.note for d in drawn.designs):
+        told.append("ring: knee")
+    if len(drawn.objectives) == 2:
+        told.append("dashes: what no design passes")
+    hidden = [words(n) for n in drawn.objectives if n not in shown]
+    if hidden:
+        told.append(f"not drawn: {_and(hidden)}")
+    return "; ".join(told)
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[int], linked: bool) -> str:
+    columns = [drawn.values(n) for n in pair]
+    x_axis, y_axis = (drawn.axis(n) for n in pair)
+    numbers = [significant(tick) for tick in y_axis.ticks]
+    left = max(LEFT, BESIDE + LETTER * max(map(len, numbers)))
+    width, height, top = WIDE - left - RIGHT, HIGH - TOP - BOTTOM, above + TOP
 
     def place(x: float, y: float) -> tuple[float, float]:
-        return LEFT + width * x_axis.share(x), top + height * (1 - y_axis.share(y))
+        return left + width * x_axis.share(x), top + height * (1 - y_axis.share(y))
 
     parts = [
-        f'<rect class="field" x="{LEFT}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#cfd6de"/>'
+        f'<rect class="field" x="{left:g}" y="{top}" width="{width:g}" height="{height}" fill="none" stroke="#cfd6de"/>'
     ]
     for tick in x_axis.ticks:
         x, _ = place(tick, y_axis.low)
         parts.append(_line(x, top, x, top + height))
         parts.append(_text(x, top + height + 18, significant(tick), "middle"))
-    for tick in y_axis.ticks:
+    for tick, number in zip(y_axis.ticks, numbers, strict=True):
         _, y = place(x_axis.low, tick)
-        parts.append(_line(LEFT, y, LEFT + width, y))
-        parts.append(_text(LEFT - 8, y + 4, significant(tick), "end"))
-    parts.append(_text(LEFT + width / 2, top + height + 42, x_axis.title(), "middle"))
+        parts.append(_line(left, y, left + width, y))
+        parts.append(_text(left - 8, y + 4, number, "end"))
+    parts.append(_text(left + width / 2, top + height + 42, x_axis.title(), "middle"))
     middle = top + height / 2
     parts.append(
-        f'<text class="ink" transform="translate(16 {middle:.1f}) rotate(-90)" text-anchor="middle">'
+        f'<text class="ink" transform="translate(24 {middle:.1f}) rotate(-90)" text-anchor="middle">'
         f"{escape(y_axis.title())}</text>"
     )
-    points = list(zip(front.designs, *columns, strict=True))
-    if len(front.frame.objectives) == 2:
-        parts.append(_staircase(front, pair, points, place))
-    for design, x, y in reversed(points):  # the best ranks on top
-        parts.append(_point(design, *place(x, y), f"{_said(x_axis, x)}, {_said(y_axis, y)}", chosen, linked))
-    if len(points) <= LABELLED:
-        for design, x, y in points:
-            px, py = place(x, y)
-            parts.append(_text(px + 9, py - 8, f"#{design.rank}", "start"))
+    stairs = [place(x, y) for x, y in drawn.staircase(pair)]
+    if stairs:
+        path = "L".join(f"{x:.1f} {y:.1f}" for x, y in stairs)
+        parts.append(f'<path class="stairs" d="M{path}" fill="none" stroke="#8ba3bb" stroke-dasharray="5 4"/>')
+    points = [
+        (design, *place(x, y), f"{_said(x_axis, x)}, {_said(y_axis, y)}")
+        for design, x, y in zip(drawn.designs, *columns, strict=True)
+    ]
+    for k, (design, x, y, said) in reversed(list(enumerate(points))):  # the best ranks on top
+        family = drawn.families[k] if drawn.families else ""
+        parts.append(_point(design, x, y, said, design.rank in chosen, linked, (family, drawn.listed().get(family, 0))))
+    field = Box(left, top, left + width, top + height)
+    parts += _ranks(drawn, [(x, y) for _, x, y, _ in points], stairs, field)
     return "".join(parts)
+
+
+def _ranks(
+    drawn: Drawn, places: Sequence[tuple[float, float]], stairs: Sequence[tuple[float, float]], field: Box
+) -> list[str]:
+    """Return the ranks beside their points, as far as there is room."""
+    labels = [drawn.label(design) for design in drawn.designs]
+    boxes = []
+    for design, (x, y) in zip(drawn.designs, places, strict=True):
+        reach = KNEE if "knee" in design.note else DOT
+        boxes.append(Box(x - reach, y - reach, x + reach, y + reach))
+    lines = [Box(min(a, c) - 1, min(b, d) - 1, max(a, c) + 1, max(b, d) + 1) for (a, b), (c, d) in pairwise(stairs)]
+    sizes = [(LETTER * len(label), LINE) if label else None for label in labels]
+    spots = label_spots(boxes, sizes, field, lines, 2.0)
+    return [
+        _text(spot.left, spot.bottom - 2.5, label, "start")
+        for spot, label in zip(spots, labels, strict=True)
+        if spot is not None
+    ]
 
 
 def _said(axis: Axis, value: float) -> str:
@@ -148,35 +313,35 @@ def _text(x: float, y: float, text: str, anchor: str) -> str:
     return f'<text class="ink" x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
 
 
-def _staircase(
-    front: ParetoFront, pair: tuple[str, str], points: Sequence[tuple[Design, float, float]], place: Place
+def _point(
+    design: Design, x: float, y: float, said: str, full: bool, linked: bool, family: tuple[str, int] = ("", 0)
 ) -> str:
-    """Return the border of what the designs dominate: what lies on its good side no design reaches."""
-    signs = [1 if front.frame.objectives[name] == "min" else -1 for name in pair]
-    ordered = sorted(points, key=lambda p: signs[0] * p[1])
-    path: list[str] = []
-    for k, (_, x, y) in enumerate(ordered):
-        if k:
-            corner = place(x, ordered[k - 1][2])
-            path.append(f"L{corner[0]:.1f} {corner[1]:.1f}")
-        px, py = place(x, y)
-        path.append(f"{'L' if k else 'M'}{px:.1f} {py:.1f}")
-    return f'<path class="stairs" d="{"".join(path)}" fill="none" stroke="#8ba3bb" stroke-dasharray="5 4"/>'
-
-
-def _point(design: Design, x: float, y: float, said: str, chosen: Sequence[int], linked: bool) -> str:
-    full, knee = design.rank in chosen, "knee" in design.note
-    words = f"#{design.rank}: {said}" + (" (knee)" if knee else "")
-    fill = "#0b5cad" if full else "#ffffff"
-    ring = f'<circle class="knee" cx="{x:.1f}" cy="{y:.1f}" r="10" fill="none" stroke="#b3541e" stroke-width="1.6"/>'
-    dot = (
-        f'<circle class="{"dot" if full else "hollow"}" cx="{x:.1f}" cy="{y:.1f}" r="5.5" fill="{fill}" '
-        f'stroke="#0b5cad" stroke-width="1.6"/>'
+    name, k = family
+    knee = "knee" in design.note
+    told = f"#{design.rank}" + (f", {printable(words(name))}" if name else "") + f": {said}" + " (knee)" * knee
+    colour = FAMILY_COLOURS[k % len(FAMILY_COLOURS)] if name else ACCENT
+    ring = (
+        f'<circle class="knee" cx="{x:.1f}" cy="{y:.1f}" r="{KNEE:g}" fill="none" stroke="#b3541e" stroke-width="1.6"/>'
     )
-    drawn = f"<title>{escape(words)}</title>{ring if knee else ''}{dot}"
+    shape = FAMILY_SHAPES[k % len(FAMILY_SHAPES)] if name else "circle"
+    dot = _shape(x, y, shape, colour if full else "#ffffff", colour, "dot" if full else "hollow")
+    drawn = f"<title>{escape(told)}</title>{ring if knee else ''}{dot}"
     if linked:
         return f'<a href="#design-{design.rank}">{drawn}</a>'
     return f"<g>{drawn}</g>"
+
+
+def _shape(x: float, y: float, shape: str, fill: str, stroke: str, kind: str = "dot") -> str:
+    painted = f'fill="{fill}" stroke="{stroke}" stroke-width="1.6"/>'
+    if shape == "circle":
+        return f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="{DOT}" {painted}'
+    shapes: dict[str, list[tuple[float, float]]] = {
+        "square": [(-5, -5), (5, -5), (5, 5), (-5, 5)],
+        "triangle": [(0, -6), (6, 5), (-6, 5)],
+        "diamond": [(0, -6.5), (6.5, 0), (0, 6.5), (-6.5, 0)],
+    }
+    outline = " ".join(f"{x + dx:.1f},{y + dy:.1f}" for dx, dy in shapes[shape])
+    return f'<polygon class="{kind}" points="{outline}" {painted}'
 
 
 def front_in_words(front: ParetoFront) -> str:

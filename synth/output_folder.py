@@ -77,6 +77,7 @@ FRONT = ResultKind(
         "explanation.txt",
         "comparison.json",
         "families.csv",
+        "front.svg",
         *REPORT_FILES,
     ),
     ("designs",),

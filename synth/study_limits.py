@@ -226,14 +226,14 @@ class StudyTexts:
     lines : int
         Of a drawing; one with more is not read.
     labels, ticks : int
-        Of a drawing.
+        Of a drawing; break points have a line below it each.
     missed : int
         Limits that a line names.
     """
 
     binding: float = 0.999
     lines: int = 7
-    labels: int = 8
+    labels: int = 12
     ticks: int = 20
     missed: int = 2
 

@@ -640,12 +640,18 @@ class ConeClutch(DesignProblem):
 
         degrees = np.linspace(*ANGLES_SHOWN, 105)
         angle = np.radians(degrees)
-        engaging = {f"engaging, friction {mu:g} [-]": cone.engaging_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
-        releasing = {f"releasing, friction {mu:g} [-]": cone.release_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
+        engaging = {
+            f"engaging force dm/(2M) friction {mu:g} [-]": cone.engaging_force(1 / mu, angle, mu)
+            for mu in FRICTION_SHOWN
+        }
+        releasing = {
+            f"releasing force dm/(2M) friction {mu:g} [-]": cone.release_force(1 / mu, angle, mu)
+            for mu in FRICTION_SHOWN
+        }
         frame = pd.DataFrame({"half angle [deg]": degrees, **engaging, **releasing})
         required = friction.sizing_torque_of(spec)
         frame.attrs = {
-            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {required:.4g} N*m)",
+            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {required:.4g} N m)",
             "panels": [
                 {"label": "engaging force dm/(2M) [-]", "columns": list(engaging)},
                 {"label": "releasing force dm/(2M) [-]", "columns": list(releasing)},
@@ -703,7 +709,7 @@ class ConeClutch(DesignProblem):
         if spec["overload_torque"] is not None:
             lines.append({"panel": 1, "y": spec["overload_torque"], "label": "overload_torque"})
         frame.attrs = {
-            "title": f"Cone clutch: forces over the half angle for {value['torque']:.4g} N*m, {pair['designation']}",
+            "title": f"Cone clutch: forces over the half angle for {value['torque']:.4g} N m, {pair['designation']}",
             "panels": [
                 {"label": "axial force [N]", "columns": by_unit["[N]"]},
                 {"label": "torque [N*m]", "columns": by_unit["[N*m]"]},

@@ -52,7 +52,7 @@ def diameter_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.
         lines.append({"panel": 0, "y": room, "label": "outer_diameter_limit less cover_gap"})
     frame = pd.DataFrame(columns)
     frame.attrs = {
-        "title": f"{problem.title}: outer diameter of the friction ring for {required:.4g} N*m",
+        "title": f"{problem.title}: outer diameter of the friction ring for {required:.4g} N m",
         "panels": [{"label": "ring outer diameter [mm]", "columns": names}],
         "lines": lines,
         "source": f"{S1}, sizing for pressure",

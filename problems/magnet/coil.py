@@ -261,7 +261,7 @@ def declare_winding(
         "-",
         magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
         symbol="N_t",
-        text="Turns of the coil, a real number",
+        text="Turns of the coil as computed; wind the next whole number",
         source=f"{S4} [P6]",
     )
     ampere_turns = d.derive(

@@ -96,7 +96,7 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
         columns[f"poles of {length * 1e3:.0f} mm [kPa]"] = needed / powder.torque(1.0, radius, length) / 1e3
     frame = pd.DataFrame(columns)
     frame.attrs = {
-        "title": f"{problem.title}: shear stress for {needed:.4g} N*m",
+        "title": f"{problem.title}: shear stress for {needed:.4g} N m",
         "panels": [{"label": "shear stress [kPa]", "columns": list(frame.columns[1:]), "log": True}],
         "source": f"{S4} [P5]",
     }

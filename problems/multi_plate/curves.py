@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
     from synth import DesignProblem
 
-SERIES = {"eq. (5)": "geometric", "eq. (10)": "exponential_K", "eq. (5'')": "lipka", "exact": "exact"}
+IDEAL, FIRST = "no guide friction", "geometric series (5)"
+SERIES = {
+    FIRST: "geometric",
+    "exponential sum (10)": "exponential_K",
+    "Lipka's sum (5'')": "lipka",
+    "exact balance": "exact",
+}
 SOURCE = f"{S0}, eq. (5), (10), (14) to (16), appendix by I. Lipka (5''); exact: balance of every plate."
 MOST_SURFACES = 120
 FRICTIONS = (0.05, 0.10, 0.15)  # where no design says which lining it is
@@ -30,7 +36,7 @@ def _limits(step: Mapping[str, float], threshold: float) -> list[dict[str, Any]]
         ("(15)", step["surfaces_legacy"]),
         ("(16)", guide_friction.surface_limit_geometric(guide_number, threshold)),
     )
-    return [{"x": float(x), "label": f"{label} {float(x):.1f}"} for label, x in named]
+    return [{"x": float(x), "label": f"worth while to {float(x):.1f} {label}"} for label, x in named]
 
 
 def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
@@ -66,7 +72,7 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
         reach = max(1.15 * float(mark["x"]) for mark in marks)
         reach = max(reach, 1.3 * built)
     surfaces = np.arange(0.0, min(math.ceil(reach), max(MOST_SURFACES, 2 * built)) + 1)
-    data = {"friction_surfaces [-]": surfaces, "ideal [N*m]": unit * surfaces}
+    data = {"friction_surfaces [-]": surfaces, f"{IDEAL} [N*m]": unit * surfaces}
     for heading, series in SERIES.items():
         data[f"{heading} [N*m]"] = unit * guide_friction.torque_sum_factor(series, surfaces, inner, outer)
     lines = [{"panel": 0, "y": values["required_torque"], "label": "required torque"}]
@@ -77,9 +83,13 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
     for heading in list(SERIES)[1:]:
         others.append(f"{heading} excess [%]")
         with np.errstate(invalid="ignore"):  # nothing over nothing where there is no plate
-            data[others[-1]] = 100 * (data[f"{heading} [N*m]"] / data["eq. (5) [N*m]"] - 1)
+            data[others[-1]] = 100 * (data[f"{heading} [N*m]"] / data[f"{FIRST} [N*m]"] - 1)
     frame = pd.DataFrame(data)
     note = f" Excess: torque over that of (5), less 1. S = {guide_number:.4g}, mu F0 r = {unit:.4g} N m."
+    if guide_number > 0:
+        note += (
+            f" Worth while by (16): the torque is {spec['plate_effectiveness_min']:.4g} of what it were without guides."
+        )
     if problem.option("guide_model") == "cz":
         note += " This design is sized with the factor c_z: its torque is the ideal one."
     frame.attrs = {
@@ -103,12 +113,12 @@ def _sum_factor_over_plates(problem: DesignProblem, spec: Mapping[str, Any]) -> 
     marks: list[dict[str, Any]] = []
     series = problem.option("guide_series")
     surfaces = np.arange(0.0, 61.0)
-    data = {"friction_surfaces [-]": surfaces, "ideal [-]": surfaces}
+    data = {"friction_surfaces [-]": surfaces, f"{IDEAL} [-]": surfaces}
     for mu in FRICTIONS:
         data[f"friction_{mu:g} [-]"] = guide_friction.torque_sum_factor(series, surfaces, mu * guide, mu * guide)
         limit = float(guide_friction.surface_limit_geometric(2 * mu * guide, spec["plate_effectiveness_min"]))
         if 0 < limit <= surfaces[-1]:
-            marks.append({"x": limit, "label": f"(16) at {mu:g}"})
+            marks.append({"x": limit, "label": f"worth while to {limit:.1f} at {mu:g} (16)"})
     frame = pd.DataFrame(data)
     frame.attrs = {
         "title": f"{problem.title}: torque over mu F0 r, over the number of friction surfaces",
@@ -146,7 +156,7 @@ def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: An
     series_used = problem.option("guide_series") if problem.option("guide_model") == "series" else None
     first = force if series_used is None else guide_friction.contact_force(series_used, force, 1, inner, outer)
     area = first / values["surface_pressure"]
-    data = {"surface [-]": surfaces, "ideal [N]": np.full(len(surfaces), force)}
+    data = {"surface [-]": surfaces, f"{IDEAL} [N]": np.full(len(surfaces), force)}
     for heading, series in SERIES.items():
         data[f"{heading} [N]"] = guide_friction.contact_force(series, force, surfaces, inner, outer)
     forces = list(data)[1:]

@@ -143,7 +143,7 @@ def torque_lines(spec: Mapping[str, Any], number: int = 0) -> list[dict[str, Any
     """Return lines at the torque to hold and the peak torque."""
     needed = spec["slip_safety"] * spec["required_torque"]
     return [
-        *line(number, needed, "slip_safety required_torque"),
+        *line(number, needed, "slip_safety × required_torque"),
         *line(number, spec["peak_torque"], "peak_torque"),
     ]
 

@@ -78,8 +78,8 @@ class DesignProblem:
         ``columns``, ``log``, ``points`` (True marks every row), ``stairs`` (``post`` or ``pre``: a value holds up to
         the next row, or from the row before) and ``height`` (over an ordinary panel); ``marks`` (vertical lines:
         ``x``, ``label``); ``spans`` (``from``, ``to``, ``label``, ``shaded``: by default every second one); ``lines``
-        (horizontal lines: ``panel``, ``y``, ``label``); ``source``. Only the title is needed. Lines are drawn in row
-        order, and not-a-number breaks them. pandas is imported inside, as it is costly.
+        (horizontal lines: ``panel``, ``y``, ``label``); ``notes`` (lines of text below); ``source``. Only the title
+        is needed. Lines are drawn in row order, and not-a-number breaks them. pandas is imported inside: it is costly.
 
         Parameters
         ----------

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from synth.plugins import installed
 
 REPORTS = "clutchsynth.reports"
+PLOT = "front.svg"  # the picture of a front in its folder
 
 
 def report(name: str) -> Callable[..., Any] | None:
@@ -17,3 +18,32 @@ def report(name: str) -> Callable[..., Any] | None:
             found: Callable[..., Any] = point.load()
             return found
     return None
+
+
+def front_picture(
+    designs: Sequence[Any],
+    objectives: Mapping[str, str],
+    title: str,
+    proven: str,
+    interrupted: str,
+    families: Sequence[str] = (),
+) -> str:
+    """Return ranked designs as an SVG file; nothing where there is no front, or reports are not installed.
+
+    Parameters
+    ----------
+    designs : list of Design
+    objectives : mapping
+        Names and senses.
+    title : str
+        What was designed.
+    proven : str
+        How far that is proven.
+    interrupted : str
+        Why the search was stopped, where it was.
+    families : list of str
+        The family of each design, where there are several.
+    """
+    draw = report("plot_file")
+    stopped = f"stopped: {interrupted}; " if interrupted else ""
+    return "" if draw is None else str(draw(designs, objectives, title, stopped + proven, families))

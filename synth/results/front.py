@@ -14,7 +14,7 @@ from synth.pareto import Scale
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
-from synth.results.drawings import report
+from synth.results.drawings import front_picture, report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.notebook import NotebookFrame, notebook_html
@@ -248,6 +248,11 @@ class ParetoFront:
             self, height, about=about, problem=problem, catalogs=catalogs
         )
         return frame
+
+    def svg(self) -> str:
+        """Return the front drawn as an SVG file; nothing where it has no two designs or objectives."""
+        proven = self.certificate.sentence()
+        return front_picture(self.designs, self.frame.objectives, self.frame.title, proven, self.interrupted)
 
     def table(self) -> tuple[list[str], list[list[Any]]]:
         """Return headers with units, and one row per design; None where there is no value."""

@@ -10,6 +10,7 @@ import typer
 
 from synth.errors import InputError
 from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
+from synth.results.drawings import PLOT
 from synth.terminal.options import Folder, FrontFolder, Quiet, Seed, TimeLimit
 from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_written
 
@@ -103,7 +104,7 @@ def show_common() -> None:
         print(f"{name:{wide}}  {unit:{units}}  {', '.join(families)}")
 
 
-def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool) -> None:
+def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool, plot: bool) -> None:
     """Search the families of a spec, show their common front and save it where a folder is named; end as ``run``."""
     from synth.question.spec_keys import ASKED, SEARCHED
     from synth.studies.families.compare import compare
@@ -128,16 +129,18 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool)
     texts = {**found.files(), **found.family_files()}
     if not found.designs and not found.interrupted:
         texts["explanation.txt"] = comparison_explanation(found)
+    picture = found.svg() if plot else ""
+    if picture:
+        texts[PLOT] = picture
     target = None
     if folder is not None and place is not None:
         target = save_result(place if found.interrupted else folder, texts, FRONT, False)
         if place not in (target, folder):
             shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
     if not quiet:
-        print_comparison(found, output(), every)
+        print_comparison(found, output(), every, plot)
         folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]
-        files = [name for name in sorted(found.files()) if not name.startswith("design_")]
-        files += ["explanation.txt"] if "explanation.txt" in texts else []
+        files = [name for name in sorted(texts) if "/" not in name and not name.startswith("design_")]
         files += [f"design_{d.rank:02d}.yaml" for d in found.designs[:1]]
         if len(found.designs) > 1:
             files[-1] += f" .. design_{len(found.designs):02d}.yaml"

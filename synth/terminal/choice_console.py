@@ -11,6 +11,7 @@ from synth.results.drawings import report
 from synth.robust.rate import told_of
 from synth.studies.prices.price_list import NOTHING
 from synth.terminal.console import explanation_text, plain_table
+from synth.terminal.plots import show_plot
 from synth.units import format_quantity
 
 if TYPE_CHECKING:
@@ -87,10 +88,13 @@ def _shown(price: float | None) -> str:
     return "withheld" if price is None else f"{'+' if price > 0 else ''}{plain_number(price, 3)}"
 
 
-def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:
-    """Print the common front, what became of each family, and how far it is proven."""
+def print_comparison(found: Comparison, console: Console, every: bool = False, plot: bool = False) -> None:
+    """Print the common front, what became of each family, and how far it is proven; draw it where that is asked."""
     if found.designs:
         (report("comparison_table") or _plain_common_front)(found, console, every)
+        console.print()
+    if plot:
+        show_plot(found.designs, found.objectives, console, found.families)
         console.print()
     table = plain_table("family", "outcome", "why", wide=2)
     for outcome in found.outcomes:

@@ -20,7 +20,7 @@ from synth.operating_system import reader_has_gone
 from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
-from synth.results.drawings import report
+from synth.results.drawings import PLOT, report
 from synth.terminal import batch_commands as batches
 from synth.terminal import (
     choice_commands,
@@ -32,7 +32,20 @@ from synth.terminal import (
 )
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
-from synth.terminal.options import Family, Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
+from synth.terminal.options import (
+    Family,
+    Folder,
+    FrontFolder,
+    Gap,
+    Grid,
+    Objectives,
+    Plot,
+    Quiet,
+    Seed,
+    SpecFile,
+    TimeLimit,
+)
+from synth.terminal.plots import show_plot
 from synth.terminal.session import (
     BAD_INPUT,
     DOES_NOT_HOLD,
@@ -209,6 +222,7 @@ def run(
     more: Annotated[
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
     ] = None,
+    plot: Plot = False,
     quiet: Quiet = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Show what the search did as well.")] = False,
 ) -> None:
@@ -237,15 +251,18 @@ def run(
     if asked.compares:
         if more is not None:
             raise InputError("--more", str(more), "a spec of one family")
-        choice_commands.compare_families(asked, folder, every, quiet)
+        choice_commands.compare_families(asked, folder, every, quiet, plot)
         return
     front = _synthesize(asked, quiet, begun, more)
     files = front.files()
     if front.explanation is not None:
         files["explanation.txt"] = explanation_text(front)
+    picture = front.svg() if plot else ""
+    if picture:
+        files[PLOT] = picture
     target = None if folder is None else save_result(folder, files, FRONT, bool(front.interrupted))
     if not quiet:
-        _show(front, files, every, verbose)
+        _show(front, files, every, verbose, plot)
         tell_written(target, folder, _listed(files))
     if front.interrupted:
         raise typer.Exit(STOPPED)
@@ -456,7 +473,7 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
             raise typer.Exit(STOPPED) from None
 
 
-def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bool) -> None:
+def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bool, plot: bool) -> None:
     from synth.results.calculation import CALCULATION, Calculation
     from synth.terminal.console import output, print_outcome
 
@@ -465,6 +482,9 @@ def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bo
         told = json.loads(files[CALCULATION]) if CALCULATION in files else None
         calculation = None if told is None else Calculation.from_json(told)
         (report("table") or _plain_table)(front, console, every, calculation)
+    if plot:
+        console.print()
+        show_plot(front.designs, front.frame.objectives, console)
     explanation = files.get("explanation.txt", "")
     if "robust" in front.statistics and (front.designs or not explanation):
         from synth.terminal.robust_console import print_robust

@@ -36,4 +36,5 @@ Objectives = Annotated[
     list[str] | None,
     typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),
 ]
+Plot = Annotated[bool, typer.Option("--plot", help="Draw the front here, and with -o into front.svg as well.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]

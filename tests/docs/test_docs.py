@@ -33,7 +33,7 @@ from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
 from tests.docs import mechanics_page
-from tests.terminal.entry import in_process
+from tests.terminal.entry import at_once, in_process
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -301,6 +301,17 @@ def test_the_page_of_the_formulas_is_that_of_their_docstrings(monkeypatch: pytes
     told = found[0].function.__doc__
     monkeypatch.setattr(found[0].function, "__doc__", told.replace(found[0].equation, found[0].equation + " + 1"))
     assert mechanics_page.page() != page
+
+
+@pytest.mark.slow
+def test_the_picture_of_the_readme_is_what_the_program_draws(tmp_path: Path) -> None:
+    shown = text_of("docs/pictures/front.svg")
+    assert "(docs/pictures/front.svg)" in text_of("README.md").split("```")[0]
+    assert at_once("run", "examples/hoist_multi_plate.yaml", "--plot", "-q", "-o", tmp_path / "out").returncode == 0
+    drawn = (tmp_path / "out" / "front.svg").read_text()
+    assert NUMBER.sub("0", drawn) == NUMBER.sub("0", shown), "make picture draws it anew"
+    numbers = ([float(x) for x in re.findall(r"[0-9]+(?:\.[0-9]+)?", text)] for text in (drawn, shown))
+    assert all(a == pytest.approx(b, abs=1.0) for a, b in zip(*numbers, strict=True)), "make picture draws it anew"
 
 
 def test_every_table_is_in_the_readme_of_the_catalogues() -> None:

@@ -198,7 +198,7 @@ def test_a_study_of_words_names_them_and_joins_nothing() -> None:
     # A line per option, each with what is best of either rope.
     cost = [f.designs[0].values["cost"] if f.designs else np.nan for f in study.fronts]
     assert frame[panel["columns"]].to_numpy().T == pytest.approx(np.array([cost[::2], cost[1::2]]), nan_ok=True)
-    assert "over parts.rope" in frame.attrs["title"]
+    assert "cost over rope, by thick" in frame.attrs["title"]
 
 
 def test_a_frame_with_a_title_only_gets_a_panel_per_unit() -> None:
@@ -337,6 +337,20 @@ def test_whole_numbers_without_a_unit_are_counted() -> None:
     assert all(float(place).is_integer() for place in axis.get_xticks())
 
 
+def test_notes_stand_below_the_panels_each_beside_its_number() -> None:
+    long = (
+        "best mass: friction pair a \u2192 b, inner plate core 2.5 \u2192 core 2, outer plate core 2.5 \u2192 core 2, "
+    )
+    long += "friction surfaces 6 \u2192 10"
+    notes = [f"{k}\t{10 * k} mm, {long}" for k in range(8, 12)]
+    frame = sample(notes=notes)
+    assert_readable(frame)
+    texts = [text for text, _ in drawn(frame)[1]]
+    first = [text.split()[0] for text in texts if "best mass" in text]
+    assert first == ["11", "10", "9", "8"]  # from below
+    assert len({text.index("mm") for text in texts if "best mass" in text}) == 2  # 80 and 90, 100 and 110
+
+
 @pytest.mark.slow
 def test_a_study_says_what_it_does_not_draw() -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
@@ -352,7 +366,7 @@ def test_a_study_says_what_it_does_not_draw() -> None:
     )
     frames = study.curves()
     assert "5 of 9 lines drawn" in frames["whatif"].attrs["source"]
-    assert "no design: load = 300 kN" in frames["whatif"].attrs["source"]
+    assert "no design: load 300 kN" in frames["whatif"].attrs["source"]
     assert " fronts drawn" in frames["fronts"].attrs["source"]
     for frame in frames.values():
         assert_readable(frame)

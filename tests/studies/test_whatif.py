@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +15,7 @@ import synth
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront
 from synth.studies.whatif.study import Study
+from synth.studies.whatif.vary import Varied
 from tests.sample_problems.ropes import Ropes, best_ropes, ropes
 from tests.sample_problems.strut import RODS, Strut
 
@@ -408,6 +410,35 @@ def test_a_drawing_says_where_there_is_no_design() -> None:
     everywhere = study({"load": "20, 40 kN"}, GIVEN, catalogs=weak).curves()["whatif"].attrs
     assert everywhere["spans"] == []
     assert "grey" not in everywhere["source"]
+
+
+def test_break_points_are_numbered_and_told_in_words_below() -> None:
+    found = study({"load": "20, 40, 80 kN"}, GIVEN, breaks=True)
+    attrs = found.curves()["whatif"].attrs
+    assert attrs["title"].endswith(": cost over load")
+    assert [mark["label"] for mark in attrs["marks"]] == [str(n) for n in range(1, len(found.breaks) + 1)]
+    places = [b.value for b in sorted(found.breaks, key=lambda b: b.value)]
+    assert [mark["x"] for mark in attrs["marks"]] == places
+    for number, (note, value) in enumerate(zip(attrs["notes"], places, strict=True), start=1):
+        told, _, change = note.partition(": ")
+        assert told == f"{number}\t{value:.4g} kN, best cost"
+        assert re.fullmatch(r"(rope|strands) .+ → [^,]+(, strands \d+ → \d+)?", change)
+    assert "vertical lines: break points" in attrs["source"]
+
+
+def test_what_is_varied_is_drawn_in_words() -> None:
+    varied = {
+        Varied("limit", "outer_diameter", "<=", "mm", (1.0,)): "largest outer diameter allowed",
+        Varied("limit", "wear_life", ">=", "h", (1.0,)): "least wear life asked for",
+        Varied("part", "friction_pair", "", "", ("a_b",)): "friction pair",
+        Varied("weight", "mass", "", "-", (1.0,)): "weight of mass",
+        Varied("scatter", "friction", "", "", ("none",)): "scatter of friction",
+        Varied("requirement", "load_torque", "", "N*m", (1.0,)): "load torque",
+    }
+    assert [v.in_words for v in varied] == list(varied.values())
+    *_, torque = varied
+    assert torque.valued(500.0) == "500 N m"
+    assert next(v for v in varied if v.kind == "part").valued("a_b") == "a_b"
 
 
 def test_steps_that_were_not_reached_do_not_count_as_without_design() -> None:

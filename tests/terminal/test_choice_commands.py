@@ -168,7 +168,7 @@ points: 6
 def compared(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     folder = tmp_path_factory.mktemp("several")
     (folder / "several.yaml").write_text(SEVERAL)
-    done = at_once("run", folder / "several.yaml", "-o", folder / "out")
+    done = at_once("run", folder / "several.yaml", "--plot", "-o", folder / "out")
     assert done.returncode == 0, done.stderr
     return folder / "out", done.stdout
 
@@ -191,6 +191,9 @@ def test_several_families_make_one_front_with_a_line_each(compared: tuple[Path, 
         assert {row["family"] for row in csv.DictReader(file)} <= {"disc_clutch", "cone_clutch"}
     assert (folder / "cone_clutch" / "front.json").exists()
     assert at_once("check", folder / "design_01.yaml").returncode == 0
+    assert "A: disc clutch\n" in shown
+    assert "front.svg" in shown.splitlines()[-1]
+    assert "disc clutch" in (folder / "front.svg").read_text()
 
 
 @pytest.mark.slow

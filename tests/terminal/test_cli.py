@@ -6,15 +6,18 @@ import csv
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 import yaml
 
 import synth
+from synth.results import drawings
 from tests.terminal.entry import COMMAND, ROOT, at_once, clutchsynth
 
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
@@ -322,6 +325,43 @@ def test_run_quietly_says_nothing(tmp_path: Path) -> None:
     done = at_once("run", "small.yaml", "-o", "out", "--quiet", "--objective", "mass", folder=tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert json.loads((tmp_path / "out" / "front.json").read_text())["objectives"] == {"mass": "min"}
+
+
+def test_the_front_is_drawn_here_and_with_a_folder_as_a_file(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    done = at_once("run", "small.yaml", "--plot", "-o", "out", folder=tmp_path)
+    assert done.returncode == 0
+    assert re.search("\n\nmass|\n\nactuation force", done.stdout)
+    assert re.search("[\u2801-\u28ff]", done.stdout)
+    assert "front.svg" in done.stdout.splitlines()[-1]
+    drawn = ElementTree.parse(tmp_path / "out" / "front.svg").getroot()
+    said = ["".join(text.itertext()) for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    assert said[0].startswith("Multi-plate clutch: ")
+    assert {"#1", "#2", "#3"} <= set(said)
+    assert " ".join(said).count("proven") == 1
+    # It goes with the front that it shows, whether another one is drawn or not.
+    one = at_once("run", "small.yaml", "--plot", "--objective", "mass", "-o", "out", folder=tmp_path)
+    assert "no plot: mass is the only objective, and a front has two or more" in one.stdout
+    assert not (tmp_path / "out" / "front.svg").exists()
+    assert "front.svg" not in one.stdout
+
+
+@pytest.mark.slow
+def test_a_terminal_of_plain_characters_gets_a_plain_plot(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    done = clutchsynth("run", "small.yaml", "--plot", folder=tmp_path, PYTHONIOENCODING="ascii")
+    assert re.search("^ *[0-9. ]+ [+] *o", done.stdout, re.MULTILINE)
+
+
+def test_without_reports_nothing_is_drawn_and_a_sentence_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drawings, "REPORTS", "clutchsynth.reports_of_nobody")
+    (tmp_path / "small.yaml").write_text(SMALL)
+    done = at_once("run", "small.yaml", "--plot", "-o", "out", folder=tmp_path)
+    assert done.returncode == 0
+    assert "no plot: reports are not installed" in done.stdout
+    assert not (tmp_path / "out" / "front.svg").exists()
 
 
 def test_nothing_feasible_is_explained(tmp_path: Path) -> None:

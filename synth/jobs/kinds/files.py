@@ -20,7 +20,7 @@ from synth.jobs.kinds.contract import NOTHING, Record, Sources
 from synth.jobs.kinds.report import NEEDED, ReportAsked, reported
 from synth.jobs.kinds.verify import unpack
 from synth.results import ParetoFront
-from synth.results.drawings import report
+from synth.results.drawings import PLOT, report
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import load_front
 
@@ -28,7 +28,6 @@ __all__ = ["ExtraNeededError", "UnknownFileError", "files_of", "files_to_have", 
 
 BUNDLE = "bundle.zip"
 WORKBOOK = "designs.xlsx"
-PLOT = "front.svg"
 REPORTS = ("report.html", "report.pdf")
 EXPLORER, EXPLORED = "explorer.html", "explorer.json"  # the page, and what it shows for a page of others
 SHEETS = ("_sheet.html", "_sheet.pdf", "_sheet.json", "_live.xlsx")
@@ -114,7 +113,10 @@ def render(
     if name in derived:
         return Record.of(name, derived[name])
     if name == PLOT:
-        return Record.of(name, _drawn(front))
+        drawn = front.svg()
+        if not drawn:
+            raise UnknownFileError(PLOT)
+        return Record.of(name, drawn)
     sheet = re.fullmatch(r"design_(\d+)(_sheet|_live)\.[a-z]+", name)
     if sheet is not None:
         given["design"] = int(sheet.group(1))
@@ -141,19 +143,11 @@ def _explored(records: Mapping[str, bytes]) -> str:
         return json.dumps(record, ensure_ascii=False, allow_nan=False)
 
 
-def _drawn(front: ParetoFront) -> str:
-    """Return the drawing of a front, as notebooks show it."""
-    draw = report("plot")
-    if draw is None:
-        raise UnknownFileError(PLOT)
-    return str(draw(front, (), False))
-
-
 def _front_files(front: ParetoFront) -> list[str]:
     """Return the names of the files of a front beside its records."""
     derived = _derived(front)
     stems = [name.removesuffix(".yaml") for name in derived if name.startswith("design_")]
-    drawn = [PLOT] if front.designs and report("plot") is not None else []
+    drawn = [PLOT] if front.svg() else []
     drawn += _explorer_files("explorer_record")
     return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
 

@@ -13,6 +13,7 @@ from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
 from synth.plain_text import percent
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
+from synth.results.drawings import front_picture
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
 from synth.units import format_quantity
@@ -140,6 +141,11 @@ class Comparison:
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
         return save_result(folder, {**self.files(), **self.family_files()}, FRONT, bool(self.interrupted))
+
+    def svg(self) -> str:
+        """Return the common front drawn as an SVG file; nothing where it has no two designs or objectives."""
+        proven = self.sentence()
+        return front_picture(self.designs, self.objectives, "Common front", proven, self.interrupted, self.families)
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         known = [

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from synth.plain_text import plain_number
 from synth.results import Design
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep, best_design
-from synth.studies.whatif.vary import Value
+from synth.studies.whatif.vary import Value, Varied
 from synth.study_limits import STUDY_TEXTS
 from synth.units import finite_from_si, header
 
@@ -37,20 +38,24 @@ def _objective_curves(study: StudyAnswers) -> pd.DataFrame:
     along = [float(places_of[s.values[k]]) for s in study.steps]
     groups = list(dict.fromkeys(_without(s.values, k) for s in _with_designs(study))) or [()]
     drawn = _spread(groups, STUDY_TEXTS.lines)
-    x = study.headers()[k] if numeric else header(varied.label, "-")
+    x = header(varied.in_words, varied.unit if numeric else "-")
     frame, panels = _panels(study, k, x, along, drawn)
     ticks = [] if numeric else [{"x": n, "label": varied.shown(v)} for n, v in enumerate(varied.values, start=1)]
-    marks, spans = _marks(study), _without_design(study, along)
+    marks, notes = _marks(study)
+    spans = _without_design(study, along)
     legend = _left_out(len(drawn), len(groups), "lines") + _nowhere(study, k, groups)
-    legend += ["vertical lines: break points"] if marks else []
+    legend += ["lines: the best design of each step"] if len(study.varied) > 1 else []
+    listed = "" if notes else ", each told in breaks.csv"
+    legend += [f"vertical lines: break points, where the best parts or counts change{listed}"] if marks else []
     legend += [f"grey: {NO_DESIGN}"] if spans else []
     frame.attrs.update(
-        title=f"{_title(study)} over {varied.label.replace('_', ' ')}",
+        title=f"{_title(study, study.objectives())} over {varied.in_words}{_beside(study, k)}",
         x=x,
         panels=panels,
         ticks=_spread(ticks, STUDY_TEXTS.ticks),
         marks=marks,
         spans=spans,
+        notes=notes,
         source=_footer(study, *legend),
     )
     return frame
@@ -84,8 +89,7 @@ def _panels(
             at = {place: s for place, s in zip(along, study.steps, strict=True) if _without(s.values, k) == group}
             lines = _lines(single, [at.get(p) for p in places], name)
             for label, values in lines.items():
-                words = "" if single else f"{_words(study, k, group)}: "
-                column = header(f"{words}{label} {name}", unit)
+                column = header(f"{label if single else _words(study, k, group)} {name}", unit)
                 data[column] = [finite_from_si(v, unit, math.nan) for v in values]
                 columns.append(column)
         apart = study.along is None
@@ -93,12 +97,41 @@ def _panels(
     return pd.DataFrame(data), panels
 
 
-def _marks(study: StudyAnswers) -> list[dict[str, Any]]:
-    """Return where break points are drawn, in words where there is room."""
-    breaks = study.breaks
-    if study.along is not None and len(breaks) > STUDY_TEXTS.labels:
-        return [{"x": b.value} for b in breaks]
-    return [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in breaks]
+def _marks(study: StudyAnswers) -> tuple[list[dict[str, Any]], list[str]]:
+    """Return where break points are drawn, and what the number of each stands for, where there is room for that."""
+    groups: list[list[Break]] = []
+    for b in sorted(study.breaks, key=lambda b: b.value):
+        # The same happens to several objectives at one place, each of which is located by itself.
+        like = next((group for group in groups if _same(group[0], b)), None)
+        if like is None:
+            groups.append([b])
+        else:
+            like.append(b)
+    if study.along is None or len(groups) > STUDY_TEXTS.labels:
+        return [{"x": group[0].value} for group in groups], []
+    marks = [{"x": group[0].value, "label": str(n)} for n, group in enumerate(groups, start=1)]
+    return marks, [f"{n}\t{_note(study, study.along, group)}" for n, group in enumerate(groups, start=1)]
+
+
+def _same(a: Break, b: Break) -> bool:
+    return (a.others, a.change) == (b.others, b.change) and a.low <= b.high and b.low <= a.high
+
+
+def _note(study: StudyAnswers, k: int, group: Sequence[Break]) -> str:
+    """Return what happens at a break point: where, for what, and from which parts and counts to which."""
+    first = group[0]
+    place = f"{plain_number(first.value)} {study.varied[k].unit.replace('*', ' ')}".removesuffix(" -").rstrip()
+    beside = f" ({_words(study, k, first.others)})" if first.others else ""
+    if first.before is None or first.after is None:
+        return f"{place}{beside}: {first.change}"
+    old, new = first.before.named, first.after.named
+    changed = [
+        f"{n.replace('_', ' ')} {old.get(n, '-')} \u2192 {new.get(n, '-')}"
+        for n in {**old, **new}
+        if old.get(n) != new.get(n)
+    ]
+    best = _and([b.objective for b in group], list(study.objectives()).index)
+    return f"{place}{beside}, best {best}: {', '.join(changed)}"
 
 
 def _without_design(study: StudyAnswers, along: Sequence[float]) -> list[dict[str, Any]]:
@@ -130,14 +163,21 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
     import pandas as pd
 
     objectives = list(study.objectives().items())
-    steps = [s for s in _with_designs(study) if s.front is not None and len(s.front.designs) > 1]
-    if len(objectives) < 2 or not steps:
+    steps = _with_designs(study)
+    if len(objectives) < 2 or not any(len(s.front.designs) > 1 for s in steps if s.front is not None):
         return None
     (first, unit), (second, other) = objectives[:2]
     x = header(first, unit)
     data: dict[str, list[float]] = {x: []}
     shown = _spread(steps, STUDY_TEXTS.lines)
-    labels = [header(", ".join(v.shown(w) for v, w in zip(study.varied, s.values, strict=True)), other) for s in shown]
+    single = len(study.varied) == 1
+    labels = [
+        header(
+            ", ".join(v.valued(w) if single else _said(v, w) for v, w in zip(study.varied, s.values, strict=True)),
+            other,
+        )
+        for s in shown
+    ]
     data |= {label: [] for label in labels}
     for step, label in zip(shown, labels, strict=True):
         assert step.front is not None
@@ -155,9 +195,9 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
     assert steps[0].front is not None
     stairs = "post" if steps[0].front.frame.objectives[first] == "min" else "pre"
     panel = {"label": header(second, other), "columns": labels, "points": True, "stairs": stairs}
-    names = " and ".join(v.label.replace("_", " ") for v in study.varied)
+    names = _and([v.in_words for v in study.varied])
     frame.attrs.update(
-        title=f"{_title(study)}: the front for {names}",
+        title=f"{_title(study, [f'fronts of {first}', second])} by {names}",
         x=x,
         panels=[panel],
         source=_footer(study, *_left_out(len(shown), len(steps), "fronts"), "lines: what the designs reach at least"),
@@ -184,11 +224,27 @@ def _with_designs(study: StudyAnswers) -> list[StudyStep]:
 
 def _words(study: StudyAnswers, k: int, group: Sequence[Value]) -> str:
     others = [x for j, x in enumerate(study.varied) if j != k]
-    return ", ".join(x.stated(v) for x, v in zip(others, group, strict=True)).replace("_", " ")
+    return ", ".join(_said(x, v) for x, v in zip(others, group, strict=True))
 
 
-def _title(study: StudyAnswers) -> str:
-    return study.fronts[0].frame.title if study.fronts else "What if"
+def _said(varied: Varied, value: Value) -> str:
+    """Return a value as it is told beside others: parts, options and ranges by themselves, numbers with their names."""
+    alone = not isinstance(value, float)
+    return varied.valued(value) if alone else f"{varied.in_words} {varied.valued(value)}"
+
+
+def _beside(study: StudyAnswers, k: int) -> str:
+    others = [x.in_words for j, x in enumerate(study.varied) if j != k]
+    return f", by {_and(others)}" if others else ""
+
+
+def _and(names: Iterable[str], key: Callable[[str], int] | None = None) -> str:
+    *first, last = [name.replace("_", " ") for name in (names if key is None else sorted(names, key=key))]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _title(study: StudyAnswers, what: Iterable[str]) -> str:
+    return f"{study.fronts[0].frame.title}: {_and(what)}" if study.fronts else "What if"
 
 
 def _footer(study: StudyAnswers, *legend: str) -> str:
@@ -210,7 +266,7 @@ def _lines(single: bool, steps: Sequence[StudyStep | None], name: str) -> dict[s
         for v, b in zip(values, best, strict=True)
     ]
     leading = [math.nan if f is None else f.designs[0].values[name] for f in fronts]
-    return {"best": best, "leading design": leading, "other end of the front": worst}
+    return {"best": best, "leading design #1": leading, "other end of the front": worst}
 
 
 def _edge(places: Sequence[float], k: int, way: int, ends: Sequence[float]) -> float:
@@ -220,14 +276,6 @@ def _edge(places: Sequence[float], k: int, way: int, ends: Sequence[float]) -> f
         return place
     between = [x for x in ends if 0 <= way * (x - place) <= way * (places[beyond] - place)]
     return min(between, key=lambda x: abs(x - place), default=0.5 * (place + places[beyond]))
-
-
-def _brief(b: Break) -> str:
-    if b.before is None or b.after is None:
-        return "feasible" if b.before is None else "infeasible"
-    old, new = b.before.named, b.after.named
-    changed = [new[n] for n in new if old.get(n) != new[n]]
-    return ", ".join(changed[:2]) + (" ..." if len(changed) > 2 else "")
 
 
 def _value(design: Design | None, name: str) -> float:

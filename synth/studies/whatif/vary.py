@@ -24,6 +24,7 @@ COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one c
 TIGHT = re.compile(r"(\d+),(?=(\d+))")
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
+SAID = {"<=": "largest {} allowed", ">=": "least {} asked for", "==": "{} asked for"}
 PLACES = {"weight": "weights.", "part": "parts.", "option": "options.", "scatter": "robust."}
 
 Value = float | str | tuple[str, ...]
@@ -55,6 +56,20 @@ class Varied:
     def label(self) -> str:
         """Return what a column of its values is called, without the unit."""
         return f"{PLACES.get(self.kind, '')}{self.name}{self.sign and ' ' + self.sign}"
+
+    @property
+    def in_words(self) -> str:
+        """Return what it is for people: ``largest mass allowed``, ``friction pair``."""
+        name = self.name.replace("_", " ")
+        if self.kind == "weight":
+            return f"weight of {name}"
+        if self.kind == "scatter":
+            return f"scatter of {name}"
+        return SAID[self.sign].format(name) if self.sign else name
+
+    def valued(self, value: Value) -> str:
+        """Return a value as people write it: designations as they are, units without signs."""
+        return self.shown(value).replace("*", " ") if isinstance(value, float) else self.shown(value)
 
     def asked(self, value: Value) -> Any:
         """Return a value as it stands in a spec."""

@@ -305,9 +305,9 @@ def test_curves_without_a_design_cross_zero_where_the_cones_lock():
     frame = curves["force_ratio_over_angle"]
     angle = frame["half angle [deg]"]
     for mark, mu in zip(frame.attrs["marks"], (0.1, 0.2, 0.3, 0.4, 0.5), strict=True):
-        releasing = frame[f"releasing, friction {mu:g} [-]"]
+        releasing = frame[f"releasing force dm/(2M) friction {mu:g} [-]"]
         assert np.interp(mark["x"], angle, releasing) == pytest.approx(0, abs=1e-3)
-        engaging = frame[f"engaging, friction {mu:g} [-]"]
+        engaging = frame[f"engaging force dm/(2M) friction {mu:g} [-]"]
         half_sum = (engaging + releasing) / 2
         assert half_sum.to_numpy() == pytest.approx(np.sin(np.radians(angle)).to_numpy() / mu)
     shown = [name for panel in frame.attrs["panels"] for name in panel["columns"]]

@@ -416,7 +416,7 @@ def test_everything_has_text_and_source():
 def test_the_plate_counts_that_a_curve_marks_are_where_plates_stop_to_pay():
     design = synth.evaluate(synth.load("multi_plate_clutch", practice="off"), BASE, values=POINT, parts=PARTS)
     attrs = synth.curves(synth.load("multi_plate_clutch", practice="off"), BASE, design)["torque_over_plates"].attrs
-    at = {mark["label"].split()[0]: mark["x"] for mark in attrs["marks"]}
+    at = {mark["label"].split()[-1]: mark["x"] for mark in attrs["marks"]}
     s, k = design.values["guide_number"], math.log1p(design.values["guide_number"])
     assert (1 - math.exp(-k * at["(16)"])) / (s * at["(16)"]) == pytest.approx(0.5, rel=1e-9)
     assert at["(14)"] / at["(15)"] == pytest.approx(1.5936243 / math.sqrt(2), rel=1e-7)

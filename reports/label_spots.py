@@ -1,0 +1,98 @@
+"""Where the names of points find room in a drawing: beside their point, on no other one and on no other name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle, in the units of the drawing; downwards is more."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def meets(self, other: Box) -> bool:
+        """Tell whether two boxes have more in common than an edge."""
+        across = self.left < other.right and other.left < self.right
+        return across and self.top < other.bottom and other.top < self.bottom
+
+    def holds(self, other: Box) -> bool:
+        """Tell whether another box lies within this one."""
+        across = self.left <= other.left and other.right <= self.right
+        return across and self.top <= other.top and other.bottom <= self.bottom
+
+
+def label_spots(
+    points: Sequence[Box],
+    sizes: Sequence[tuple[float, float] | None],
+    field: Box,
+    lines: Sequence[Box] = (),
+    gap: float = 1.0,
+    whole: bool = False,
+) -> list[Box | None]:
+    """Return where the name of each point stands; None where there is no room for it.
+
+    Parameters
+    ----------
+    points : list of Box
+        What the points cover, the ones first whose names matter most.
+    sizes : list of tuple
+        Width and height of each name; None for a point without.
+    field : Box
+        Names stay within it.
+    lines : list of Box
+        What names cover only where there is no other room.
+    gap : float
+        Between a point and a name beside it.
+    whole : bool
+        Whether places are whole numbers, as the cells of a terminal.
+
+    Examples
+    --------
+    >>> field = Box(0, 0, 10, 3)
+    >>> label_spots([Box(2, 1, 3, 2), Box(4, 1, 5, 2)], [(2, 1), (2, 1)], field, whole=True)
+    [Box(left=4, top=0, right=6, bottom=1), Box(left=6, top=1, right=8, bottom=2)]
+    """
+    found: list[Box | None] = []
+    taken = list(points)
+    for point, size in zip(points, sizes, strict=True):
+        free = (
+            []
+            if size is None
+            else [
+                box
+                for box in _beside(point, size, gap, whole)
+                if field.holds(box) and not any(box.meets(other) for other in taken)
+            ]
+        )
+        clear = [box for box in free if not any(box.meets(line) for line in lines)]
+        spot = next(iter([*clear, *free]), None)
+        found.append(spot)
+        if spot is not None:
+            taken.append(spot)
+    return found
+
+
+def _beside(point: Box, size: tuple[float, float], gap: float, whole: bool) -> Iterator[Box]:
+    """Yield the places beside a point, those first that are read as its name at once."""
+    width, height = size
+    right, left = point.right + gap, point.left - gap - width
+    above, level, below = point.top - height, (point.top + point.bottom - height) / 2, point.bottom
+    middle = (point.left + point.right - width) / 2
+    if whole:
+        level, middle = level // 1, middle // 1
+    for x, y in (
+        (right, above),
+        (right, level),
+        (left, below),
+        (left, level),
+        (left, above),
+        (right, below),
+        (middle, above),
+        (middle, below),
+    ):
+        yield Box(x, y, x + width, y + height)
