@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Progress = Callable[[Mapping[str, Any]], None]
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
 
-RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
+RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx (FILE.xlsx#SHEET).", metavar="ROWS.csv")]
 Workers = Annotated[int | None, typer.Option(help="Processes of this machine; by default one per core.")]
 Scheduler = Annotated[
     str | None,

@@ -11,7 +11,7 @@ import typer
 from synth.errors import InputError
 from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
 from synth.terminal.options import Folder, FrontFolder, Quiet, Seed, TimeLimit
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_written
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_readings, tell_written
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -114,12 +114,15 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool)
     # Finished families are kept there until all are.
     place = None if folder is None else place_for_stopped(folder, FRONT)
     with blamed_on(asked.file), progress_display(quiet) as progress:
+        tables = Catalogs(asked.catalogs, base=asked.folder)
+        if not quiet:
+            tell_readings(tables)
         apart = ("family", "options", "requirements", "catalogs")
         stated = asked.stated([key for key in (*ASKED, *SEARCHED) if key not in apart])
         found = compare(
             asked.family if isinstance(asked.family, str) else list(asked.family),
             asked.requirements,
-            catalogs=Catalogs(asked.catalogs, base=asked.folder),
+            catalogs=tables,
             options=asked.options,
             progress=progress,
             finished=None if place is None else lambda label, front: front.save(place / label),

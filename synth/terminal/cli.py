@@ -48,6 +48,7 @@ from synth.terminal.session import (
     one_command,
     pair,
     tell,
+    tell_readings,
     tell_written,
 )
 
@@ -275,6 +276,8 @@ def explain(
         claim_output(folder, EXPLANATION)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
+        if not quiet:
+            tell_readings(request.catalogs)
         found = explanation_of(request, asked.settings(), progress, physics)
     if not quiet:
         print_explanation(found, request.problem.title, output())
@@ -308,6 +311,7 @@ def check(
         claim_output(folder)
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
+        tell_readings(catalogs)
         details = described(problem, catalogs)
     found = None
     if at:
@@ -350,6 +354,7 @@ def simulate(
             raise InputError("--set", name, "each setting once")
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
+    tell_readings(catalogs)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
     files = frame_files(frames)
@@ -386,6 +391,7 @@ def curves(
             must_be_a_design(asked)
             problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
+        tell_readings(catalogs)
     files = frame_files(frames)
     save_files(folder, files)
     for frame in frames.values():
@@ -446,6 +452,8 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
     given = None if more is None else load_front(more)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
+        if not quiet:
+            tell_readings(request.catalogs)
         try:
             settings = asked.settings().since(begun)
             if given is not None:

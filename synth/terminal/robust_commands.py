@@ -10,7 +10,7 @@ import typer
 from synth.errors import InputError
 from synth.output_folder import RATING
 from synth.terminal.options import Folder, Quiet, TimeLimit
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, pair, tell_written
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, pair, tell_readings, tell_written
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
@@ -57,7 +57,7 @@ def rate(
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     flags = {"samples": samples, "confidence": confidence, "seed": seed}
     told = {name: value for name, value in flags.items() if value is not None}
-    designs, problem, catalogs, known = _designs(source)
+    designs, problem, catalogs, known = _designs(source, quiet)
     block = dict(pairs) if pairs else {**known}
     if not block:
         right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
@@ -81,7 +81,7 @@ def rate(
         raise typer.Exit(INFEASIBLE)
 
 
-def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
+def _designs(source: Path, quiet: bool) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
     """Return the designs of a folder or of a DESIGN.yaml, their problem and tables, and what scatters by their own."""
     if source.suffix.lower() not in FILES or source.is_dir():
         from synth.results.loading import load_front
@@ -95,4 +95,6 @@ def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, An
     must_be_a_design(asked)
     with blamed_on(asked.file):
         problem, catalogs, design = given_design(asked)
+    if not quiet:
+        tell_readings(catalogs)
     return design, problem, catalogs, dict(asked.robust)

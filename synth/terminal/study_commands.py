@@ -11,7 +11,7 @@ from synth.analysis.design_spec import must_be_a_question, must_be_one_family
 from synth.errors import InputError
 from synth.output_folder import STUDY
 from synth.terminal.options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_written
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_readings, tell_written
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -94,6 +94,8 @@ def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool
         wanted[name] = values
     with blamed_on(asked.file):
         request, settings = asked.request(), asked.settings(points=POINTS)
+        if not quiet:
+            tell_readings(request.catalogs)
         with progress_display(quiet) as progress:
             try:
                 return study_of(request, settings, wanted, progress, breaks, folder)
