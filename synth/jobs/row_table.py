@@ -99,7 +99,8 @@ def read_table(table: Any) -> RowTable:
     Parameters
     ----------
     table : path, DataFrame or sequence of mappings
-        A CSV file, an Excel file (``file.xlsx#Sheet``; without that its first sheet), a DataFrame, or one mapping per row.
+        A CSV file, an Excel file (``file.xlsx#Sheet``; without that its first sheet), a DataFrame, or one mapping per
+        row.
 
     Raises
     ------

@@ -19,6 +19,7 @@ import numpy as np
 from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
 from synth.bounds.boxes import Boxes
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.deadline import Stopped, until
 from synth.errors import InputError, at, whole_number
 from synth.feasibility import Status
@@ -112,12 +113,12 @@ class NearEquals:
             found[f"design_{number:02d}.yaml"] = design.yaml()
         return found
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, self.files(), NEAR_EQUALS, bool(self.interrupted))
+        return save_result(folder, csv.files(self.files()), NEAR_EQUALS, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         objectives = list(self.reference.frame.objectives)

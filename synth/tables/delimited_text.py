@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from synth.errors import InputError
-from synth.tables.number_columns import NumberColumn, WrittenNumbers, written_numbers
+from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
 
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
@@ -48,7 +48,7 @@ class DelimitedText:
     encoding: str
     delimiter: str
     first: int = 1
-    numbers: WrittenNumbers = WrittenNumbers()
+    numbers: WrittenNumbers = PLAIN_NUMBERS
     stated: str = ""
 
     def lines(self) -> Iterator[tuple[int, list[str]]]:

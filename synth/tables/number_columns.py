@@ -94,10 +94,12 @@ class WrittenNumbers:
 
     def read(self, cells: list[str]) -> list[str]:
         """Return the cells of a row, numbers with decimal points."""
-        for columns, plain in ((self.commas, with_point), (self.more, without_blanks)):
-            for k in columns:
-                if k < len(cells):
-                    cells[k] = plain(cells[k])
+        for k in self.commas:
+            if k < len(cells):
+                cells[k] = with_point(cells[k])
+        for k in (*self.commas, *self.more):
+            if k < len(cells):
+                cells[k] = without_blanks(cells[k])
         return cells
 
     def sentence(self) -> str:
@@ -105,6 +107,9 @@ class WrittenNumbers:
         rest = len(self.titles) - TITLES
         more = f" and {rest} more" if rest > 0 else ""
         return f"decimal commas in {', '.join(self.titles[:TITLES])}{more}" if self.titles else ""
+
+
+PLAIN_NUMBERS = WrittenNumbers()
 
 
 def written_numbers(header: Sequence[str], columns: Sequence[NumberColumn], name: str) -> WrittenNumbers:
@@ -125,6 +130,4 @@ def written_numbers(header: Sequence[str], columns: Sequence[NumberColumn], name
             )
             raise InputError(f"{name}, line {line}, column {title}", number, right, ("rows", line, title))
     more = (k for k, (c, title) in enumerate(zip(columns, header, strict=True)) if c.has_more(title))
-    return WrittenNumbers(
-        commas, tuple(header[k].strip() for k in commas), tuple(k for k in more if k not in commas)
-    )
+    return WrittenNumbers(commas, tuple(header[k].strip() for k in commas), tuple(k for k in more if k not in commas))

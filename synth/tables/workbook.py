@@ -20,7 +20,7 @@ from synth.errors import InputError
 from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.plain_text import as_meant
-from synth.tables.number_columns import NumberColumn, WrittenNumbers, written_numbers
+from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
 
 EXCEL = (".xlsx", ".xlsm")
 SHEET = re.compile(r"(.*\.xls[xm])#(.+)", re.IGNORECASE)
@@ -94,7 +94,7 @@ class Sheet:
     title: str
     position: int
     several: bool
-    numbers: WrittenNumbers = WrittenNumbers()
+    numbers: WrittenNumbers = PLAIN_NUMBERS
 
     def lines(self, text: Callable[[Any], str] = cell_text) -> Iterator[tuple[int, list[str]]]:
         """Return number and cells of every line, numbers with decimal points; ``text``: what a value is as text.
@@ -148,14 +148,17 @@ class Sheet:
         """Refuse formulas whose values are not in the file: a program that computes nothing has written it."""
         if not _has_formulas(self.raw):
             return
-        with _book(self.raw, self.name, self.named_by) as values, _book(self.raw, self.name, self.named_by, True) as formulas:
+        with (
+            _book(self.raw, self.name, self.named_by) as values,
+            _book(self.raw, self.name, self.named_by, True) as formulas,
+        ):
             sheets = (book.worksheets[self.position].iter_rows() for book in (values, formulas))
             pairs = zip(*(_whole(rows, self.name, self.named_by) for rows in sheets), strict=False)
             for number, (cells, written) in enumerate(pairs, start=1):
                 for cell, formula in zip(cells, written, strict=False):
                     if cell.value is None and formula.value is not None and cell.data_type != TEXT_RESULT:
                         where = f"{self.name}, sheet {self.title}, cell {formula.coordinate}"
-                        right = "its value in the file as well: open it in a table program, have it computed, and save it"
+                        right = "its value as well: open the file in a table program and save it there"
                         raise InputError(where, "a formula", right, (self.named_by, number))
 
 

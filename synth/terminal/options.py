@@ -36,4 +36,8 @@ Objectives = Annotated[
     list[str] | None,
     typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),
 ]
+Csv = Annotated[
+    str,
+    typer.Option("--csv", help="How CSV is written: en, or de (semicolons, decimal commas).", metavar="en|de"),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]
