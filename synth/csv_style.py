@@ -25,6 +25,7 @@ NUMBER = re.compile(
     r"(?P<after>(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?)"
 )
 DOUBTFUL = re.compile(r"[1-9]\d{0,2},\d{3}")  # 1.234 or 1234
+STRETCHED = re.compile(r"(?<![\d.])([1-9]\d{0,2}\.\d{3})0(?!\d)")  # what with_comma has put a zero to
 DECIMAL = re.compile(r"\d+\.\d+")
 
 
@@ -124,6 +125,23 @@ class CsvStyle:
 ENGLISH = CsvStyle()
 GERMAN = CsvStyle(";", commas=True, mark="\ufeff")
 STYLES = {"en": ENGLISH, "de": GERMAN}
+
+
+def unstyled(text: str) -> str:
+    r"""Return the text of a table as it was before a style was given to it.
+
+    Examples
+    --------
+    >>> unstyled(GERMAN.text("mass [kg],part\n1.234,core 2\n"))
+    'mass [kg],part\n1.234,core 2\n'
+    """
+    if not text.startswith(GERMAN.mark):
+        return text
+    rows = csv.reader(io.StringIO(text.removeprefix(GERMAN.mark), newline=""), delimiter=GERMAN.delimiter)
+    buffer = io.StringIO()
+    plain = ([STRETCHED.sub(r"\1", with_point(cell)) if "," in cell else cell for cell in row] for row in rows)
+    csv.writer(buffer, lineterminator="\n").writerows(plain)
+    return buffer.getvalue()
 
 
 def csv_style(name: str, field: str = "csv") -> CsvStyle:

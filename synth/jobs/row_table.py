@@ -13,7 +13,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.files import check_file, read_bytes
 from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import as_meant
+from synth.plain_text import as_list, as_meant
 from synth.tables.delimited_text import DelimitedText, delimited_text
 from synth.tables.workbook import Sheet, cell_text, is_workbook, sheet_of, split_sheet
 
@@ -151,7 +151,7 @@ def _several(name: str, value: Any) -> list[str]:
         return [text_of(value)]
     texts = [text_of(entry) for entry in value]
     compared = any(text.lstrip()[:1] in ("<", ">", "=") or ".." in text for text in texts)
-    return texts if compared else [", ".join(texts)]
+    return texts if compared else [as_list(texts)]
 
 
 def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:

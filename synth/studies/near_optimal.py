@@ -18,6 +18,7 @@ import numpy as np
 
 from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
+from synth.analysis.written_digits import written_digits
 from synth.bounds.boxes import Boxes
 from synth.csv_style import ENGLISH, CsvStyle
 from synth.deadline import Stopped, until
@@ -498,7 +499,10 @@ class _Enumeration:
     def _told(self, candidates: Sequence[Candidate], found: int, complete: bool, interrupted: str) -> NearEquals:
         form = self.form
         points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
-        result = form.points.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
+        numbers = np.array([c.combination for c in candidates], dtype=np.int64)
+        result = form.points.evaluate(points, numbers)
+        objectives = list(self.reference.frame.objectives)
+        digits = written_digits(self.instance, points, self.instance.data(numbers), result, objectives)
         designs, changes, differences = [], [], []
         for k, c in enumerate(candidates):
             parts, _, choices = self.instance.combinations.describe(c.combination)
@@ -513,6 +517,7 @@ class _Enumeration:
                 choices,
                 status=Status.FEASIBLE,
                 rank=k + 1,
+                digits=digits[k],
             )
             designs.append(design)
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})

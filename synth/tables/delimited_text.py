@@ -39,8 +39,8 @@ class DelimitedText:
         Number of the first line of the text in the file.
     numbers : WrittenNumbers
         Which columns have decimal commas.
-    stated : str
-        The line that names the delimiter, where there is one.
+    stated : bool
+        Whether a line names the delimiter.
     """
 
     name: str
@@ -49,7 +49,7 @@ class DelimitedText:
     delimiter: str
     first: int = 1
     numbers: WrittenNumbers = PLAIN_NUMBERS
-    stated: str = ""
+    stated: bool = False
 
     def lines(self) -> Iterator[tuple[int, list[str]]]:
         """Return number in the file and cells of every line, numbers with decimal points.
@@ -65,12 +65,11 @@ class DelimitedText:
     def sentence(self) -> str:
         """Return what was recognised, in a sentence; nothing where it is written as is expected."""
         told = []
-        if self.delimiter != ",":
-            told.append(f"{DELIMITERS[self.delimiter]} between the columns")
+        if self.delimiter != "," or self.stated:
+            says = " as its first line says" if self.stated else ""
+            told.append(f"{DELIMITERS[self.delimiter]} between the columns{says}")
         if self.encoding in (WESTERN, "utf-16"):
             told.append("text in Windows-1252" if self.encoding == WESTERN else "text in UTF-16")
-        if self.stated:
-            told.append(f"its first line {self.stated}")
         if self.numbers.titles:
             told.append(self.numbers.sentence())
         return f"{self.name}: {', '.join(told)}" if told else ""
@@ -109,8 +108,7 @@ def delimited_text(raw: bytes, name: str) -> DelimitedText:
         if stated[2] not in DELIMITERS:
             raise InputError(f"{name}, line 1", stated[0].strip(), "sep=; or sep=, or a tab")
         text, first, delimiter = text[stated.end() :], 2, stated[2]
-    line = "" if stated is None else f"sep={delimiter}".replace("\t", "tab")
-    found = DelimitedText(name, text, encoding, delimiter or _delimiter(text), first, stated=line)
+    found = DelimitedText(name, text, encoding, delimiter or _delimiter(text), first, stated=stated is not None)
     if found.delimiter == ",":
         return found
     return _with_commas(found)

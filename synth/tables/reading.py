@@ -193,8 +193,8 @@ def _check_designations(designations: object, labels: Sequence[str], places: Seq
         with at(place, "designation"):
             if not designation:
                 raise InputError(where, None, "a unique name of the row")
-            if re.search(r"[,;\r\n]", designation):
-                raise InputError(where, designation, "a name without comma, semicolon or line break")
+            if re.search(r"[;\r\n]", designation):
+                raise InputError(where, designation, "a name without semicolon or line break")
             if designation in seen:
                 raise InputError(where, designation, f"a name of its own (it stands in {seen[designation]} already)")
         seen[designation] = label

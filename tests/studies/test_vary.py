@@ -184,6 +184,7 @@ def test_kinds_and_how_they_are_called() -> None:
         ("strands ==", "1, 2", "limit", "strands ==", "strands == 1"),
         ("weights.cost", "1, 2", "weight", "weights.cost", "weights.cost = 1"),
         ("parts.rope", "rope a, rate > 1", "part", "parts.rope", "parts.rope = rope a"),
+        ("parts.rope", '"rope, a", rope b', "part", "parts.rope", "parts.rope = rope, a"),
         ("options.thick", "free, given", "option", "options.thick", "options.thick = free"),
     ):
         varied = one(key, values)
