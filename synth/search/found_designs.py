@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.analysis.designs import design_of, part_row, told_by
-from synth.analysis.written_digits import written_digits
 from synth.model.model import Evaluation
 from synth.results import Design, Frame, PartRow
 from synth.results.design import DesignSteps
@@ -46,16 +45,12 @@ def found_designs(
         {"steps": DesignSteps(steps), "next_rows": rows}
         for steps, rows in zip(form.model.steps(points, data), form.model.next_rows(points, data), strict=True)
     ]
-    objectives = list(dict.fromkeys(name for frame in frames for name in frame.objectives))
-    digits = written_digits(form.instance, points, data, result, objectives)
     designs = []
-    for frame, candidate, own, unsearched, least, details in zip(
-        frames, candidates, told, beside, digits, more, strict=True
-    ):
+    for frame, candidate, own, unsearched, details in zip(frames, candidates, told, beside, more, strict=True):
         parts, _, choices = form.instance.combinations.describe(candidate.combination)
         for slot, (table, number) in parts.items():
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
         rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
-        designs.append(design_of(frame, own, rows, choices, {"digits": least, **unsearched, **details}))
+        designs.append(design_of(frame, own, rows, choices, {**unsearched, **details}))
     return designs
