@@ -270,6 +270,11 @@ class Replacement:
         with self.open(name) as file:
             file.write(file_text(name, content))
 
+    def rewrite(self, name: str, text: str) -> None:
+        """Write another text into a file that has been written."""
+        self.names.remove(name)
+        self.write(name, text)
+
     def _place(self, name: str) -> Path:
         """Return where a file is written, below its folder."""
         if not _is_inside(name):

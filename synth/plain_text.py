@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 import sys
@@ -79,6 +80,34 @@ def defused(text: str) -> str:
     ("'=1+1", '-5.3', 'core 4', '-')
     """
     return f"'{text}" if len(text) > 1 and FORMULA.match(text) and not NUMBER.fullmatch(text) else text
+
+
+def listed(text: str) -> list[str]:
+    """Return the names of a list with commas between them; one that has a comma itself stands in double quotes.
+
+    The rule is that of CSV: two double quotes within quotes are one. Where quotes do not close they mean nothing.
+
+    Examples
+    --------
+    >>> listed('core 2, "plate 3, thick",, 3/8" pin')
+    ['core 2', 'plate 3, thick', '', '3/8" pin']
+    """
+    try:
+        rows = list(csv.reader([text.replace("\n", " ")], skipinitialspace=True, strict=True))
+    except csv.Error:
+        rows = [text.split(",")]
+    return [name.strip() for row in rows for name in row or [""]]
+
+
+def as_list(names: Iterable[str]) -> str:
+    """Return names as a list that ``listed`` reads.
+
+    Examples
+    --------
+    >>> as_list(["core 2", "plate 3, thick"])
+    'core 2, "plate 3, thick"'
+    """
+    return ", ".join('"' + n.replace('"', '""') + '"' if "," in n or n.startswith('"') else n for n in names)
 
 
 def as_meant(cell: str) -> str:

@@ -15,7 +15,7 @@ LAYERS = (
     ("special", "margins", "pareto", "feasibility", "interrupts", "deadline", "file_locks", "native_switch", "plugins"),
     ("plain_text", "input_limits", "tuning", "proof_limits", "study_limits", "row_cells"),
     ("errors",),
-    ("files",),
+    ("files", "csv_style"),
     ("output_folder",),
     ("units",),
     ("results", "tables"),

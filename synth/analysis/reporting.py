@@ -11,8 +11,9 @@ from typing import Any
 from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
 from synth.analysis.restate import question_of
+from synth.csv_style import unstyled
 from synth.errors import InputError
-from synth.files import read_json, read_text
+from synth.files import read_bytes, read_json
 from synth.output_folder import save_files
 from synth.plain_text import csv_cell
 from synth.question.instance import Instance
@@ -323,8 +324,9 @@ def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:
 
 def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     """Return near-equal designs with the rank of the design they are near; nothing where that is none of ours."""
-    text = read_text(path, "near_equals", "a table as clutchsynth has written it")
-    rows = list(csv.DictReader(text.splitlines()))
+    right = "a table as clutchsynth has written it"
+    text = read_bytes(path, "near_equals", right).decode("utf-8", "replace")
+    rows = list(csv.DictReader(unstyled(text).splitlines()))
     told = read_json(path.with_suffix(".json"), "near_equals", "a near_equals.json as clutchsynth has written it")
     if not rows or not isinstance(told, Mapping):
         return {}

@@ -15,6 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from sqlalchemy import URL
 
+from synth.csv_style import ENGLISH, GERMAN, CsvStyle
 from synth.errors import InputError, SeveralErrors, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.database import digest, encoded, file_url
@@ -62,17 +63,24 @@ class BatchResult:
 
     def designs(self) -> pd.DataFrame:
         """Return designs.csv: the ranked designs of all rows, in an order that only their content decides."""
-        import pandas as pd  # costly to import; who asks has waited long enough for the batch
-
         settle(self.folder)
-        return _as_meant(pd.read_csv(self.folder / "designs.csv", dtype={"row": str}, low_memory=False))
+        return _frame_of(self.folder / "designs.csv", low_memory=False)
 
     def rows(self) -> pd.DataFrame:
         """Return rows.csv: what became of each row, in the order of the table."""
-        import pandas as pd
-
         settle(self.folder)
-        return _as_meant(pd.read_csv(self.folder / "rows.csv", dtype={"row": str}, keep_default_na=False))
+        return _frame_of(self.folder / "rows.csv", keep_default_na=False)
+
+
+def _frame_of(path: Path, **how: Any) -> pd.DataFrame:
+    """Return a table of a batch, in whatever style it is written."""
+    import pandas as pd  # costly to import; who asks has waited long enough for the batch
+
+    with path.open(encoding="utf-8") as file:
+        style = GERMAN if file.read(1) == GERMAN.mark else ENGLISH
+    decimal = "," if style.commas else "."
+    frame = pd.read_csv(path, dtype={"row": str}, encoding="utf-8-sig", sep=style.delimiter, decimal=decimal, **how)
+    return _as_meant(frame)
 
 
 def _as_meant(frame: pd.DataFrame) -> pd.DataFrame:
@@ -186,6 +194,8 @@ class BatchJob:
     common : mapping
         What is asked in all rows: ``parts``, ``limits``, ``fix``, ``objectives``, ``grid``.
     numbers : JobSettings, optional
+    csv : CsvStyle
+        How designs.csv and rows.csv are written.
 
     Raises
     ------
@@ -204,8 +214,9 @@ class BatchJob:
         settings: SearchSettings,
         common: Mapping[str, Any],
         numbers: JobSettings = JOBS,
+        csv: CsvStyle = ENGLISH,
     ) -> None:
-        self.numbers = numbers
+        self.numbers, self.csv = numbers, csv
         check_grid(common["grid"])
         if folder.exists() and not folder.is_dir():
             raise InputError("--output", str(folder), "a folder; this is a file")
@@ -499,7 +510,7 @@ class BatchJob:
 
     def write(self) -> dict[str, int]:
         """Write the results that there are to ``place``; return the rows by status."""
-        counts, self.place = write_outputs(self.store, self.id, self.folder)
+        counts, self.place = write_outputs(self.store, self.id, self.folder, self.csv)
         return counts
 
 

@@ -6,9 +6,11 @@ import re
 from collections.abc import Callable
 
 from synth.errors import InputError
+from synth.plain_text import listed
 
 ENTRY = re.compile(r"\s*([^\W\d][\w.]*)\s*(:|<=|>=|==|=|<|>)\s*(\S.*?)\s*", re.DOTALL)
 BETWEEN = re.compile(r";(?=(?:[^']*'[^']*')*[^']*$)")  # not within quotes
+IN_QUOTES = re.compile(r'(^|,)\s*"(?:[^"]|"")*"\s*(?=,|$)')  # a name of a list
 CONDITION = re.compile(r"[<>=!'\"]|\b(?:in|and|or|not)\b")
 
 
@@ -74,14 +76,16 @@ def read_limits(text: str, where: str) -> dict[str, list[str]]:
 def read_parts(text: str, where: str) -> dict[str, str | list[str]]:
     """Return the rules for parts of a cell: designations with commas between, or a condition on columns.
 
+    A designation that has a comma itself stands in double quotes.
+
     Examples
     --------
-    >>> read_parts("friction_pair = cork_wet, paper_wet; inner_plate: thickness > 1", "line 2, column parts")
-    {'friction_pair': ['cork_wet', 'paper_wet'], 'inner_plate': 'thickness > 1'}
+    >>> read_parts('friction_pair = cork_wet, "paper, wet"; inner_plate: thickness > 1', "line 2, column parts")
+    {'friction_pair': ['cork_wet', 'paper, wet'], 'inner_plate': 'thickness > 1'}
     """
     rules = _single(text, where, "friction_pair = cork_wet, paper_wet; inner_plate: thickness > 1")
     return {
-        slot: rule if CONDITION.search(rule) else [name.strip() for name in rule.split(",") if name.strip()]
+        slot: rule if CONDITION.search(IN_QUOTES.sub(r"\1", rule)) else [name for name in listed(rule) if name]
         for slot, rule in rules.items()
     }
 

@@ -8,12 +8,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.files import csv_writer, read_json
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
 from synth.results.provenance import installed_versions
 
+TABLES = ("designs.csv", "rows.csv")
 BATCH_FORMAT = 1  # of batch.json
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
 GROUPS = ("objectives", "searched", "choices", "parts", "derived", "limits")
@@ -33,7 +35,7 @@ ROW_COLUMNS = (
 SHORT = 12  # digits of a key that tell rows apart
 
 
-def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int], Path]:
+def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH) -> tuple[dict[str, int], Path]:
     """Write what is known of a job, all files or none.
 
     Parameters
@@ -41,6 +43,8 @@ def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int],
     store : Store
     job : str
     folder : Path
+    csv : CsvStyle
+        How the tables are written.
 
     Returns
     -------
@@ -67,6 +71,9 @@ def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int],
                 _write_designs(file, store, job, content)
             with new.open("rows.csv") as file:
                 counts = _write_rows(file, store, job, content)
+            if csv != ENGLISH:
+                for name in TABLES:
+                    new.rewrite(name, csv.text(new.staged(name).read_text(encoding="utf-8")))
             summary = {
                 "format": BATCH_FORMAT,
                 "job": job,
@@ -75,7 +82,7 @@ def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int],
                 **{key: content[key] for key in ("source", "settings", "columns", "mapping", "hashes")},
                 "versions": installed_versions(),
                 "database": store.url,
-                "files": {name: _hash_of(new.staged(name)) for name in ("designs.csv", "rows.csv")},
+                "files": {name: _hash_of(new.staged(name)) for name in TABLES},
             }
             new.write("batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
             if target != beside:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import sys
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,10 +13,10 @@ from typing import Any
 from synth.errors import InputError
 from synth.files import check_file, read_bytes
 from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import as_meant
+from synth.plain_text import as_list, as_meant
 from synth.tables.delimited_text import DelimitedText, delimited_text
+from synth.tables.workbook import Sheet, cell_text, is_workbook, sheet_of, split_sheet
 
-EXCEL = (".xlsx", ".xlsm")
 ROWS = "a CSV or .xlsx file"
 
 
@@ -61,7 +59,11 @@ class RowTable:
     def digest(self) -> str:
         """Return the SHA-256 of the file, or of what is in memory."""
         if isinstance(self.source, Path):
-            return hashlib.sha256(read_bytes(self.source, "rows", ROWS)).hexdigest()
+            file, sheet = split_sheet(self.source)
+            found = hashlib.sha256(read_bytes(file, "rows", ROWS))
+            if sheet:
+                found.update(f"#{sheet}".encode())
+            return found.hexdigest()
         return hashlib.sha256(repr(self.source).encode("utf-8", "surrogatepass")).hexdigest()
 
     def _records(self) -> Iterator[tuple[int, tuple[str, ...]]]:
@@ -69,15 +71,21 @@ class RowTable:
             header, rows = self.source
             yield 1, header
             yield from enumerate(rows, start=2)
-        elif self.source.suffix.lower() in EXCEL:
-            yield from _excel(self.source, self.name)
+        elif is_workbook(self.source):
+            yield from ((line, tuple(cells)) for line, cells in self._sheet.lines())
         else:
             yield from ((line, tuple(map(as_meant, cells))) for line, cells in self._text.lines())
 
     def sentence(self) -> str:
-        """Return how the file is written, if not as is expected: delimiters, encoding, decimal commas."""
-        delimited = isinstance(self.source, Path) and self.source.suffix.lower() not in EXCEL
-        return self._text.sentence() if delimited else ""
+        """Return how the file is written, if not as is expected: delimiters, encoding, decimal commas, which sheet."""
+        if not isinstance(self.source, Path):
+            return ""
+        return self._sheet.sentence() if is_workbook(self.source) else self._text.sentence()
+
+    @cached_property
+    def _sheet(self) -> Sheet:
+        assert isinstance(self.source, Path)
+        return sheet_of(self.source, "rows", ROWS, name=self.name)
 
     @cached_property
     def _text(self) -> DelimitedText:
@@ -91,7 +99,8 @@ def read_table(table: Any) -> RowTable:
     Parameters
     ----------
     table : path, DataFrame or sequence of mappings
-        A CSV file, an Excel file (first sheet), a DataFrame, or one mapping per row.
+        A CSV file, an Excel file (``file.xlsx#Sheet``; without that its first sheet), a DataFrame, or one mapping per
+        row.
 
     Raises
     ------
@@ -102,10 +111,11 @@ def read_table(table: Any) -> RowTable:
         return table
     if isinstance(table, (str, Path)):
         path = Path(table)
-        check_file(path, "rows", ROWS)
+        file, _ = split_sheet(path)
+        check_file(file, "rows", ROWS)
         if path.suffix.lower() == ".xls":
             raise InputError("rows", str(table), f"{ROWS}; save the old format .xls as one of these")
-        return RowTable(path.name, path)
+        return RowTable(file.name, path)
     if isinstance(table, Sequence) and table and all(isinstance(row, Mapping) for row in table):
         names = tuple(dict.fromkeys(str(key) for row in table for key in row))
         cells = [{str(key): text_of(value) for key, value in row.items()} for row in table]
@@ -130,15 +140,9 @@ def text_of(value: Any) -> str:
     >>> text_of(20.0), text_of(True), text_of({"mass": "<= 20 kg", "friction_pair": ["a", "b"]})
     ('20', 'yes', 'mass: <= 20 kg; friction_pair: a, b')
     """
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     if isinstance(value, Mapping):
         return "; ".join(f"{name}: {part}" for name, some in value.items() for part in _several(name, some))
-    return str(value)
+    return cell_text(value)
 
 
 def _several(name: str, value: Any) -> list[str]:
@@ -147,7 +151,7 @@ def _several(name: str, value: Any) -> list[str]:
         return [text_of(value)]
     texts = [text_of(entry) for entry in value]
     compared = any(text.lstrip()[:1] in ("<", ">", "=") or ".." in text for text in texts)
-    return texts if compared else [", ".join(texts)]
+    return texts if compared else [as_list(texts)]
 
 
 def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
@@ -165,49 +169,3 @@ def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
         if titles.count(title) > 1:
             raise InputError(where, title, "each column once")
     return tuple(titles)
-
-
-def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
-    try:
-        import openpyxl  # an extra; only for those who have such files
-    except ImportError:
-        raise InputError("rows", name, "CSV, or the extra for Excel: pip install 'clutchsynth[excel]'") from None
-    packed = io.BytesIO(read_bytes(path, "rows", ROWS))
-    try:
-        with zipfile.ZipFile(packed) as archive:
-            unpacked = sum(entry.file_size for entry in archive.infolist())
-        book = (
-            openpyxl.load_workbook(packed, read_only=True, data_only=True)
-            if unpacked <= INPUT_LIMITS.workbook
-            else None
-        )
-    except Exception as error:  # whatever a broken archive may raise
-        raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
-    if book is None:
-        raise InputError(
-            "rows", name, f"an Excel file of at most {INPUT_LIMITS.workbook // 1_000_000} MB when unpacked"
-        )
-    try:
-        sheet = book.worksheets[0]
-        for number, cells in enumerate(_whole(sheet.iter_rows(values_only=True), name), start=1):
-            yield number, tuple(as_meant(text_of(cell)) for cell in cells)
-    finally:
-        book.close()
-
-
-def _whole(rows: Iterator[Any], name: str) -> Iterator[Any]:
-    """Yield the rows of a sheet, which is read as it is gone through: only now what is broken in it shows.
-
-    Raises
-    ------
-    InputError
-        Something of it cannot be read.
-    """
-    while True:
-        try:
-            cells = next(rows)
-        except StopIteration:
-            return
-        except Exception as error:  # whatever a broken sheet may raise
-            raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
-        yield cells

@@ -84,7 +84,8 @@ class Design:
     on the way to others by name in SI, which hooks read, ``next_rows`` the rows of tables that come next to some of its
     quantities. ``robust`` tells, where that was asked, how the design
     stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and ``yield_high``, ``worst_limit``,
-    and per limit its worst point.
+    and per limit its worst point. ``digits`` is how many of a variable its file needs to say the same design (0:
+    all of them); None: it says all of them as text, counts too.
     """
 
     frame: Frame
@@ -110,13 +111,18 @@ class Design:
     robust: DesignRating = field(default_factory=DesignRating)
     steps: Mapping[str, float] = field(default_factory=DesignSteps)
     next_rows: Mapping[str, NextRow] = field(default_factory=dict)
+    digits: int | None = None
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""
         frame = self.frame
         named = [n for n, kind in frame.kinds.items() if kind in ("variable", "count")]
-        values: dict[str, str] = {n: format_quantity(self.values[n], frame.units[n], None) for n in named}
-        values.update(self.choices)
+        return self._spec({n: format_quantity(self.values[n], frame.units[n], None) for n in named})
+
+    def _spec(self, sizes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the mapping of a DESIGN.yaml with sizes as they are written there."""
+        frame = self.frame
+        values = {**sizes, **self.choices}
         spec: dict[str, Any] = {"family": frame.family}
         if frame.options:
             spec["options"] = dict(frame.options)
@@ -142,8 +148,24 @@ class Design:
         return notebook_html(title, [state, *self.advice], ["quantity", "value"], rows, level)
 
     def yaml(self) -> str:
-        """Return the text of a DESIGN.yaml."""
-        return yaml_text(self.to_spec())
+        """Return the text of a DESIGN.yaml: each size with as many digits as it needs, counts as numbers."""
+        if self.digits is None:
+            return yaml_text(self.to_spec())
+        frame, sizes = self.frame, dict[str, Any]()
+        for name, kind in frame.kinds.items():
+            if kind in ("variable", "count"):
+                digits = self.digits if kind == "variable" and self.digits else None
+                text = format_quantity(self.values[name], frame.units[name], digits)
+                sizes[name] = _number_or_text(text)
+        return yaml_text(self._spec(sizes))
+
+
+def _number_or_text(text: str) -> int | float | str:
+    """Return a number where a text is one as YAML writes it."""
+    try:
+        return int(text) if text.lstrip("-").isdigit() else float(text)
+    except ValueError:
+        return text
 
 
 def _order(frame: Frame) -> tuple[list[str], list[str]]:

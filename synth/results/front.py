@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
@@ -64,14 +65,14 @@ class ParetoFront:
         frame = pd.DataFrame(rows, columns=columns)
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write designs.csv, front.json, calculation.json and one design_NN.yaml per design; return the folder.
 
         All of them or none.
 
         A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, self.files(), FRONT, bool(self.interrupted))
+        return save_result(folder, csv.files(self.files()), FRONT, bool(self.interrupted))
 
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text.

@@ -55,6 +55,7 @@ def design_record(design: Design) -> dict[str, Any]:
         **({"outside": dict(design.outside)} if design.outside else {}),
         **({"steps": _clean(design.steps)} if design.steps else {}),
         **({"next_rows": {n: row.record() for n, row in design.next_rows.items()}} if design.next_rows else {}),
+        **({} if design.digits is None else {"digits": design.digits}),
         **({"robust": plain(design.robust)} if design.robust else {}),
     }
 

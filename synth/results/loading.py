@@ -161,6 +161,7 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         not_checked=tuple(d["not_checked"]),
         robust=DesignRating.read(d.get("robust", {})),
         steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
+        digits=d.get("digits"),
         next_rows={n: NextRow.read(told) for n, told in d.get("next_rows", {}).items()},
     )
 

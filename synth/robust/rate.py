@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
 from synth.files import csv_text
 from synth.model.registry import load
@@ -67,12 +68,12 @@ class Ratings:
             "rating.json": json.dumps(told, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
         }
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write rating.csv, robust.csv and rating.json; return the folder.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, self.files(), RATING, bool(self.interrupted))
+        return save_result(folder, csv.files(self.files()), RATING, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         if not self.designs:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from synth.analysis.designs import make_frame, offered
+from synth.analysis.written_digits import written_digits
 from synth.feasibility import Status
 from synth.pareto import Scale
 from synth.results import Certificate, Design, Frame, ParetoFront
@@ -77,8 +78,11 @@ def _records(
 ) -> list[Design]:
     """Return candidates as designs, with what else is known of each."""
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), state.form.n)
-    result = state.form.points.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
-    return found_designs(state.form, [frame] * len(candidates), candidates, result, more)
+    numbers = np.array([c.combination for c in candidates], dtype=np.int64)
+    result, instance = state.form.points.evaluate(points, numbers), state.form.instance
+    digits = written_digits(instance, points, instance.data(numbers), result, list(frame.objectives))
+    told = [{"digits": least, **known} for least, known in zip(digits, more, strict=True)]
+    return found_designs(state.form, [frame] * len(candidates), candidates, result, told)
 
 
 def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Candidate], list[tuple[str, ...]]]:

@@ -18,7 +18,9 @@ import numpy as np
 
 from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
+from synth.analysis.written_digits import written_digits
 from synth.bounds.boxes import Boxes
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.deadline import Stopped, until
 from synth.errors import InputError, at, whole_number
 from synth.feasibility import Status
@@ -112,12 +114,12 @@ class NearEquals:
             found[f"design_{number:02d}.yaml"] = design.yaml()
         return found
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, self.files(), NEAR_EQUALS, bool(self.interrupted))
+        return save_result(folder, csv.files(self.files()), NEAR_EQUALS, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         objectives = list(self.reference.frame.objectives)
@@ -497,7 +499,10 @@ class _Enumeration:
     def _told(self, candidates: Sequence[Candidate], found: int, complete: bool, interrupted: str) -> NearEquals:
         form = self.form
         points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
-        result = form.points.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
+        numbers = np.array([c.combination for c in candidates], dtype=np.int64)
+        result = form.points.evaluate(points, numbers)
+        objectives = list(self.reference.frame.objectives)
+        digits = written_digits(self.instance, points, self.instance.data(numbers), result, objectives)
         designs, changes, differences = [], [], []
         for k, c in enumerate(candidates):
             parts, _, choices = self.instance.combinations.describe(c.combination)
@@ -512,6 +517,7 @@ class _Enumeration:
                 choices,
                 status=Status.FEASIBLE,
                 rank=k + 1,
+                digits=digits[k],
             )
             designs.append(design)
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})

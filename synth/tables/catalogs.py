@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,12 +13,14 @@ from typing import Any
 
 from synth.errors import InputError, at
 from synth.plugins import installed
-from synth.tables.reading import is_frame, load_table, table_from_frame, table_of_text
+from synth.tables.reading import is_frame, load_table, table_from_frame, table_name, table_of_text
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema, schema_of_text
 from synth.tables.table import Table, perhaps_meant
 from synth.tables.table_text import TableText
+from synth.tables.workbook import is_workbook
 
 ENTRY_POINTS = "clutchsynth.catalogs"
+OPEN = "~$"  # what a file begins with that Excel keeps beside a workbook while that is open
 
 
 # ---- catalogues -----------------------------------------------------------------------------------------------------
@@ -62,6 +65,24 @@ def _shipped_schema(path: Path, stamp: int) -> Schema:
     return load_schema(path)
 
 
+def _own_files(folder: Path) -> dict[str, Path]:
+    """Return the tables of a user's folder by name.
+
+    Raises
+    ------
+    InputError
+        A table stands there twice.
+    """
+    found = _csv_files(folder)
+    for path in sorted(p for p in folder.iterdir() if is_workbook(p) and not p.name.startswith(OPEN)):
+        name = table_name(path)
+        if name in found:
+            right = f"one file of each table; there is {found[name].name} as well"
+            raise InputError("catalogs", str(path), right, ("catalogs",))
+        found[name] = path
+    return found
+
+
 def _csv_files(folder: Path) -> dict[str, Path]:
     return {p.name.removesuffix(".csv"): p for p in sorted(folder.glob("*.csv")) if not p.name.endswith(SCHEMA_SUFFIX)}
 
@@ -72,7 +93,7 @@ class Catalogs:
     Parameters
     ----------
     spec : str, Path or mapping, optional
-        A folder, whose CSV files replace the tables of their names; or table name to a CSV path, a DataFrame, a
+        A folder, whose CSV and .xlsx files replace the tables of their names; or table name to a path, a DataFrame, a
         TableText, or a list ``["+", more, ...]`` of these whose rows are appended to the shipped ones.
     folders : sequence of str or Path, optional
         Folders of shipped tables instead of those of the installed packages.
@@ -119,13 +140,15 @@ class Catalogs:
         if isinstance(spec, (str, Path)):
             folder = self._path(spec)
             try:
-                files = _csv_files(folder) if folder.is_dir() else None
+                files = _own_files(folder) if folder.is_dir() else None
+            except InputError:
+                raise
             except (OSError, ValueError):
                 files = None
             if files is None:
                 raise InputError("catalogs", str(spec), "a folder that exists", ("catalogs",))
             if not files:
-                wanted = "a folder with CSV files named like the tables they replace"
+                wanted = "a folder with CSV files (or .xlsx) named like the tables they replace"
                 raise InputError("catalogs", str(spec), wanted, ("catalogs",))
             return {name: (False, [path]) for name, path in files.items()}
         if not isinstance(spec, Mapping):
@@ -162,6 +185,17 @@ class Catalogs:
 
     def _named(self, source: str | Path | TableText) -> str:
         return source.reference if isinstance(source, TableText) else str(self._path(source).resolve())
+
+    def readings(self) -> tuple[str, ...]:
+        """Return how the user's own files were read that are not written as is expected, a sentence for each.
+
+        Of a file that cannot be read nothing is told: whoever asks for its table learns what is wrong.
+        """
+        found: dict[str, None] = {}
+        for name in self._spec:
+            with suppress(InputError):
+                found.update(dict.fromkeys(self.table(name).readings))
+        return tuple(found)
 
     def stated(self) -> dict[str, Any]:
         """Return the user's own tables as :meth:`files`, all of them.
@@ -246,7 +280,7 @@ class Catalogs:
         schema = self.schema(name)
         if isinstance(source, (str, Path)):
             path = self._path(source)
-            own = path.with_name(path.name.removesuffix(".csv") + SCHEMA_SUFFIX)
+            own = path.with_name(table_name(path) + SCHEMA_SUFFIX)
             if own.is_file():
                 described = load_schema(own)
                 schema = described if schema is None else schema.extended(described)

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from synth.errors import InputError
+from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
 
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
@@ -21,13 +22,6 @@ MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codec
 # short tables: they take the superscript of mm² for a letter of another code page.
 WESTERN = "cp1252"
 SAMPLE = 200  # lines by which delimiters are compared
-NUMBER = re.compile(
-    r"(?P<before>\s*(?:[<>=]=?|[≤≥])?\s*[-+]?)(?P<number>\d[\d.,\u00a0\u202f]*)(?P<after>(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?)"
-)
-GROUPED = re.compile(r"\d{1,3}(?:[.\u00a0\u202f]\d{3})+,\d+")
-PLAIN = re.compile(r"\d+,\d+")
-DOUBTFUL = re.compile(r"[1-9]\d{0,2},\d{3}")
-THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:\.\d{3})+")  # where others have decimal commas
 
 
 @dataclass(frozen=True)
@@ -43,10 +37,10 @@ class DelimitedText:
     encoding, delimiter : str
     first : int
         Number of the first line of the text in the file.
-    commas : tuple of int
-        Columns, from 0, whose numbers have decimal commas.
-    titles : tuple of str
-        Of those columns.
+    numbers : WrittenNumbers
+        Which columns have decimal commas.
+    stated : bool
+        Whether a line names the delimiter.
     """
 
     name: str
@@ -54,8 +48,8 @@ class DelimitedText:
     encoding: str
     delimiter: str
     first: int = 1
-    commas: tuple[int, ...] = ()
-    titles: tuple[str, ...] = ()
+    numbers: WrittenNumbers = PLAIN_NUMBERS
+    stated: bool = False
 
     def lines(self) -> Iterator[tuple[int, list[str]]]:
         """Return number in the file and cells of every line, numbers with decimal points.
@@ -66,20 +60,18 @@ class DelimitedText:
             A quote does not close.
         """
         for number, cells in self._written():
-            for k in self.commas:
-                if k < len(cells):
-                    cells[k] = with_point(cells[k])
-            yield number, cells
+            yield number, self.numbers.read(cells)
 
     def sentence(self) -> str:
         """Return what was recognised, in a sentence; nothing where it is written as is expected."""
         told = []
-        if self.delimiter != ",":
-            told.append(f"{DELIMITERS[self.delimiter]} between the columns")
+        if self.delimiter != "," or self.stated:
+            says = " as its first line says" if self.stated else ""
+            told.append(f"{DELIMITERS[self.delimiter]} between the columns{says}")
         if self.encoding in (WESTERN, "utf-16"):
             told.append("text in Windows-1252" if self.encoding == WESTERN else "text in UTF-16")
-        if self.titles:
-            told.append(f"decimal commas in {', '.join(self.titles)}")
+        if self.numbers.titles:
+            told.append(self.numbers.sentence())
         return f"{self.name}: {', '.join(told)}" if told else ""
 
     def _written(self) -> Iterator[tuple[int, list[str]]]:
@@ -111,29 +103,15 @@ def delimited_text(raw: bytes, name: str) -> DelimitedText:
     """
     text, encoding = decoded(raw, name)
     first, delimiter = 1, ""
-    stated = re.match(r"sep=(.)\r?\n", text)  # how Excel is told, and tells
+    stated = re.match(r"(\"?)sep=(.)\1\r?\n", text, re.IGNORECASE)  # how Excel is told, and tells
     if stated:
-        if stated[1] not in DELIMITERS:
+        if stated[2] not in DELIMITERS:
             raise InputError(f"{name}, line 1", stated[0].strip(), "sep=; or sep=, or a tab")
-        text, first, delimiter = text[stated.end() :], 2, stated[1]
-    found = DelimitedText(name, text, encoding, delimiter or _delimiter(text), first)
+        text, first, delimiter = text[stated.end() :], 2, stated[2]
+    found = DelimitedText(name, text, encoding, delimiter or _delimiter(text), first, stated=stated is not None)
     if found.delimiter == ",":
         return found
     return _with_commas(found)
-
-
-def with_point(cell: str) -> str:
-    """Return a cell whose number has a decimal point in place of a comma.
-
-    Examples
-    --------
-    >>> with_point("12,5 N*m"), with_point("<= 1.234,5"), with_point("core 0,5")
-    ('12.5 N*m', '<= 1234.5', 'core 0,5')
-    """
-    match = NUMBER.fullmatch(cell)
-    if match is None or "," not in match["number"]:
-        return cell
-    return match["before"] + re.sub(r"[.\u00a0\u202f]", "", match["number"]).replace(",", ".") + match["after"]
 
 
 def decoded(raw: bytes, name: str) -> tuple[str, str]:
@@ -192,63 +170,8 @@ def _with_commas(found: DelimitedText) -> DelimitedText:
     """
     written = found._written()
     _, header = next(written, (1, []))
-    columns = [_Column() for _ in header]
+    columns = [NumberColumn() for _ in header]
     for line, cells in written:
         for column, cell in zip(columns, cells, strict=False):
             column.add(line, cell)
-    commas = tuple(k for k, column in enumerate(columns) if column.has_commas())
-    for column, title in zip(columns, header, strict=True):
-        doubt = column.doubt(bool(commas))
-        if doubt is not None:
-            line, number = doubt
-            right = (
-                f"{number.replace(',', '.')} or {re.sub('[.,]', '', number)}, whichever is meant: both can be read here"
-            )
-            title = title.strip()
-            raise InputError(f"{found.name}, line {line}, column {title}", number, right, ("rows", line, title))
-    return replace(found, commas=commas, titles=tuple(header[k].strip() for k in commas))
-
-
-class _Column:
-    """What the numbers of a column look like."""
-
-    def __init__(self) -> None:
-        self.numbers = self.others = 0
-        self.certain = self.points = False  # numbers whose comma, or point, is a decimal sign beyond doubt
-        self.commas: tuple[int, str] | None = None  # the first number whose comma may part thousands
-        self.thousands: tuple[int, str] | None = None  # the first whose points may
-
-    def add(self, line: int, cell: str) -> None:
-        """Take another cell into account."""
-        if not cell.strip():
-            return
-        match = NUMBER.fullmatch(cell)
-        number = match["number"] if match else ""
-        known = "," not in number or any(form.fullmatch(number) for form in (DOUBTFUL, GROUPED, PLAIN))
-        if match is None or not known:
-            self.others += 1
-            return
-        self.numbers += 1
-        if THOUSANDS.fullmatch(number):
-            self.thousands = self.thousands or (line, number)
-        elif "," not in number:
-            self.points |= "." in number
-        elif DOUBTFUL.fullmatch(number):
-            self.commas = self.commas or (line, number)
-        else:
-            self.certain = True
-
-    @property
-    def is_numeric(self) -> bool:
-        """Whether most of it is numbers."""
-        return self.numbers > self.others
-
-    def has_commas(self) -> bool:
-        """Tell whether its numbers have decimal commas and no points; what is wrong with both the reader says."""
-        return self.is_numeric and self.certain and not (self.points or self.thousands)
-
-    def doubt(self, elsewhere: bool) -> tuple[int, str] | None:
-        """Return line and number that can be read in two ways; ``elsewhere``: other columns have decimal commas."""
-        if not self.is_numeric or self.certain or self.points:
-            return None
-        return (self.thousands if elsewhere else None) if self.thousands else self.commas
+    return replace(found, numbers=written_numbers(header, columns, found.name))

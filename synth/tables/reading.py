@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import math
 import re
 import sys
@@ -17,6 +18,7 @@ from synth.tables.csv_file import read_csv_bytes, read_csv_file
 from synth.tables.schema import SCHEMA_SUFFIX, Column, Schema, load_schema
 from synth.tables.table import SHIPPED, FloatArray, Table
 from synth.tables.table_text import TableText
+from synth.tables.workbook import cell_text, is_workbook, sheet_of, split_sheet
 from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -111,6 +113,8 @@ def _number_cell(cell: object, column: Column, unit: Unit, where: str) -> float:
         if math.isinf(plain):
             raise InputError(where, cell, "a finite number")
         number = repr(plain)
+    elif isinstance(cell, datetime.date):
+        number = check_number(cell_text(cell), where)  # which says what has become of it
     else:
         raise InputError(where, cell, "a number")
     si = number_to_si(number, unit)
@@ -189,8 +193,8 @@ def _check_designations(designations: object, labels: Sequence[str], places: Seq
         with at(place, "designation"):
             if not designation:
                 raise InputError(where, None, "a unique name of the row")
-            if re.search(r"[,;\r\n]", designation):
-                raise InputError(where, designation, "a name without comma, semicolon or line break")
+            if re.search(r"[;\r\n]", designation):
+                raise InputError(where, designation, "a name without semicolon or line break")
             if designation in seen:
                 raise InputError(where, designation, f"a name of its own (it stands in {seen[designation]} already)")
         seen[designation] = label
@@ -204,7 +208,7 @@ def load_table(
     Parameters
     ----------
     path : str or Path
-        The CSV file.
+        The CSV file; where it is not shipped also a workbook, ``file.xlsx#Sheet``.
     schema : str, Path or Schema, optional
         Its schema; by default ``NAME.schema.csv`` beside it. A table that is not shipped may have none: then a column
         is a number where its header has a unit (``mass [kg]``), else text.
@@ -224,14 +228,46 @@ def load_table(
         Something in the file is not right; file, line and column are named.
     """
     path = Path(path)
-    name = path.name.removesuffix(".csv") if name is None else name
+    name = table_name(path) if name is None else name
     if schema is None:
-        beside = path.with_name(path.name.removesuffix(".csv") + SCHEMA_SUFFIX)
+        beside = path.with_name(table_name(path) + SCHEMA_SUFFIX)
         if shipped or beside.is_file():
             schema = beside
     if schema is not None and not isinstance(schema, Schema):
         schema = load_schema(schema)
-    return _table_of(*read_csv_file(path, plain=shipped), schema, name, path.name, shipped)
+    if not shipped and is_workbook(path):
+        return _table_of_sheet(path, schema, name)
+    written = read_csv_file(path, plain=shipped)
+    return _table_of(*written.rows(), schema, name, path.name, shipped, written.sentence())
+
+
+def _table_of_sheet(path: Path, schema: Schema | None, name: str) -> Table:
+    """Read a user's table from a workbook: the sheet that is named, or the first that has what is needed."""
+    wanted = None if schema is None or schema.get("designation") is not None else {c.name for c in schema.columns}
+
+    def fits(header: list[str]) -> bool:
+        names = {title.partition("[")[0].strip() for title in header}
+        return "designation" in names if wanted is None else bool(names & wanted)
+
+    sheet = sheet_of(path, "catalogue file", "a CSV or .xlsx file", fits)
+    place = f"{sheet.name}, sheet {sheet.title}"
+    lines = [(line, cells) for line, cells in sheet.lines(_flag_or_text) if "".join(cells).strip()]
+    if not lines or lines[0][0] != 1:
+        raise InputError(place, "an empty first row", "a header row and at least one row below it")
+    (_, head), *rows = lines
+    rows = [(line, cells + [""] * (len(head) - len(cells))) for line, cells in rows]
+    wide = max((len(cells) for _, cells in rows), default=0)
+    return _table_of(head + [""] * (wide - len(head)), rows, schema, name, place, False, sheet.sentence())
+
+
+def _flag_or_text(cell: object) -> str:
+    return str(int(cell)) if isinstance(cell, bool) else cell_text(cell)
+
+
+def table_name(path: Path) -> str:
+    """Return the name of the table that stands in a file: that of the file."""
+    file, _ = split_sheet(path)
+    return file.stem if is_workbook(file) else file.name.removesuffix(".csv")
 
 
 def table_of_text(text: TableText, schema: Schema | None, name: str) -> Table:
@@ -250,13 +286,20 @@ def table_of_text(text: TableText, schema: Schema | None, name: str) -> Table:
     InputError
         Something in the text is not right; reference, line and column are named.
     """
-    return _table_of(*read_csv_bytes(text.csv.encode(), text.reference), schema, name, text.reference, False)
+    written = read_csv_bytes(text.csv.encode(), text.reference)
+    return _table_of(*written.rows(), schema, name, text.reference, False, written.sentence())
 
 
 def _table_of(
-    head: list[str], body: list[tuple[int, list[str]]], schema: Schema | None, name: str, file: str, shipped: bool
+    head: list[str],
+    body: list[tuple[int, list[str]]],
+    schema: Schema | None,
+    name: str,
+    file: str,
+    shipped: bool,
+    reading: str,
 ) -> Table:
-    """Return the table of a header and rows; ``file`` is where they stand, for messages."""
+    """Return the table of a header and rows; ``file`` is where they stand, ``reading`` how, for messages."""
     if shipped and schema is not None:
         for title in head:
             if head.count(title) > 1:
@@ -278,7 +321,9 @@ def _table_of(
         rows.append((f"{file}, line {line}", cells))
     catalogue = any(field.column.name == "designation" for field in fields)
     lines = [line for line, _ in body]
-    return _build(name, fields, rows, lines, SHIPPED if shipped else file, strict=shipped, catalogue=catalogue)
+    table = _build(name, fields, rows, lines, SHIPPED if shipped else file, strict=shipped, catalogue=catalogue)
+    table.readings = (reading,) if reading else ()
+    return table
 
 
 def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name: str = "table") -> Table:

@@ -106,7 +106,7 @@ def load_schema(path: str | Path) -> Schema:
         A line of the schema is not right.
     """
     path = Path(path)
-    return _schema_of(*read_csv_file(path), path.name)
+    return _schema_of(*read_csv_file(path).rows(), path.name)
 
 
 def schema_of_text(text: str, name: str) -> Schema:
@@ -117,7 +117,7 @@ def schema_of_text(text: str, name: str) -> Schema:
     InputError
         A line of the schema is not right.
     """
-    return _schema_of(*read_csv_bytes(text.encode(), name), name)
+    return _schema_of(*read_csv_bytes(text.encode(), name).rows(), name)
 
 
 def _schema_of(head: list[str], rows: list[tuple[int, list[str]]], file: str) -> Schema:

@@ -51,6 +51,11 @@ class Table:
         ``shipped``, a file name or ``DataFrame``.
     user_rows : ndarray of bool
         True for rows that are not shipped.
+
+    Attributes
+    ----------
+    readings : tuple of str
+        How files that are not written as is expected were read, in sentences.
     """
 
     def __init__(
@@ -66,6 +71,7 @@ class Table:
         self.columns = dict(columns)
         self.origin = origin
         self.labels = tuple(labels)
+        self.readings: tuple[str, ...] = ()
         self.user_rows = np.array(user_rows, dtype=np.bool_)
         self.user_rows.setflags(write=False)
         self._made: dict[Any, BoolArray] = {}
@@ -343,7 +349,9 @@ class Table:
                 data[name] = (*map(str, texts[0]), *map(str, texts[1]))
         labels = (*self.labels, *more.labels)
         user_rows = np.concatenate([self.user_rows, more.user_rows])
-        return Table(self.name, columns, data, labels, f"{self.origin} + {more.origin}", user_rows)
+        table = Table(self.name, columns, data, labels, f"{self.origin} + {more.origin}", user_rows)
+        table.readings = (*self.readings, *more.readings)
+        return table
 
 
 def perhaps_meant(name: str, known: Iterable[str]) -> str:

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from synth.csv_style import CsvStyle, csv_style
 from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.interrupts import heard_again
 from synth.output_folder import BATCH
-from synth.terminal.options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
+from synth.terminal.options import Csv, Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
 from synth.terminal.session import INFEASIBLE, INTERNAL, STOPPED, check_output, claim_output, objectives, tell
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 Progress = Callable[[Mapping[str, Any]], None]
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
 
-RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
+RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx (FILE.xlsx#SHEET).", metavar="ROWS.csv")]
 Workers = Annotated[int | None, typer.Option(help="Processes of this machine; by default one per core.")]
 Scheduler = Annotated[
     str | None,
@@ -65,13 +66,15 @@ def batch(
     workers: Workers = None,
     scheduler: Scheduler = None,
     database: Database = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Search the designs for every row of a table; run again to go on after an interruption."""
+    style = csv_style(csv, "--csv")
 
     def make() -> BatchJob:
         return batch_job(
-            rows, folder, family, mapping, points, gap, grid, seed, time_limit, objective, catalogs, database
+            rows, folder, family, mapping, points, gap, grid, seed, time_limit, objective, catalogs, database, style
         )
 
     raise typer.Exit(finish(make, workers, scheduler, quiet))
@@ -90,6 +93,7 @@ def batch_job(
     objective: list[str] | None,
     catalogs: Path | None,
     database: str | None,
+    csv: CsvStyle,
 ) -> BatchJob:
     """Return the batch that flags describe."""
     from synth.jobs.batch import BatchJob
@@ -101,7 +105,7 @@ def batch_job(
     stated: dict[str, Any] = {"points": points, "gap": gap, "seed": seed, "time_limit": seconds}
     settings = SearchSettings(**{name: value for name, value in stated.items() if value is not None})
     common = {"parts": None, "limits": None, "fix": None, "objectives": objectives(objective or []), "grid": grid}
-    return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common)
+    return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common, csv=csv)
 
 
 def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
@@ -234,6 +238,7 @@ def resume(
     workers: Workers = None,
     scheduler: Scheduler = None,
     database: Database = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Go on with a job that was stopped or cancelled, without its table."""
@@ -241,6 +246,7 @@ def resume(
     from synth.jobs.outputs import write_outputs
     from synth.terminal.batch_console import batch_display, print_summary
 
+    style = csv_style(csv, "--csv")
     store, found = _find(job, database)
     if found.code is not None:
         with store:
@@ -252,7 +258,7 @@ def resume(
             with batch_display(quiet) as progress:
                 shown = _checked(progress, check)
                 stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
-            counts, place = write_outputs(store, found.id, Path(found.folder))
+            counts, place = write_outputs(store, found.id, Path(found.folder), style)
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
             raise typer.Exit(STOPPED) from None

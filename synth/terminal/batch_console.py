@@ -31,6 +31,9 @@ def print_table_remarks(job: BatchJob, continues: bool) -> None:
         say(f"going on with job {job.id}")
     if job.table.sentence():
         say(f"read as {job.table.sentence().removeprefix(f'{job.table.name}: ')}: {job.table.name}")
+    for sentence in job.catalogs.readings():
+        name, _, how = sentence.partition(": ")
+        say(f"read as {how}: {name}")
     if job.questioner.carried:
         say(f"carried along unread: {', '.join(column.title for column in job.questioner.carried)}")
     for family, columns in sorted(job.unused.items()):

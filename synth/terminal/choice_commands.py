@@ -8,11 +8,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from synth.csv_style import CsvStyle, csv_style
 from synth.errors import InputError
 from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
 from synth.results.drawings import PLOT
-from synth.terminal.options import Folder, FrontFolder, Quiet, Seed, TimeLimit
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_written
+from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, Seed, TimeLimit
+from synth.terminal.session import (
+    INFEASIBLE,
+    STOPPED,
+    blamed_on,
+    check_output,
+    claim_output,
+    tell,
+    tell_readings,
+    tell_written,
+)
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -32,9 +42,11 @@ def near_equals(
     count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
     seed: Seed[int] = 0,
     time_limit: TimeLimit = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
+    style = csv_style(csv, "--csv")
     check_output(folder)
     if folder.resolve() == source.resolve():
         raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
@@ -49,7 +61,7 @@ def near_equals(
     front = load_front(source)
     with progress_display(quiet) as progress:
         found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
-    target = found.save(folder)
+    target = found.save(folder, style)
     if not quiet:
         print_near_equals(found, output())
         tell_written(target, folder, sorted(found.files()))
@@ -68,9 +80,11 @@ def prices(
     step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
     time_limit: TimeLimit = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
+    style = csv_style(csv, "--csv")
     claim_output(folder, PRICES)
     from synth.results.loading import load_front
     from synth.studies.prices.run import prices as find
@@ -86,7 +100,7 @@ def prices(
         except KeyboardInterrupt:
             tell("stopped before the first design was begun; nothing is written")
             raise typer.Exit(STOPPED) from None
-    target = found.save(folder)
+    target = found.save(folder, style)
     if not quiet:
         print_prices(found, output(), every)
         tell_written(target, folder, sorted(found.files()))
@@ -104,7 +118,7 @@ def show_common() -> None:
         print(f"{name:{wide}}  {unit:{units}}  {', '.join(families)}")
 
 
-def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool, plot: bool) -> None:
+def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool, plot: bool, csv: CsvStyle) -> None:
     """Search the families of a spec, show their common front and save it where a folder is named; end as ``run``."""
     from synth.question.spec_keys import ASKED, SEARCHED
     from synth.studies.families.compare import compare
@@ -115,15 +129,18 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
     # Finished families are kept there until all are.
     place = None if folder is None else place_for_stopped(folder, FRONT)
     with blamed_on(asked.file), progress_display(quiet) as progress:
+        tables = Catalogs(asked.catalogs, base=asked.folder)
+        if not quiet:
+            tell_readings(tables)
         apart = ("family", "options", "requirements", "catalogs")
         stated = asked.stated([key for key in (*ASKED, *SEARCHED) if key not in apart])
         found = compare(
             asked.family if isinstance(asked.family, str) else list(asked.family),
             asked.requirements,
-            catalogs=Catalogs(asked.catalogs, base=asked.folder),
+            catalogs=tables,
             options=asked.options,
             progress=progress,
-            finished=None if place is None else lambda label, front: front.save(place / label),
+            finished=None if place is None else lambda label, front: front.save(place / label, csv),
             **stated,
         )
     texts = {**found.files(), **found.family_files()}
@@ -134,7 +151,7 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
         texts[PLOT] = picture
     target = None
     if folder is not None and place is not None:
-        target = save_result(place if found.interrupted else folder, texts, FRONT, False)
+        target = save_result(place if found.interrupted else folder, csv.files(texts), FRONT, False)
         if place not in (target, folder):
             shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
     if not quiet:

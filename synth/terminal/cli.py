@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
+from synth.csv_style import csv_style
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.interrupts import taken_alike
@@ -33,6 +34,7 @@ from synth.terminal import (
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
 from synth.terminal.options import (
+    Csv,
     Family,
     Folder,
     FrontFolder,
@@ -62,6 +64,7 @@ from synth.terminal.session import (
     one_command,
     pair,
     tell,
+    tell_readings,
     tell_written,
 )
 
@@ -223,6 +226,7 @@ def run(
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
     ] = None,
     plot: Plot = False,
+    csv: Csv = "en",
     quiet: Quiet = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Show what the search did as well.")] = False,
 ) -> None:
@@ -231,6 +235,7 @@ def run(
     from synth.question.spec import read_spec
     from synth.terminal.console import explanation_text
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(spec).merged(
         points=points,
         gap=gap,
@@ -251,7 +256,7 @@ def run(
     if asked.compares:
         if more is not None:
             raise InputError("--more", str(more), "a spec of one family")
-        choice_commands.compare_families(asked, folder, every, quiet, plot)
+        choice_commands.compare_families(asked, folder, every, quiet, plot, style)
         return
     front = _synthesize(asked, quiet, begun, more)
     files = front.files()
@@ -260,7 +265,7 @@ def run(
     picture = front.svg() if plot else ""
     if picture:
         files[PLOT] = picture
-    target = None if folder is None else save_result(folder, files, FRONT, bool(front.interrupted))
+    target = None if folder is None else save_result(folder, style.files(files), FRONT, bool(front.interrupted))
     if not quiet:
         _show(front, files, every, verbose, plot)
         tell_written(target, folder, _listed(files))
@@ -278,6 +283,7 @@ def explain(
     ] = None,
     physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
     time_limit: TimeLimit = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
@@ -285,6 +291,7 @@ def explain(
     from synth.studies.infeasibility.explain import explanation_of
     from synth.terminal.console import output, print_explanation, progress_display
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(spec).merged(time_limit=time_limit)
     must_be_a_question(asked)
     must_be_one_family(asked)
@@ -292,11 +299,13 @@ def explain(
         claim_output(folder, EXPLANATION)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
+        if not quiet:
+            tell_readings(request.catalogs)
         found = explanation_of(request, asked.settings(), progress, physics)
     if not quiet:
         print_explanation(found, request.problem.title, output())
     if folder is not None:
-        files = found.save(folder)
+        files = found.save(folder, style)
         if not quiet:
             tell_written(files[0].parent, folder, [file.name for file in files])
     if found.interrupted:
@@ -313,18 +322,21 @@ def check(
         list[str] | None,
         typer.Option("--at", help='Tell the state at an operating point, "speed=900 rpm".', metavar="NAME=VALUE"),
     ] = None,
+    csv: Csv = "en",
 ) -> None:
     """Compute everything about a given design and test every limit; nothing is rounded or searched."""
     from synth.analysis.describe import described
     from synth.question.spec import read_spec
     from synth.terminal.console import check_table, output, print_check, print_state
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(design)
     must_be_a_design(asked)
     if folder is not None:
         claim_output(folder)
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
+        tell_readings(catalogs)
         details = described(problem, catalogs)
     found = None
     if at:
@@ -338,7 +350,7 @@ def check(
         files = {"check.csv": check_table(result, details)}
         if found is not None:
             files["state.csv"] = as_csv(found)
-        save_files(folder, files)
+        save_files(folder, style.files(files))
         print(f"\nwritten: {', '.join(str(folder / name) for name in files)}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
@@ -352,12 +364,14 @@ def simulate(
         list[str] | None,
         typer.Option("--set", help="A setting of the simulation, name=value; repeat it.", metavar="NAME=VALUE"),
     ] = None,
+    csv: Csv = "en",
 ) -> None:
     """Simulate a given design in time; draw it, and set what it finds beside the closed forms."""
     from synth.analysis.hooks import read_settings, second_opinion, simulate_design
     from synth.question.spec import read_spec
     from synth.terminal.console import output, print_simulation
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(design)
     must_be_a_design(asked)
     claim_output(folder)
@@ -367,12 +381,13 @@ def simulate(
             raise InputError("--set", name, "each setting once")
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
+    tell_readings(catalogs)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
     files = frame_files(frames)
     if len(opinion):
         files["second_opinion.csv"] = as_csv(opinion)
-    save_files(folder, files)
+    save_files(folder, style.files(files))
     print_simulation(result, frames, opinion, output())
     tell_written(folder, folder, sorted(files))
 
@@ -384,12 +399,14 @@ def curves(
         Path, typer.Argument(help="A spec, or a design: a spec with values and parts.", metavar="SPEC.yaml")
     ],
     folder: Folder,
+    csv: Csv = "en",
 ) -> None:
     """Draw the curves of a family for a spec, or for a given design."""
     from synth.analysis.hooks import curves as curves_of
     from synth.question.catalogs import catalogs_for
     from synth.question.spec import read_spec
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(spec)
     if asked.family != family:
         raise InputError("FAMILY", family, f"{asked.family}, the family of {asked.file}")
@@ -403,8 +420,9 @@ def curves(
             must_be_a_design(asked)
             problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
+        tell_readings(catalogs)
     files = frame_files(frames)
-    save_files(folder, files)
+    save_files(folder, style.files(files))
     for frame in frames.values():
         print(frame.attrs["title"])
     tell_written(folder, folder, sorted(files))
@@ -463,6 +481,8 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
     given = None if more is None else load_front(more)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
+        if not quiet:
+            tell_readings(request.catalogs)
         try:
             settings = asked.settings().since(begun)
             if given is not None:

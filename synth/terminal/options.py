@@ -37,4 +37,8 @@ Objectives = Annotated[
     typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),
 ]
 Plot = Annotated[bool, typer.Option("--plot", help="Draw the front here, and with -o into front.svg as well.")]
+Csv = Annotated[
+    str,
+    typer.Option("--csv", help="How CSV is written: en, or de (semicolons, decimal commas).", metavar="en|de"),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]

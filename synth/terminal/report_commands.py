@@ -9,7 +9,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal.options import Quiet
-from synth.terminal.session import INFEASIBLE, check_output, tell_written
+from synth.terminal.session import INFEASIBLE, check_output, tell_readings, tell_written
 
 FULL = 5  # designs that a report tells in full unless it is told otherwise
 FILES = (".yaml", ".yml", ".json")
@@ -63,7 +63,7 @@ def report(
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent
-        place, names, notes, feasible = _of_design(source, target, asked)
+        place, names, notes, feasible = _of_design(source, target, asked, quiet)
     else:
         place, target, names, notes, feasible = _of_front(
             source, folder, design or "1", FULL if full is None else full, asked
@@ -103,7 +103,9 @@ def _of_front(
     return place, target, names, notes, bool(front.designs)
 
 
-def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path, list[str], list[str], bool]:
+def _of_design(
+    source: Path, target: Path, asked: dict[str, Any], quiet: bool
+) -> tuple[Path, list[str], list[str], bool]:
     """Write the sheet of a design that stands in a file; return place, files, notes, and whether it is feasible."""
     from synth.analysis.design_spec import given_design, must_be_a_design
     from synth.analysis.reporting import report_design
@@ -115,6 +117,8 @@ def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path,
     spec = read_spec(source)
     must_be_a_design(spec)
     problem, catalogs, design = given_design(spec)
+    if not quiet:
+        tell_readings(catalogs)
     instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)
     place, names, notes = report_design(design, instance, target, name=source.stem, **asked)
     return place, names, notes, design.status is not Status.INFEASIBLE

@@ -7,10 +7,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from synth.csv_style import csv_style
 from synth.errors import InputError
 from synth.output_folder import RATING
-from synth.terminal.options import Folder, Quiet, TimeLimit
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, pair, tell_written
+from synth.terminal.options import Csv, Folder, Quiet, TimeLimit
+from synth.terminal.session import (
+    INFEASIBLE,
+    STOPPED,
+    blamed_on,
+    check_output,
+    claim_output,
+    pair,
+    tell_readings,
+    tell_written,
+)
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
@@ -38,9 +48,11 @@ def rate(
     confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
     time_limit: TimeLimit = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Tell the worst limit and the yield of designs whose friction, duty or sizes scatter."""
+    style = csv_style(csv, "--csv")
     pairs = [pair("--over", text) for text in over or []]
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
@@ -57,7 +69,7 @@ def rate(
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     flags = {"samples": samples, "confidence": confidence, "seed": seed}
     told = {name: value for name, value in flags.items() if value is not None}
-    designs, problem, catalogs, known = _designs(source)
+    designs, problem, catalogs, known = _designs(source, quiet)
     block = dict(pairs) if pairs else {**known}
     if not block:
         right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
@@ -71,7 +83,7 @@ def rate(
             progress=progress,
             time_limit=seconds,
         )
-    target = found.save(folder)
+    target = found.save(folder, style)
     if not quiet:
         print_ratings(found, output())
         tell_written(target, folder, sorted(found.files()))
@@ -81,7 +93,7 @@ def rate(
         raise typer.Exit(INFEASIBLE)
 
 
-def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
+def _designs(source: Path, quiet: bool) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
     """Return the designs of a folder or of a DESIGN.yaml, their problem and tables, and what scatters by their own."""
     if source.suffix.lower() not in FILES or source.is_dir():
         from synth.results.loading import load_front
@@ -95,4 +107,6 @@ def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, An
     must_be_a_design(asked)
     with blamed_on(asked.file):
         problem, catalogs, design = given_design(asked)
+    if not quiet:
+        tell_readings(catalogs)
     return design, problem, catalogs, dict(asked.robust)

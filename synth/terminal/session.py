@@ -18,6 +18,8 @@ from synth.results.drawings import report
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.tables.catalogs import Catalogs
+
 FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD, NOT_PROVEN = 0, 1, 2, 3, 4, 5, 6
 INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C
 
@@ -25,6 +27,13 @@ INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C
 def tell(sentence: str) -> None:
     """Say something beside the results: on standard error."""
     print(f"clutchsynth: {sentence}", file=sys.stderr)
+
+
+def tell_readings(tables: Catalogs) -> None:
+    """Say how files with own part tables were read that are not written as is expected."""
+    for sentence in tables.readings():
+        name, _, how = sentence.partition(": ")
+        tell(f"read as {how}: {name}")
 
 
 def pair(flag: str, text: str) -> tuple[str, str]:

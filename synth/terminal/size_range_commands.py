@@ -7,11 +7,12 @@ from typing import Annotated
 
 import typer
 
+from synth.csv_style import csv_style
 from synth.errors import InputError
 from synth.output_folder import SIZE_RANGE, save_result
 from synth.results.drawings import report
 from synth.terminal.batch_commands import Database, Workers, batch_job, finish
-from synth.terminal.options import Headings, Quiet, RowFamily, RowPoints
+from synth.terminal.options import Csv, Headings, Quiet, RowFamily, RowPoints
 from synth.terminal.session import STOPPED, claim_output, tell_written
 
 
@@ -47,19 +48,21 @@ def size_range(
     points: RowPoints = None,
     workers: Workers = None,
     database: Database = None,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Choose the standard variants that serve all feasible rows of a batch."""
     from synth.units import parse_quantity
     from synth.variants.size_range import size_range as choose
 
+    style = csv_style(csv, "--csv")
     seconds = parse_quantity(time_limit, "s", "--time-limit")
     job_id = None
     if not source.is_dir():
         if folder is None:
             raise InputError("--output", None, "a folder for the batch and the size range, for example -o out/")
         asked = None if objective is None else [objective]
-        job = batch_job(source, folder, family, mapping, points, None, True, 0, None, asked, None, database)
+        job = batch_job(source, folder, family, mapping, points, None, True, 0, None, asked, None, database, style)
         job_id = job.id
         code = finish(lambda: job, workers, None, quiet)
         if code == STOPPED:
@@ -82,7 +85,7 @@ def size_range(
     draw = report("figure")
     if draw is not None:
         files["curve.svg"] = draw(found.curve())
-    save_result(target, files, SIZE_RANGE, False)
+    save_result(target, style.files(files), SIZE_RANGE, False)
     if not quiet:
         from synth.terminal.size_range_console import print_size_range
 

@@ -8,10 +8,20 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from synth.analysis.design_spec import must_be_a_question, must_be_one_family
+from synth.csv_style import csv_style
 from synth.errors import InputError
 from synth.output_folder import STUDY
-from synth.terminal.options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
-from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_written
+from synth.terminal.options import Csv, Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
+from synth.terminal.session import (
+    INFEASIBLE,
+    STOPPED,
+    blamed_on,
+    claim_output,
+    objectives,
+    tell,
+    tell_readings,
+    tell_written,
+)
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -48,11 +58,13 @@ def whatif(
     breaks: Annotated[
         bool, typer.Option("--breaks/--no-breaks", help="Find where the best parts or counts change.")
     ] = True,
+    csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Answer a spec for many values of a requirement, limit, weight, part or option; run again to go on."""
     from synth.question.spec import read_spec
 
+    style = csv_style(csv, "--csv")
     asked = read_spec(spec).merged(
         points=points,
         gap=gap,
@@ -66,7 +78,7 @@ def whatif(
     must_be_one_family(asked)
     claim_output(folder, STUDY)
     study = _study(asked, vary, folder, breaks, quiet)
-    target = study.save(folder)
+    target = study.save(folder, style)
     if not quiet:
         from synth.studies.study_store import STEPS
         from synth.terminal.console import output
@@ -94,6 +106,8 @@ def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool
         wanted[name] = values
     with blamed_on(asked.file):
         request, settings = asked.request(), asked.settings(points=POINTS)
+        if not quiet:
+            tell_readings(request.catalogs)
         with progress_display(quiet) as progress:
             try:
                 return study_of(request, settings, wanted, progress, breaks, folder)

@@ -37,6 +37,14 @@ T = TypeVar("T")
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MINUS = "−‐‑‒–—﹣－"
+# What a table program makes of 1.5 or 1/5 that somebody typed, and writes as a date.
+_MONTH = "(?:jan|feb|mar|mär|mrz|apr|mai|may|jun|jul|aug|sep|okt|oct|nov|dez|dec)[a-zä]*\\.?"
+_DATE = re.compile(
+    r"\d{4}-\d\d-\d\d(?:[ T].*)?|\d{1,2}([./-])\d{1,2}\1(?:\d{4}|\d\d)|\d{1,2}:\d\d(?::\d\d)?"
+    rf"|\d{{1,2}}[-. ]+{_MONTH}(?:[-. ]+\d{{2,4}})?|{_MONTH}[-. ]\d{{2,4}}",
+    re.IGNORECASE,
+)
+_NO_DATE = "a number; a table program has made a date of it: set the cell to Number or Text, and type it again"
 _LARGEST_EXPONENT = 1000
 _MOST_DIGITS = 40
 _SURELY_NORMAL = 1e-200  # below, numbers lose digits
@@ -132,6 +140,8 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
         raise InputError(name, value, "the keyboard's minus sign (-) instead of a typographic dash")
     if re.match(r"[+-]?(?:nan|inf|infinity|\.nan|\.inf)\b", plain, re.IGNORECASE):
         raise InputError(name, value, "a finite number")
+    if _DATE.fullmatch(plain):
+        raise InputError(name, value, _NO_DATE)
     match = _NUMBER.match(plain)
     if match is None:
         if re.match(r"[+-]?,[0-9]", plain):

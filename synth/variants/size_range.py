@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError, whole_number
 from synth.files import csv_text, frame_csv
 from synth.input_limits import INPUT_LIMITS
@@ -99,9 +100,9 @@ class SizeRange:
             "size_range.json": json.dumps(record, indent=1, ensure_ascii=False) + "\n",
         }
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write variants.csv, assignment.csv, unserved.csv, curve.csv and size_range.json, all or none."""
-        return save_result(folder, self.files(), SIZE_RANGE, False)
+        return save_result(folder, csv.files(self.files()), SIZE_RANGE, False)
 
 
 def _csv(rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> str:

@@ -8,6 +8,7 @@ from functools import cache
 import casadi as ca
 import numpy as np
 import pytest
+import yaml
 
 import synth
 from synth.files import read_bytes
@@ -282,6 +283,31 @@ def test_designs_are_makeable(example):
     _, _, front = example
     for design in front.designs:
         assert design.off_grid == {}
+
+
+def test_design_files_say_the_same_design_in_few_digits(example):
+    family, case, front = example
+    for design in front.designs:
+        assert design.digits is not None
+        spec = yaml.safe_load(design.yaml())
+        again = synth.evaluate(
+            synth.load(family, **spec.get("options", {})),
+            spec["requirements"],
+            {"values": spec["values"], "parts": spec["parts"]},
+            limits=case.settings.get("limits"),
+            objectives=front.frame.objectives,
+        )
+        assert (again.violated, again.not_checked) == ((), design.not_checked)
+        assert set(design.advice) >= set(again.advice)
+        assert again.off_grid == design.off_grid
+        for name, value in design.objectives.items():
+            assert again.objectives[name] == pytest.approx(value, rel=1e-9, abs=0.0)
+        for name, kind in design.frame.kinds.items():
+            if kind == "count":
+                assert spec["values"][name] == design.values[name] or isinstance(spec["values"][name], str)
+            elif kind == "variable" and design.digits:
+                number = str(spec["values"][name]).split()[0].split("e")[0]
+                assert len(number.replace(".", "").strip("-0")) <= design.digits
 
 
 def test_checking_a_design_gives_its_values_again(example):

@@ -84,6 +84,13 @@ def test_entries_of_a_cell() -> None:
         "a": ["x y", "z"],
         "b": "'p; q' in hint and mu > 0.1",
     }
+    assert read_parts("""a = "core 3, thick", z; b: "x" == hint; c: "p, q"; d: "in" in hint """, "") == {
+        "a": ["core 3, thick", "z"],
+        "b": '"x" == hint',
+        "c": ["p, q"],
+        "d": '"in" in hint',
+    }
+    assert read_parts(text_of({"a": ["core 3, thick", "z"]}), "") == {"a": ["core 3, thick", "z"]}
     assert read_limits("mass <= 20 kg; z: 10 .. 14; z == 12", "") == {"mass": ["<= 20 kg"], "z": ["10 .. 14", "== 12"]}
     assert read_fix("", "") == {}
 

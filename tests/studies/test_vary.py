@@ -207,6 +207,7 @@ def test_kinds_and_how_they_are_called() -> None:
         ({"options.thick": "free, fat"}, ["fat", "free, makeable, given"]),
         ({"parts.rope": "rope a, rope a"}, ["each value once"]),
         ({"parts.rope": ""}, ["a word"]),
+        ({"parts.rope": '"rope, x", rope b'}, ["parts.rope = rope, x"]),
         ({"parts.rope": [[]]}, ["a word"]),
         ({"parts.rope": 5}, ["words with commas"]),
         ({"parts.rope <=": "rope a"}, ["without <="]),

@@ -128,7 +128,7 @@ def test_crlf_and_a_byte_order_mark_change_nothing(shipped: Path) -> None:
         (",12,", ",12.5,", "parts.csv, line 2, column teeth", "a whole number"),
         (",1,,book", ",2,,book", "parts.csv, line 3, column crowned", "0 or 1"),
         ("b,2", "a,2", "parts.csv, line 3, column designation", "a name of its own (it stands in parts.csv, line 2"),
-        ("b,2", '"b;c",2', "parts.csv, line 3, column designation", "without comma, semicolon"),
+        ("b,2", '"b;c",2', "parts.csv, line 3, column designation", "without semicolon or line break"),
         ("b,2", ",2", "parts.csv, line 3, column designation", "a value"),
         ("book 2", "", "parts.csv, line 3, column source", "where the figures come from"),
         ("verified", "sure", "parts.csv, line 3, column confidence", "one of verified"),

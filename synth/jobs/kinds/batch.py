@@ -34,11 +34,12 @@ from synth.jobs.kinds.files import UnknownFileError
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_questions import Fault
-from synth.jobs.row_table import EXCEL, RowTable, read_table
+from synth.jobs.row_table import RowTable, read_table
 from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import shown_kind
+from synth.tables.workbook import EXCEL
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")

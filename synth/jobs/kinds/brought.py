@@ -82,7 +82,7 @@ def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         "reading": {
             "separator": written.delimiter,
             "encoding": written.encoding,
-            "decimal_commas": list(written.titles),
+            "decimal_commas": list(written.numbers.titles),
         },
         "columns": columns,
         "missing": [

@@ -12,6 +12,7 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from synth.csv_style import csv_style
 from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
 from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.contract import MEDIA, Record
@@ -69,6 +70,10 @@ async def read_file(
     raw: Annotated[
         bool, Query(description="Cells of CSV as they were brought, also those that a spreadsheet would compute.")
     ] = False,
+    style: Annotated[
+        Literal["en", "de"],
+        Query(alias="csv", description="How CSV is written: with commas, or with semicolons and decimal commas."),
+    ] = "en",
     length: Annotated[Literal["summary", "normal", "full"] | None, Query(description="Of a report.")] = None,
     full: Annotated[int | None, Query(ge=0, le=1000, description="Designs that a report shows in full.")] = None,
 ) -> Response:
@@ -80,12 +85,14 @@ async def read_file(
     else:
         refuse_live(found)
     options: dict[str, Any] = {key: value for key, value in (("length", length), ("full", full)) if value is not None}
-    etag = _tag(found, name, {**options, "raw": raw})
+    etag = _tag(found, name, {**options, "raw": raw, "csv": style})
     kept = {} if found.kind == BATCH else await in_thread(context.store.records, found.id)
     if found.state not in LIVE and name in await _known(context, found, kept) and knows(request, etag):
         return Response(status_code=304, headers={"ETag": etag})
     record = await _rendered(context, found, kept, name, options)
     content = as_brought(record.content) if raw and name.endswith(CSV) else record.content
+    if name.endswith(CSV) and style != "en":
+        content = csv_style(style).text(content.decode()).encode()
     base = name.rsplit("/", 1)[-1]
     headers = {"Content-Disposition": f'attachment; filename="{base}"'}
     if found.state not in LIVE:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
@@ -135,12 +136,12 @@ class Comparison:
             for name, text in outcome.front.files().items()
         }
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write designs.csv, families.csv, comparison.json, design_NN.yaml, and each family's own front in a folder.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, {**self.files(), **self.family_files()}, FRONT, bool(self.interrupted))
+        return save_result(folder, csv.files({**self.files(), **self.family_files()}), FRONT, bool(self.interrupted))
 
     def svg(self) -> str:
         """Return the common front drawn as an SVG file; nothing where it has no two designs or objectives."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.analysis.fired_guards import FiredGuard
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.output_folder import EXPLANATION, save_result
@@ -178,12 +179,12 @@ class Explanation:
             "explanation.json": json.dumps(self._told(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
         }
 
-    def save(self, folder: str | Path) -> list[Path]:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> list[Path]:
         """Write explanation.csv and explanation.json; return the files.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        files = self.files()
+        files = csv.files(self.files())
         target = save_result(folder, files, EXPLANATION, bool(self.interrupted))
         return [target / name for name in files]
 

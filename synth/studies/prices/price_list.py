@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
 from synth.files import csv_text, read_json, write_atomically
 from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
@@ -111,7 +112,7 @@ class Prices:
         self._enter(store)
         return {"prices.csv": table, RECORD: store.text()}
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write prices.csv and prices.json; return the folder.
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped..`` beside that, where the
@@ -120,7 +121,7 @@ class Prices:
         target = Path(folder)
         store = PriceStore.of(target, self.fingerprint, self.front)
         self._enter(store)
-        files = {**self.files(), RECORD: store.text()}
+        files = csv.files({**self.files(), RECORD: store.text()})
         if self.interrupted and store.folder != target:
             return save_files(target if store.folder is None else store.folder, files)
         known = loses_nothing(target, files, ["prices.csv"])

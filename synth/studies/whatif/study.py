@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.csv_style import ENGLISH, CsvStyle
 from synth.files import csv_text
 from synth.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
 from synth.results.drawings import report
@@ -80,13 +81,13 @@ class Study(StudyAnswers):
             found |= {f"{key}.svg": draw(frame) for key, frame in self.curves().items()}
         return found
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write whatif.csv, breaks.csv and the drawings; return the folder.
 
         A study that was stopped replaces no earlier result: it is written to a folder ``stopped..`` beside that, where
         its finished steps are, and goes there when it is finished.
         """
-        target, files, kept = Path(folder), self.files(), self.store.folder
+        target, files, kept = Path(folder), csv.files(self.files()), self.store.folder
         if kept is None or kept == target:
             known = loses_nothing(target, files, ("whatif.csv", "breaks.csv"), NOT_REACHED)
             return save_result(target, files, STUDY, bool(self.interrupted), known)

@@ -12,6 +12,7 @@ from synth.errors import InputError, at, shortened
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
 from synth.model.model import Model
+from synth.plain_text import listed
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
 from synth.units import parse_quantity
@@ -317,7 +318,7 @@ def _written(number: float, unit: str) -> str:
 def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
     """Return designations, conditions or labels; of parts an entry may be a list of several designations."""
     field = f"vary {key}"
-    entries = [x.strip() for x in values.split(",")] if isinstance(values, str) else values
+    entries = listed(values) if isinstance(values, str) else values
     if not isinstance(entries, (list, tuple)) or not entries:
         raise InputError(field, values, "words with commas between them, or a list of them")
     _check_number(field, len(entries))

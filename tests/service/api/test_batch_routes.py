@@ -27,6 +27,9 @@ def workbook(lines: list[list[Any]]) -> bytes:
     book = openpyxl.Workbook()
     for line in lines:
         book.active.append(line)
+    for row in book.active.iter_rows():
+        for cell in row:
+            cell.data_type = "s" if cell.data_type == "f" else cell.data_type  # a text that looks like a formula
     file = io.BytesIO()
     book.save(file)
     return file.getvalue()

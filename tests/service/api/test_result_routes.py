@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from synth.csv_style import GERMAN, unstyled
 from synth.errors import ExtraNeededError
 from synth.jobs.engine_process import Engines
 from synth.jobs.engine_tasks import RENDER_TASK
@@ -174,6 +175,17 @@ def test_cells_that_a_spreadsheet_would_compute_are_kept_from_it(client: Client,
     safe, raw = (client.get(f"jobs/{table}/files/rows.csv{query}").text for query in ("", "?raw=1"))
     cells = [[row["input: note"] for row in csv.DictReader(io.StringIO(text))] for text in (safe, raw)]
     assert cells == [["'=1+1"] * 3, ["=1+1"] * 3]
+
+
+def test_csv_is_given_as_spreadsheets_of_germany_open_it(client: Client, table: str) -> None:
+    plain, german = (client.get(f"jobs/{table}/files/designs.csv{query}") for query in ("", "?csv=de"))
+    assert german.content.decode() == GERMAN.text(plain.content.decode())
+    assert german.content.startswith(b"\xef\xbb\xbfrow;family;")
+    assert unstyled(german.content.decode()) == plain.content.decode()
+    assert german.headers["etag"] != plain.headers["etag"]
+    summary = "files/batch.json"
+    assert client.get(f"jobs/{table}/{summary}?csv=de").content == client.get(f"jobs/{table}/{summary}").content
+    assert client.get(f"jobs/{table}/files/designs.csv?csv=fr").status_code == 422
 
 
 def test_the_summary_of_a_batch_tells_no_place_of_this_machine(works: Service, client: Client, table: str) -> None:

@@ -11,7 +11,7 @@ export function stated(text, unit) {
 
 /** What a spec states, as it stands in a field: without the unit where it is the one beside the field. */
 export function typed(value, unit) {
-  if (Array.isArray(value)) return value.join(", ");
+  if (Array.isArray(value)) return value.map((name) => (/,|^"/.test(name) ? `"${name.replaceAll('"', '""')}"` : name)).join(", ");
   if (value !== null && typeof value === "object") return JSON.stringify(value);
   const text = String(value ?? "");
   return unit && unit !== "-" && text.endsWith(` ${unit}`) ? text.slice(0, -unit.length - 1) : text;

@@ -87,7 +87,7 @@ function draw() {
     folded("limits", "Limits you may set", "empty is not asked", asked("limit").filter((row) => !ofPractice(row)).map((row) => field(row, "requirements")), true),
     objectiveCard(objectives),
     ...(study.several ? [] : [folded("construction", "Construction", `${of("option").length} choices`, of("option").map((row) => choices(row, study.options[row.name] ?? row.default, (name) => choose(row, name)))),
-    folded("parts", "Parts", "designations with commas between them, or a condition on columns", of("part").map((row) => field({ ...row, unit: "" }, "parts"))),
+    folded("parts", "Parts", "designations with commas between them (one that has a comma itself in double quotes), or a condition on columns", of("part").map((row) => field({ ...row, unit: "" }, "parts"))),
     folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix")))]),
     folded("practice", "Rules of practice", `${rules.length} of what an experienced engineer demands; each can be widened alone`, rules.map((row) => field(row, "requirements")), false, true),
     folded("assumptions", "Assumptions", `${assumptions.length} values, each with a default and its source`, assumptions.map((row) => field(row, "requirements")), false, true),
@@ -166,7 +166,12 @@ function collect() {
   else study.objectives = Object.fromEntries(names.map((name) => [name, study.objectives[name] ?? of("objective").find((row) => row.name === name).sense]));
 }
 
-const partsOf = (text) => (/[<>=]| in /.test(text) ? text : text.split(",").map((name) => name.trim()).filter(Boolean));
+/** Return what is asked of a part: a condition, or designations; one that has a comma itself stands in double quotes. */
+const NAMES = /\s*(?:"((?:[^"]|"")*)"\s*(?=,|$)|([^,]*))(?:,|$)/g;
+const partsOf = (text) => {
+  if (/[<>=]| in /.test(text.replace(/(^|,)\s*"(?:[^"]|"")*"\s*(?=,|$)/g, "$1"))) return text;
+  return [...text.matchAll(NAMES)].map(([, quoted, plain]) => (quoted === undefined ? plain : quoted.replaceAll('""', '"')).trim()).filter(Boolean);
+};
 
 function spec() {
   collect();

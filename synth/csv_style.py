@@ -1,0 +1,158 @@
+"""How tables are written for people: the mark between the columns, the sign before decimals, and the beginning.
+
+What is made is always written in one way, with commas and decimal points; a style turns its text into what the programs
+of a country open. Readers of tables take it back as it was.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+from synth.errors import InputError
+
+Content = TypeVar("Content", str, str | bytes)
+
+BLANKS = " \u00a0\u202f"  # that people put between thousands
+# A number of a cell with what stands around it: a comparison, a sign, an exponent, a unit.
+NUMBER = re.compile(
+    r"(?P<before>[\s']*(?:[<>=]=?|[≤≥])?\s*[-+]?)"
+    rf"(?P<number>\d(?:[\d.,]|[{BLANKS}](?=\d\d\d(?!\d)))*)"
+    r"(?P<after>(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?)"
+)
+DOUBTFUL = re.compile(r"[1-9]\d{0,2},\d{3}")  # 1.234 or 1234
+STRETCHED = re.compile(r"(?<![\d.])([1-9]\d{0,2}\.\d{3})0(?!\d)")  # what with_comma has put a zero to
+DECIMAL = re.compile(r"\d+\.\d+")
+
+
+def with_point(cell: str) -> str:
+    """Return a cell whose number has a decimal point in place of a comma, and nothing between its thousands.
+
+    Examples
+    --------
+    >>> with_point("12,5 N*m"), with_point("<= 1.234,5"), with_point("1 234,5"), with_point("core 0,5")
+    ('12.5 N*m', '<= 1234.5', '1234.5', 'core 0,5')
+    """
+    match = NUMBER.fullmatch(cell)
+    if match is None or "," not in match["number"]:
+        return cell
+    number = re.sub(rf"[.{BLANKS}]", "", match["number"]).replace(",", ".")
+    return match["before"].replace("'", "") + number + match["after"]
+
+
+def without_blanks(cell: str) -> str:
+    """Return a cell whose number has nothing between its thousands, and no apostrophe before it.
+
+    Examples
+    --------
+    >>> without_blanks("12 345.6 N*m"), without_blanks("'12.5"), without_blanks("core 1 000")
+    ('12345.6 N*m', '12.5', 'core 1 000')
+    """
+    match = NUMBER.fullmatch(cell)
+    if match is None:
+        return cell
+    return match["before"].replace("'", "") + re.sub(rf"[{BLANKS}]", "", match["number"]) + match["after"]
+
+
+def with_comma(cell: str) -> str:
+    """Return a cell whose number has a decimal comma in place of a point.
+
+    Three decimals get a zero, as nobody takes the comma of 1,2340 for one between thousands.
+
+    Examples
+    --------
+    >>> with_comma("12.5 N*m"), with_comma("1.234"), with_comma("core 0.5"), with_comma("1e-05")
+    ('12,5 N*m', '1,2340', 'core 0.5', '1e-05')
+    """
+    match = NUMBER.fullmatch(cell)
+    if match is None or not DECIMAL.fullmatch(match["number"]):
+        return cell
+    number = match["number"].replace(".", ",")
+    return match["before"] + number + ("0" if DOUBTFUL.fullmatch(number) else "") + match["after"]
+
+
+@dataclass(frozen=True)
+class CsvStyle:
+    """How CSV is written.
+
+    Parameters
+    ----------
+    delimiter : str
+        Between the columns.
+    commas : bool
+        Whether numbers have decimal commas.
+    mark : str
+        What the text begins with.
+    """
+
+    delimiter: str = ","
+    commas: bool = False
+    mark: str = ""
+
+    def text(self, plain: str) -> str:
+        """Return a table that is written with commas and decimal points in this style.
+
+        Columns that hold more numbers than words get decimal commas, so that readers know them by the whole column.
+        """
+        if self == ENGLISH:
+            return plain
+        rows = list(csv.reader(io.StringIO(plain, newline="")))
+        if self.commas and rows:
+            for k in range(len(rows[0])):
+                cells = [row[k] for row in rows[1:] if k < len(row) and row[k]]
+                matches = [NUMBER.fullmatch(cell) for cell in cells]
+                numbers = [match["number"] for match in matches if match]
+                if 2 * len(numbers) > len(cells) and not any("," in number for number in numbers):
+                    for row in rows[1:]:
+                        if k < len(row):
+                            row[k] = with_comma(row[k])
+        buffer = io.StringIO()
+        csv.writer(buffer, delimiter=self.delimiter, lineterminator="\n").writerows(rows)
+        return self.mark + buffer.getvalue()
+
+    def files(self, files: Mapping[str, Content]) -> dict[str, Content]:
+        """Return files by name, the tables among them in this style."""
+        return {
+            name: self.text(content) if isinstance(content, str) and name.endswith(".csv") else content
+            for name, content in files.items()
+        }
+
+
+ENGLISH = CsvStyle()
+GERMAN = CsvStyle(";", commas=True, mark="\ufeff")
+STYLES = {"en": ENGLISH, "de": GERMAN}
+
+
+def unstyled(text: str) -> str:
+    r"""Return the text of a table as it was before a style was given to it.
+
+    Examples
+    --------
+    >>> unstyled(GERMAN.text("mass [kg],part\n1.234,core 2\n"))
+    'mass [kg],part\n1.234,core 2\n'
+    """
+    if not text.startswith(GERMAN.mark):
+        return text
+    rows = csv.reader(io.StringIO(text.removeprefix(GERMAN.mark), newline=""), delimiter=GERMAN.delimiter)
+    buffer = io.StringIO()
+    plain = ([STRETCHED.sub(r"\1", with_point(cell)) if "," in cell else cell for cell in row] for row in rows)
+    csv.writer(buffer, lineterminator="\n").writerows(plain)
+    return buffer.getvalue()
+
+
+def csv_style(name: str, field: str = "csv") -> CsvStyle:
+    """Return the style of a name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    if name not in STYLES:
+        right = "en (commas, decimal points) or de (semicolons, decimal commas)"
+        raise InputError(field, name, right, (field.lstrip("-"),))
+    return STYLES[name]
