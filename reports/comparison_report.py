@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from reports.about import About
+from reports.front_plot import front_file
 from reports.numbers import printed, shown
 from reports.reasons import significant
-from reports.sheet.blocks import Block, Column, Document, Heading, Link, Paragraph, State, TableBlock, TableRow
+from reports.screen_numbers import words
+from reports.sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
 from reports.sheet.design_sheet import program_name
 from synth.results import ParetoFront
 
+CLASS = re.compile(r' class="[a-z]+"')
 LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
 FAMILY_COLUMNS = (Column("family", width=1.6), Column("outcome", width=0.9), Column("why", width=3.6))
 
@@ -36,7 +41,8 @@ def comparison_report(
     sentence = told[:1].upper() + told[1:] + "."
     blocks: list[Block] = [_state(content, sentence)]
     if designs:
-        blocks += [Heading("The common front", anchor="designs"), _ranked(content, designs, fronts, links)]
+        blocks.append(Heading("The common front", anchor="designs"))
+        blocks += [*_drawn(content, designs, fronts), _ranked(content, designs, fronts, links)]
     rows = [
         TableRow(
             (
@@ -82,6 +88,21 @@ def _state(content: Mapping[str, Any], sentence: str) -> State:
     return State(LEVELS[kind], head, (sentence,))
 
 
+def _drawn(
+    content: Mapping[str, Any], designs: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]
+) -> list[Block]:
+    """Return the drawing of the common front; nothing where there is none to draw."""
+    titles = {x["family"]: str(x["title"]) for x in content["families"]}
+    own = [replace(fronts[x["family"]].designs[x["own_rank"] - 1], rank=x["rank"], note=x["note"]) for x in designs]
+    families = [titles[x["family"]] for x in designs]
+    svg = front_file(own, content["objectives"], "Common front", families=families)
+    if not svg:
+        return []
+    told = f"{len(own)} designs of {', '.join(dict.fromkeys(families))}; the table below lists them"
+    own_colours = CLASS.sub("", svg.partition("\n")[2])  # on white paper of its own, whatever the page is like
+    return [Figure(own_colours, told, "Each point is a design, its shape and colour the family.")]
+
+
 def _ranked(
     content: Mapping[str, Any],
     designs: Sequence[Mapping[str, Any]],
@@ -104,5 +125,5 @@ def _ranked(
         named = Link(f"{titles[family]} #{x['own_rank']}", place)
         score = "" if x["score"] is None else significant(float(x["score"]), 4)
         values = [printed(shown(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
-        rows.append(TableRow((f"#{x['rank']}", score, named, *values, str(x.get("note") or ""))))
+        rows.append(TableRow((f"#{x['rank']}", score, named, *values, words(str(x.get("note") or "")))))
     return TableBlock.of("Designs of all families that no other one beats, the best rank first", columns, rows)

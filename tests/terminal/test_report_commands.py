@@ -266,7 +266,13 @@ def test_ranks_of_a_comparison_are_those_of_the_common_front(tmp_path):
     done = at_once("report", tmp_path / "any", "-o", tmp_path / "out", "--explorer", "--design", f"knee,{last['rank']}")
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "explorer.html").is_file()
-    page = Page((tmp_path / "out" / "report.html").read_text())
+    text = (tmp_path / "out" / "report.html").read_text()
+    # The common front is drawn with a shape and a colour for each family, whatever the colours of the page.
+    picture = text[text.index("<svg") : text.index("</svg>")]
+    assert "Common front" in picture
+    assert picture.count("#0072B2") > picture.count('class="') == 0
+    assert all(f">#{design['rank']}<" in picture for design in told["designs"])
+    page = Page(text)
     files = [link.split("#")[0] for link in page.links if not link.startswith("#")]
     assert files
     assert all((tmp_path / "out" / name).is_file() for name in files)
