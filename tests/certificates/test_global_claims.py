@@ -266,7 +266,7 @@ def fills(monkeypatch):
 
 @pytest.mark.parametrize(
     ("structure", "seed", "points", "enough"),
-    [("discrete", 2, 8, True), ("posynomial", 1, 12, False), ("discrete", 2, 20, False), ("gridded", 1, 20, False)],
+    [("discrete", 2, 8, True), ("posynomial", 1, 12, True), ("discrete", 2, 20, False), ("gridded", 1, 20, False)],
 )
 def test_what_lies_between_levels_is_found_until_it_is_enough_or_all(fills, structure, seed, points, enough):
     case = of_two(structure, seed, points)

@@ -32,6 +32,8 @@ def choose_designs(state: FrontState) -> None:
         proof.complete = len(state.front) <= points and _stand_for_all(state)
     standing, state.front = state.front, spread(state, state.front, points)
     state.spare = [c for c in standing if not any(c is own for own in state.front)]
+    # Designs that were found since everything was known may be more than are listed.
+    proof.complete = proof.complete and _stand_for_all(state)
 
 
 def _polished(state: FrontState) -> list[Candidate]:
