@@ -101,7 +101,7 @@ def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataF
         From no current to half as much again as the design has.
     """
     body, value = built(spec, coil.design), coil.design.values
-    turned = coil.currents * value["turns"]
+    turned = coil.currents * coil.design.steps["window_turns"]
     flux_density = body.flux_density(turned)
     force = body.force(flux_density)
     share = turned / value["ampere_turns"]

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from problems.mechanics import magnetics
 from problems.practice import UNSOURCED
 from problems.sources import S4, TYPICAL
 from synth.declaration import Block, Declaration, Requirement, Slot, Variable
+
+WHOLE = 1e-9  # of a turn: what is so little beyond a whole number is rounding
 
 
 class CoilRequirements(Block):
@@ -256,12 +260,20 @@ def declare_winding(
     window = unknowns.coil_length * unknowns.coil_height
     # Of one row of the table alone, so that it is known per wire.
     copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
-    turns = d.derive(
-        "turns",
+    turns = d.step(
+        "window_turns",
         "-",
         magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
+        symbol="N_fill",
+        text="Turns that fill the window, as current and flux are computed with them",
+        source=f"{S4} [P6]",
+    )
+    d.derive(
+        "turns",
+        "-",
+        np.ceil(turns - WHOLE),
         symbol="N_t",
-        text="Turns of the coil as computed; wind the next whole number",
+        text="Turns to wind: what fills the window, up to the next whole one",
         source=f"{S4} [P6]",
     )
     ampere_turns = d.derive(

@@ -197,7 +197,7 @@ class CoilDrawings:
         frame = pd.DataFrame(
             {
                 "coil temperature [degC]": temperature - ZERO_CELSIUS,
-                "constant voltage [N*m]": self.torque_of(current * value["turns"]),
+                "constant voltage [N*m]": self.torque_of(current * self.design.steps["window_turns"]),
                 "constant current [N*m]": np.full_like(temperature, value["torque"]),
                 "constant voltage [A]": current,
             }

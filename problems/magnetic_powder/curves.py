@@ -145,7 +145,7 @@ def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataF
         From no current to half as much again as the design has.
     """
     body = built(spec, coil.design)
-    flux_density = body.flux_density(coil.currents * coil.design.values["turns"])
+    flux_density = body.flux_density(coil.currents * coil.design.steps["window_turns"])
     iron = body.circuit.iron(flux_density)
     return coil.torque_over_current(
         {

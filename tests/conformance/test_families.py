@@ -150,6 +150,9 @@ def test_gradients_equal_differences(traced):
     raw = list(result.values.values()) + [s for y in model.limits for s in result.limits[y.name]]
     for (name, _, _), value, wanted in zip(named, raw, np.moveaxis(exact, 1, 0), strict=True):
         f = np.broadcast_to(value, np.prod(shape)).reshape(shape)
+        if np.all(f == np.round(f)):  # what is a whole number is level between its jumps
+            assert not np.any(wanted), name
+            continue
         numeric = (f @ np.array([1, -8, 8, -1])) / (12 * sizes)
         size = np.abs(f).max(axis=-1) + np.abs(wanted)[..., None]
         error = np.fmin.reduce(np.abs(numeric - wanted[..., None]) / np.where(size > 0, size, 1), axis=-1)

@@ -174,7 +174,7 @@ def magnet_by_hand(v, wire, surfaces, work, force_back=100.0):
         "pull_in_force": b_in**2 * area / mu0,
         "magnet_diameter": 2 * r4,
         "ampere_turns": turned,
-        "turns": n,
+        "turns": math.ceil(n),
         "current": current,
         "current_density": current / wire["copper_area"],
         "coil_voltage": current * hot,

@@ -267,7 +267,7 @@ def test_copper_costs_more_than_steel():
     plain = design(SHORT, THEN)
     v = plain.values
     wire = plain.parts["winding_wire"]
-    copper = 8960 * 2 * math.pi * (34e-3 + 10e-3) * v["turns"] * wire["copper_area"]
+    copper = 8960 * 2 * math.pi * (34e-3 + 10e-3) * plain.steps["window_turns"] * wire["copper_area"]
     lining = 0.2 * max(plain.parts["friction_pair"]["relative_cost"], 1) * v["friction_area"] / 1
     by_hand = v["mass"] + 0.3 * (5 + 3) + 9 * copper + lining / 1e-2
     assert v["cost"] == pytest.approx(by_hand, rel=0.02)

@@ -175,7 +175,7 @@ def test_copper_and_powder_cost_more_than_steel():
     found = design(WIDE)
     v, wire = found.values, found.parts["winding_wire"]
     mean = 77e-3 + 1.25e-3 + 6e-3 + 0.4e-3 + 11.5e-3
-    copper = 8960 * 2 * math.pi * mean * v["turns"] * wire["copper_area"]
+    copper = 8960 * 2 * math.pi * mean * found.steps["window_turns"] * wire["copper_area"]
     assert v["cost"] == pytest.approx(v["mass"] + 0.3 * 7 + 9 * copper + 19 * v["powder_mass"], rel=1e-9)
 
 
