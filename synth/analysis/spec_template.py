@@ -9,6 +9,7 @@ from typing import Any
 from synth.analysis.describe import described
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
+from synth.plain_text import plain_number
 from synth.question.settings import SearchSettings
 from synth.units import parse_quantity, to_si
 
@@ -147,7 +148,7 @@ def _meaning(row: Row, more: str) -> str:
 
 
 def _range(row: Row) -> str:
-    return " .. ".join(f"{row[end]:.6g}" for end in ("lower", "upper") if math.isfinite(row[end]))
+    return " .. ".join(plain_number(row[end], 6) for end in ("lower", "upper") if math.isfinite(row[end]))
 
 
 def _span(row: Row) -> str:

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from synth.jobs.row_questions import Fault
 from synth.terminal.console import console_on, output, plain_table
-from synth.terminal.session import tell_written
+from synth.terminal.session import say, tell_written
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob
@@ -146,9 +146,9 @@ WORDS = {
 def print_summary(counts: Mapping[str, int], place: Path, folder: Path, stopped: str) -> None:
     """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
-    print(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
     if stopped:
-        print(f"stopped: {stopped}; what was found is saved, the same command goes on")
+        say(f"stopped: {stopped}; what was found is saved, the same command goes on")
     tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
 
 

@@ -63,6 +63,7 @@ from synth.terminal.session import (
     objectives,
     one_command,
     pair,
+    say,
     tell,
     tell_readings,
     tell_written,
@@ -351,7 +352,8 @@ def check(
         if found is not None:
             files["state.csv"] = as_csv(found)
         save_files(folder, style.files(files))
-        print(f"\nwritten: {', '.join(str(folder / name) for name in files)}")
+        print()
+        say(f"written: {', '.join(str(folder / name) for name in files)}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
 
@@ -495,7 +497,7 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
 
 def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bool, plot: bool) -> None:
     from synth.results.calculation import CALCULATION, Calculation
-    from synth.terminal.console import output, print_outcome
+    from synth.terminal.console import explanation_text, output, print_outcome
 
     console = output()
     if front.designs:
@@ -511,7 +513,7 @@ def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bo
 
         print_robust(front, console)
     if explanation:
-        print(explanation, end="")
+        print(explanation_text(front, console.width), end="")
     print_outcome(front, console, verbose)
 
 

@@ -6,6 +6,7 @@ import io
 import math
 import os
 import sys
+import textwrap
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,7 +14,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.console import Console, ConsoleOptions, RenderableType
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.segment import Segment
 from rich.table import Table
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     from synth.studies.infeasibility.explanation import Explanation
 
 NARROWEST = 40  # that a line may be asked to be
+ENOUGH = 30  # characters that a column of sentences wants beside others
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
 STATISTICS = {  # what the numbers of a search are called
@@ -73,9 +76,57 @@ def _asked_width() -> int:
     return max(int(asked), NARROWEST) if asked.isascii() and asked.isdigit() else WIDTH
 
 
+class PlainTable(Table):
+    """A table whose column of sentences stands below each row where the screen leaves it too little room."""
+
+    wide: int | None = None  # the column of sentences
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Render it as columns, or with the sentences below."""
+        lines = self._stacked(console, options)
+        if lines is None:
+            yield from super().__rich_console__(console, options)
+            return
+        for line in lines:
+            yield from line
+            yield Segment.line()
+
+    def _stacked(self, console: Console, options: ConsoleOptions) -> list[list[Segment]] | None:
+        """Return the lines with the sentences below the rows; nothing where the columns have room beside each other."""
+        if not self.wide:
+            return None
+        columns = [[cell_len(str(cell)) for cell in (x.header, *x.cells)] for x in self.columns]
+        others = [column for k, column in enumerate(columns) if k != self.wide]
+        taken = sum(map(max, others)) + 3 * (len(others) - 1)
+        room, texts = options.max_width - taken - 3, [str(cell) for cell in self.columns[self.wide].cells]
+        if room >= min(ENOUGH, max(columns[self.wide])) or taken > options.max_width:
+            return None
+        bare = Table(box=self.box, pad_edge=False, show_edge=False, header_style="")
+        for k, column in enumerate(self.columns):
+            if k != self.wide:
+                bare.add_column(column.header, justify=column.justify, no_wrap=True)
+        for row in zip(*(x.cells for k, x in enumerate(self.columns) if k != self.wide), strict=True):
+            bare.add_row(*row)
+        heading, rule, *rows = console.render_lines(bare, options, pad=False)
+        lines = [heading, [Segment(f"    {self.columns[self.wide].header}")], rule]
+        for shown, text in zip(rows, texts, strict=True):
+            lines.append(shown)
+            lines += [[Segment(line)] for line in _indented(text, options.max_width, 4, 4)]
+        return lines
+
+
+def _indented(text: str, width: int, first: int, later: int) -> list[str]:
+    """Return a text as lines no wider than a screen, none of them broken inside a word that fits."""
+    wrapper = textwrap.TextWrapper(
+        width, initial_indent=" " * first, subsequent_indent=" " * later, break_on_hyphens=False
+    )
+    return [line for part in text.split("\n") for line in wrapper.wrap(part)]
+
+
 def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
     """Return a table with one rule under its headings; column ``wide`` takes what room there is, and wraps."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="")
+    table = PlainTable(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="")
+    table.wide = wide
     for k, heading in enumerate(headings):
         table.add_column(
             heading,
@@ -94,9 +145,10 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
     """Print why nothing is feasible, and every way out with the smallest change first."""
     console.print(f"{title}: {found.message}")
     for guard in found.fired:
-        console.print(f"\nRefused: {guard.name}: expected {guard.message}", soft_wrap=True)
+        console.print()
+        _print_indented(console, f"Refused: {guard.name}: expected {guard.message}", 0)
         for name, value in guard.lifted_by.items():
-            console.print(f"  not refused with {name} {value}", soft_wrap=True)
+            _print_indented(console, f"not refused with {name} {value}", 2)
     titles = {
         "requirement": "One requirement alone",
         "limit": "One limit alone",
@@ -112,11 +164,16 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
             continue
         console.print(f"\n{heading}")
         for way in ways:
-            console.print(f"  {way.sentence}" + ("" if way.proven else " (less may do: not proven)"), soft_wrap=True)
+            _print_indented(console, way.sentence + ("" if way.proven else " (less may do: not proven)"), 2)
     if found.conflict and not found.minimal:
         console.print("\nFewer limits may exclude each other as well: not proven to be minimal.")
     for sentence in found.not_settled:
         console.print(f"not settled: {sentence}")
+
+
+def _print_indented(console: Console, text: str, indent: int) -> None:
+    for line in _indented(text, console.width, indent, indent + 4):
+        console.print(line, soft_wrap=True)
 
 
 # ---- describe -------------------------------------------------------------------------------------------------------
@@ -141,6 +198,7 @@ TITLES = {
 }
 
 
+NEAREST = 3  # limits that are named as those with the least room
 CODED = ("refusal", "advice", "next_row")  # kinds of which only a code or name and a text are shown
 
 
@@ -242,8 +300,12 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         console.print(remark)
     if design.violated:
         console.print(f"\nviolated: {', '.join(design.violated)}")
-    else:
-        console.print(f"\nall {sum(s == 'ok' for s in states.values())} limits that apply hold")
+        return
+    used = sorted(((u, n) for n, u in design.utilisation.items() if u is not None), key=lambda x: (-x[0], x[1]))
+    if used:
+        nearest = ", ".join(f"{name} ({100 * share:.3g} % used)" for share, name in used[:NEAREST])
+        console.print(f"\nnearest to their limits: {nearest}")
+    console.print(f"\nall {sum(s == 'ok' for s in states.values())} limits that apply hold")
 
 
 def _requirements(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table:
@@ -273,7 +335,7 @@ def _quantities(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table
 
 
 def _limits(design: Design, states: Mapping[str, str]) -> Table:
-    table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4), wide=0)
+    table = plain_table("name", "value", "", "limit", "used", "", right=(1, 3, 4), wide=0)
     for name, state in states.items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
@@ -387,11 +449,11 @@ def _plain(si: float, unit: str) -> str:
 # ---- run ------------------------------------------------------------------------------------------------------------
 
 
-def explanation_text(front: ParetoFront) -> str:
-    """Return in words and one table why nothing is feasible."""
+def explanation_text(front: ParetoFront, width: int = WIDTH) -> str:
+    """Return in words and one table why nothing is feasible, on lines no wider than that."""
     explanation = front.explanation or LeastInfeasible()
     buffer = io.StringIO()
-    console = console_on(buffer, WIDTH)
+    console = console_on(buffer, width)
     console.print(explanation.get("message", "No design is feasible."))
     conflicts = explanation.get("conflicts") or []
     if conflicts:

@@ -333,7 +333,7 @@ def test_the_front_is_drawn_here_and_with_a_folder_as_a_file(tmp_path: Path) -> 
     assert done.returncode == 0
     assert re.search("\n\nmass|\n\nactuation force", done.stdout)
     assert re.search("[\u2801-\u28ff]", done.stdout)
-    assert "front.svg" in done.stdout.splitlines()[-1]
+    assert "front.svg" in done.stdout.rpartition("written to ")[2]
     drawn = ElementTree.parse(tmp_path / "out" / "front.svg").getroot()
     said = ["".join(text.itertext()) for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
     assert said[0].startswith("Multi-plate clutch: ")

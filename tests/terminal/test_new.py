@@ -77,7 +77,7 @@ def test_symbols_stand_for_names_and_options_that_differ_are_stated(tmp_path: Pa
         (("no_such_clutch",), "family"),
         (("multi_plate_clutch", "torque=5 N*m"), "a requirement of multi_plate_clutch: load_torque"),
         (("multi_plate_clutch", "load_torque=5 kg"), "kg measures a mass"),
-        (("multi_plate_clutch", "load_torque=0 N*m"), "0.1 .. 1e+06 N*m"),
+        (("multi_plate_clutch", "load_torque=0 N*m"), "0.1 .. 1 000 000 N*m"),
         (("multi_plate_clutch", "load_torque"), "name=value"),
     ],
 )
