@@ -55,7 +55,7 @@ def label_spots(
     --------
     >>> field = Box(0, 0, 10, 3)
     >>> label_spots([Box(2, 1, 3, 2), Box(4, 1, 5, 2)], [(2, 1), (2, 1)], field, whole=True)
-    [Box(left=4, top=0, right=6, bottom=1), Box(left=6, top=1, right=8, bottom=2)]
+    [Box(left=4.0, top=0, right=6.0, bottom=1), Box(left=6.0, top=0, right=8.0, bottom=1)]
     """
     found: list[Box | None] = []
     taken = list(points)

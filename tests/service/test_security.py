@@ -378,7 +378,7 @@ def test_a_long_file_delays_no_check_of_what_is_typed(tmp_path: Path) -> None:
         return [answer.status_code for answer in await asyncio.gather(*files)], check.status_code, seconds
 
     slow = Answering()
-    told = {"ready": False, "problems": [], "read": {}, "combinations": None}
+    told = {"ready": False, "problems": [], "remarks": [], "read": {}, "combinations": None}
     with Service(tmp_path, Answering(lambda task, payload: told), files=slow, file_engines=1) as service:
         codes, check, seconds = service.runner.run(both(service))
     assert sorted(codes) == [422] * 5 + [503]

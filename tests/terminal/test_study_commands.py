@@ -44,7 +44,7 @@ def test_tables_and_pictures_are_written(saved: tuple[Path, str]) -> None:
     out, shown = saved
     assert sorted(p.name for p in out.iterdir()) == ["breaks.csv", "steps", "study.json", "whatif.csv", "whatif.svg"]
     assert "load_torque, 3 steps" in shown
-    assert shown.endswith(f"written to {out}: breaks.csv, whatif.csv, whatif.svg, steps/\n")
+    assert " ".join(shown.split()).endswith(f"written to {out}: breaks.csv, whatif.csv, whatif.svg, steps/")
     assert "proven: every step" in shown
     table = rows(out / "whatif.csv")
     assert [row["load_torque [N*m]"] for row in table] == ["500.0", "550.0", "600.0"]
@@ -133,7 +133,7 @@ def test_out_of_time_ends_with_four_and_goes_on(folder: Path, saved: tuple[Path,
     assert done.returncode == 4
     assert "0 of 3 steps are kept, run again to go on" in done.stdout
     assert {row["reason"] for row in rows(folder / "late" / "whatif.csv")} == {"not reached: time limit"}
-    assert done.stdout.endswith(f"written to {folder / 'late'}: breaks.csv, whatif.csv\n")
+    assert " ".join(done.stdout.split()).endswith(f"written to {folder / 'late'}: breaks.csv, whatif.csv")
     assert sorted(p.name for p in (folder / "late").iterdir()) == ["breaks.csv", "whatif.csv"]
     assert at_once(*command, "--quiet").returncode == 0
     for name in ("whatif.csv", "breaks.csv", "whatif.svg"):
