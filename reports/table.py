@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from reports.numbers import unit_text
 from reports.reasons import binding, why
 from reports.screen_numbers import alike, in_unit, words
 from reports.sizing import sizing_line
+from synth.plain_text import wrapped
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 from synth.results.rating_tables import rating_row
@@ -99,9 +99,7 @@ def _bare(remark: str) -> str:
 
 def _print_wrapped(console: Console, text: str, indent: int) -> None:
     """Print a text on lines no wider than the screen, the later ones indented."""
-    first, later = " " * indent, " " * (indent + 4)
-    lines = textwrap.wrap(text, console.width, initial_indent=first, subsequent_indent=later, break_on_hyphens=False)
-    for line in lines:
+    for line in wrapped(text, console.width, indent, indent + 4):
         console.print(line, soft_wrap=True)
 
 
@@ -193,8 +191,8 @@ def _side_by_side(shown: Sequence[Design], columns: Iterable[_Column], width: in
     if room - BETWEEN < min(NARROWEST, max(map(len, limits))):
         groups.append([ranks])
         room = width - ranks.width
-    wrapped = ["\n".join(textwrap.wrap(text, room - BETWEEN, break_long_words=True)) for text in limits]
-    groups[-1].append(_column("limited by", "", wrapped))
+    cells = ["\n".join(wrapped(text, room - BETWEEN)) for text in limits]
+    groups[-1].append(_column("limited by", "", cells))
     return [_grid(group) for group in groups]
 
 

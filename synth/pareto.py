@@ -96,11 +96,8 @@ class Scale:
         ----------
         signed : array (designs, objectives)
         """
-        ideal, near = signed.min(axis=0), as_good(signed)
-        nadir = near.copy()
-        for k in range(signed.shape[1]):
-            np.maximum(nadir, signed[signed[:, k] <= near[k]].min(axis=0), out=nadir)
-        return Scale(ideal, nadir)
+        near = as_good(signed)
+        return Scale(signed.min(axis=0), np.maximum(near, _worst_at_ends(signed, near)))
 
     def begun_at(self, signed: np.ndarray) -> Scale:
         """Return the same for designs that are listed: from what is best among them, at most to what they cost."""
@@ -142,10 +139,15 @@ def as_good(signed: np.ndarray) -> np.ndarray:
     signed : array (designs, objectives)
         Of a front, or its ends alone.
     """
-    best, worst = signed.min(axis=0), signed.min(axis=0)
-    for k in range(signed.shape[1]):
-        np.maximum(worst, signed[signed[:, k] <= best[k]].min(axis=0), out=worst)
-    return nearly(best, worst)
+    best = signed.min(axis=0)
+    return nearly(best, _worst_at_ends(signed, best))
+
+
+def _worst_at_ends(signed: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return the most that each objective must be, for another one to be as good as its end."""
+    columns = range(signed.shape[1])
+    worst: np.ndarray = np.max([signed[signed[:, k] <= ends[k]].min(axis=0) for k in columns], axis=0)
+    return worst
 
 
 def nearly(best: np.ndarray, worst: np.ndarray) -> np.ndarray:

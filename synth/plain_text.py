@@ -6,6 +6,7 @@ import csv
 import math
 import re
 import sys
+import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -58,6 +59,34 @@ def percent(share: float, digits: int = 3) -> str:
     ('0.1 %', '1 680 %')
     """
     return f"{plain_number(100 * share, digits)} %"
+
+
+def wrapped(text: str, width: int, first: int = 0, later: int = 0, broken: bool = True) -> list[str]:
+    """Return a text as lines no wider than a screen, none of them broken inside a word that fits.
+
+    Parameters
+    ----------
+    text : str
+    width : int
+        Characters on a line.
+    first, later : int
+        Blanks before the first line of each paragraph, and before its others.
+    broken : bool
+        Whether words that fit on no line are broken; names of files are not.
+
+    Examples
+    --------
+    >>> wrapped("two words, and more", 12, later=2)
+    ['two words,', '  and more']
+    """
+    wrapper = textwrap.TextWrapper(
+        width,
+        initial_indent=" " * first,
+        subsequent_indent=" " * later,
+        break_long_words=broken,
+        break_on_hyphens=False,
+    )
+    return [line for part in text.split("\n") for line in wrapper.wrap(part)]
 
 
 def escaped(text: str) -> str:

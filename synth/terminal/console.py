@@ -6,7 +6,6 @@ import io
 import math
 import os
 import sys
-import textwrap
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,7 +22,7 @@ from rich.text import Text
 
 from synth.files import csv_text
 from synth.margins import MARGINS
-from synth.plain_text import PlainStream, percent, plain_number, printable
+from synth.plain_text import PlainStream, percent, plain_number, printable, wrapped
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.units import format_quantity, from_si, split_header
@@ -111,16 +110,8 @@ class PlainTable(Table):
         lines = [heading, [Segment(f"    {self.columns[self.wide].header}")], rule]
         for shown, text in zip(rows, texts, strict=True):
             lines.append(shown)
-            lines += [[Segment(line)] for line in _indented(text, options.max_width, 4, 4)]
+            lines += [[Segment(line)] for line in wrapped(text, options.max_width, 4, 4)]
         return lines
-
-
-def _indented(text: str, width: int, first: int, later: int) -> list[str]:
-    """Return a text as lines no wider than a screen, none of them broken inside a word that fits."""
-    wrapper = textwrap.TextWrapper(
-        width, initial_indent=" " * first, subsequent_indent=" " * later, break_on_hyphens=False
-    )
-    return [line for part in text.split("\n") for line in wrapper.wrap(part)]
 
 
 def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
@@ -172,7 +163,7 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
 
 
 def _print_indented(console: Console, text: str, indent: int) -> None:
-    for line in _indented(text, console.width, indent, indent + 4):
+    for line in wrapped(text, console.width, indent, indent + 4):
         console.print(line, soft_wrap=True)
 
 
@@ -303,7 +294,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         return
     used = sorted(((u, n) for n, u in design.utilisation.items() if u is not None), key=lambda x: (-x[0], x[1]))
     if used:
-        nearest = ", ".join(f"{name} ({100 * share:.3g} % used)" for share, name in used[:NEAREST])
+        nearest = ", ".join(f"{name} ({percent(share)} used)" for share, name in used[:NEAREST])
         console.print(f"\nnearest to their limits: {nearest}")
     console.print(f"\nall {sum(s == 'ok' for s in states.values())} limits that apply hold")
 

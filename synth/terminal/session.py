@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.output_folder import ResultKind, check_kind, check_not_held, claimed
+from synth.plain_text import wrapped
 from synth.results.drawings import report
 
 if TYPE_CHECKING:
@@ -89,9 +89,7 @@ def say(sentence: str) -> None:
     """Print a sentence on lines no wider than the terminal; names of files stay whole."""
     from synth.terminal.console import output
 
-    lines = textwrap.wrap(
-        sentence, output().width, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False
-    )
+    lines = wrapped(sentence, output().width, later=4, broken=False)
     print("\n".join(lines))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from synth.margins import MARGINS
-from synth.pareto import spread_subset
+from synth.pareto import signs_of, spread_subset
 from synth.results import Design
 from synth.studies.families.competitor import Competitor
 
@@ -30,7 +30,7 @@ class CommonFront:
 
     def __init__(self, objectives: Mapping[str, str], points: int) -> None:
         self.objectives, self.points = dict(objectives), points
-        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in self.objectives.values()])
+        self.senses = signs_of(self.objectives)
         self.members: list[Competitor] = []
 
     def signed(self, designs: Sequence[Design]) -> np.ndarray:
