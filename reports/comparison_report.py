@@ -11,9 +11,9 @@ from reports.about import About
 from reports.front_plot import front_file
 from reports.numbers import printed, shown
 from reports.reasons import significant
-from reports.screen_numbers import words
 from reports.sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
 from reports.sheet.design_sheet import program_name
+from synth.plain_text import words
 from synth.results import ParetoFront
 
 CLASS = re.compile(r' class="[a-z]+"')

@@ -24,9 +24,8 @@ from matplotlib.figure import Figure
 from matplotlib.style import context
 from matplotlib.ticker import LogFormatter, MaxNLocator, ScalarFormatter
 
-from reports.numbers import unit_text
 from synth.errors import InputError
-from synth.units import split_header
+from synth.units import split_header, unit_text
 
 # The colours of M. Okabe and K. Ito, told apart by the colour-blind; each has a dash of its own, for print without.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")

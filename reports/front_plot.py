@@ -11,12 +11,10 @@ from itertools import combinations, pairwise
 from typing import TypeAlias
 
 from reports.label_spots import Box, label_spots
-from reports.numbers import unit_text
 from reports.reasons import significant
-from reports.screen_numbers import words
-from synth.plain_text import printable
+from synth.plain_text import printable, words
 from synth.results import Design, ParetoFront
-from synth.units import from_si
+from synth.units import from_si, unit_text
 
 MOST_PANELS = 3  # of objectives that are drawn in pairs
 LABELLED = 20  # designs up to which every point has its rank beside it

@@ -11,7 +11,7 @@ from typing import Any
 from reports.about import About
 from reports.formula.layout import Amount, Letter
 from reports.front_plot import front_in_words, front_svg
-from reports.numbers import printed, shown, unit_text
+from reports.numbers import printed, shown
 from reports.reasons import BINDING, SIGN_OF, significant, why
 from reports.sheet.blocks import (
     Block,
@@ -35,6 +35,7 @@ from reports.sheet.design_sheet import front_details, front_state, next_in_table
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
+from synth.units import unit_text
 
 SCORE = "score"
 PAGE = 86.0  # letters beside each other in a table

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, replace
 
-from synth.units import from_si, parse_unit
+from synth.units import from_si, parse_unit, unit_text
+from synth.units.for_people import RAISED
 
 DIGITS = 5  # significant, of what is shown
 
@@ -96,28 +96,6 @@ def shown(si: float, unit: str, digits: int = DIGITS) -> Shown:
     if unit in ("", "-"):
         return shown_number(si, digits)
     return replace(shown_number(float(from_si(si, unit)), digits), unit=unit)
-
-
-RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-WORDS = {"degC": "°C", "deg": "°", "ohm": "Ω", "um": "µm", "min": "min"}
-
-
-def unit_text(unit: str) -> str:
-    """Return a unit as it is printed: exponents raised, factors side by side.
-
-    Examples
-    --------
-    >>> unit_text("N/mm2"), unit_text("kg*m2"), unit_text("degC"), unit_text("J/(mm2 h)"), unit_text("-")
-    ('N/mm²', 'kg m²', '°C', 'J/(mm² h)', '')
-    """
-    if unit in ("", "-"):
-        return ""
-
-    def word(match: re.Match[str]) -> str:
-        name, power = match[1], match[2]
-        return WORDS.get(name, name) + power.translate(RAISED)
-
-    return re.sub(r"([A-Za-z]+)(-?\d*)", word, unit).replace("*", " ")
 
 
 def printed(number: Shown) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from reports.screen_numbers import words
+from synth.plain_text import words
 from synth.results import Design, ParetoFront
 
 BINDING = 0.999  # a limit used more than this decides something

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from reports.formula.layout import Fraction, Layout, Row, Sign, Typesetter, Word, textbook
 from reports.formula.plain import plain
-from reports.numbers import UnitIn, unit_text
-from reports.screen_numbers import in_unit, words
+from reports.numbers import UnitIn
+from synth.plain_text import words
 from synth.results import Design
 from synth.results.calculation import CalculatedDesign, Calculation, NamedQuantity
 from synth.results.expression import Expression, in_force, names_in, value_of
+from synth.units import in_unit, unit_text
 
 TIMES = " x "
 

@@ -11,15 +11,13 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from reports.numbers import unit_text
 from reports.reasons import binding, why
-from reports.screen_numbers import alike, in_unit, words
 from reports.sizing import sizing_line
-from synth.plain_text import wrapped
+from synth.plain_text import alike, words, wrapped
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 from synth.results.rating_tables import rating_row
-from synth.units import finite_from_si
+from synth.units import finite_from_si, in_unit, unit_text
 
 SHOWN = 10  # designs on one screen
 EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something

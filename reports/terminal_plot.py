@@ -14,8 +14,7 @@ from rich.text import Text
 
 from reports.front_plot import LABELLED, Axis, Drawn
 from reports.label_spots import Box, label_spots
-from reports.screen_numbers import words
-from synth.plain_text import plain_number, printable
+from synth.plain_text import plain_number, printable, words
 from synth.results import Design
 
 WIDEST = 100  # characters of the whole plot

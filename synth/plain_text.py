@@ -7,7 +7,7 @@ import math
 import re
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -48,6 +48,36 @@ def plain_number(value: float | None, digits: int = 4) -> str:
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0) if value else 0
     text = f"{value:,.{decimals}f}".replace(",", " ")
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def words(name: str) -> str:
+    """Return the name of a quantity as words.
+
+    Examples
+    --------
+    >>> words("ring_outer_diameter")
+    'ring outer diameter'
+    """
+    return name.replace("_", " ")
+
+
+def alike(values: Sequence[float | None], most: int = 15) -> list[str]:
+    """Return the numbers of a column with the same decimals: four digits of the largest, none where all are whole.
+
+    ``most``: at most so many decimals.
+
+    Examples
+    --------
+    >>> alike([14.568, 9.4, None]), alike([12.0, 8.0]), alike([0.0082654, 0.0033])
+    (['14.57', '9.40', ''], ['12', '8'], ['0.008265', '0.003300'])
+    """
+    known = [abs(x) for x in values if x is not None and math.isfinite(x)]
+    whole = all(x == round(x) for x in known)
+    largest = max(known, default=0.0)
+    decimals = 0 if whole or not largest else min(max(3 - math.floor(math.log10(largest)), 0), most)
+    return [
+        plain_number(x) if x is None or not math.isfinite(x) else f"{x:,.{decimals}f}".replace(",", " ") for x in values
+    ]
 
 
 def percent(share: float, digits: int = 3) -> str:

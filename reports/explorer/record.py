@@ -8,13 +8,12 @@ from typing import Any
 
 from reports.about import About
 from reports.front_report import NOT_COVERED
-from reports.numbers import unit_text
 from reports.reasons import BINDING, SIGN_OF, why
 from reports.sheet.design_sheet import front_details, front_state, over_range_in_words, program_name
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
-from synth.units import finite_from_si
+from synth.units import finite_from_si, unit_text
 
 EXPLORER_FORMAT = 1
 DIGITS = 7  # significant, of numbers in the record; five are shown

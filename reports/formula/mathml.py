@@ -20,7 +20,7 @@ from reports.formula.layout import (
     Word,
 )
 from reports.formula.symbols import symbol_parts
-from reports.numbers import unit_text
+from synth.units import unit_text
 
 
 def mathml(layout: Layout) -> str:

@@ -22,7 +22,7 @@ from reports.formula.layout import (
     Word,
 )
 from reports.formula.symbols import symbol_parts
-from reports.numbers import unit_text
+from synth.units import unit_text
 
 SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
 NAMED = {"ln", "sin", "cos", "tan", "sinh", "cosh", "tanh", "min", "max"}

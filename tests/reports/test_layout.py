@@ -13,8 +13,9 @@ from reports.formula.mathml import mathml
 from reports.formula.plain import plain
 from reports.formula.symbols import symbol_parts
 from reports.formula.typst import string, typst_math
-from reports.numbers import printed, shown, shown_number, unit_text
+from reports.numbers import printed, shown, shown_number
 from synth.results.calculation import NamedQuantity
+from synth.units import unit_text
 
 A, B, C = (["q", name] for name in "abc")
 
