@@ -45,10 +45,11 @@ def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
         for name, sense in objectives.items()
         if _is_best(front, design, name, sense)
     ]
-    if "knee" in design.note:
-        clauses.insert(0, "knee of the front")
     if design.rank == 1 and len(front.designs) > 2 and len(objectives) > 1:
-        clauses.insert(0, "nearest to the best")
+        clauses.insert(0, "nearest to the best, the knee too" if "knee" in design.note else "nearest to the best")
+    elif "knee" in design.note:
+        those = "both" if len(objectives) == 2 else "all"
+        clauses.insert(0, f"knee of the front (least sum of {those}; #1: least distance)")
     others = [d for d in front.designs if d is not design]
     if len(objectives) == 2 and others:
         clauses.append(_between(front, design))

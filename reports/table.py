@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +21,6 @@ from synth.units import finite_from_si, in_unit, unit_text
 SHOWN = 10  # designs on one screen
 EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something
 BETWEEN = 3  # blanks between two columns
-SOURCE = re.compile(r" \[[^\[\]]*\]$")
 NARROWEST = 18  # of the column of what limits a design
 
 
@@ -84,15 +82,10 @@ def _print_reason(front: ParetoFront, design: Design, console: Console) -> None:
         _print_wrapped(console, f"other sizes: {sizes}", 4)
     for name, row in design.next_rows.items():
         _print_wrapped(console, f"next in the tables: {words(name)} {row}", 4)
-    for remark in design.advice:
-        _print_wrapped(console, f"remark: {_bare(remark)}", 4)
+    for remark in design.bare_advice:
+        _print_wrapped(console, f"remark: {remark}", 4)
     for remark in design.not_checked:
         _print_wrapped(console, remark, 4)
-
-
-def _bare(remark: str) -> str:
-    """Return a remark without its code and source, which the sheet of the design tells."""
-    return SOURCE.sub("", remark.partition(": ")[2] or remark)
 
 
 def _print_wrapped(console: Console, text: str, indent: int) -> None:

@@ -142,7 +142,8 @@ class _Compared:
         sentence = (told.partition(": ")[2] or told).replace(amounts, "") + "."
         details = [f"Stopped: {content['interrupted']}."] if content["interrupted"] else []
         if amounts:
-            details.append(f"Smaller differences than these do not count: {label(amounts.strip(' ()'))}.")
+            told = amounts.strip(" ()")
+            details.append(f"{told[:1].upper()}{told[1:]}.")
         return {
             "level": "bad" if not some else "good" if proven and not content["interrupted"] else "open",
             "word": word,

@@ -153,7 +153,8 @@ class RecordOf:
         amounts = c.amounts()
         sentence = (details[0].partition(": ")[2] or details[0]).replace(amounts, "")
         if amounts:
-            details.append(f"Smaller differences than these do not count: {label(amounts.strip(' ()'))}.")
+            told = amounts.strip(" ()")
+            details.append(f"{told[:1].upper()}{told[1:]}.")
         return {
             "level": level,
             "word": word,

@@ -6,25 +6,47 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from synth.plain_text import percent, plain_number
-from synth.units import parse_unit
+from synth.plain_text import percent, plain_number, words
+from synth.units import parse_unit, unit_text
 
 
 def in_words(amounts: Mapping[str, float], units: Mapping[str, str]) -> str:
-    """Return amounts in SI with their units, as a remark in brackets; nothing where there are none.
+    """Return as a remark in brackets below which amounts, in SI, differences do not count; nothing where all do.
 
     Examples
     --------
     >>> in_words({"lift": 2e-6}, {"lift": "mm"})
-    ' (lift: 0.002 mm)'
+    ' (differences below 0.002 mm in lift do not count)'
     """
     told = []
     for name, amount in amounts.items():
         unit = parse_unit(units.get(name, "-"))
         # A difference of temperatures is one in kelvin.
-        word = "K" if unit.offset else units.get(name, "-")
-        told.append(f"{name}: {plain_number(amount / float(unit.ratio), 3)}" + ("" if word == "-" else f" {word}"))
-    return f" ({', '.join(told)})" if told else ""
+        word = "K" if unit.offset else unit_text(units.get(name, "-"))
+        told.append(f"{plain_number(amount / float(unit.ratio), 3)} {word}".rstrip() + f" in {words(name)}")
+    return f" (differences below {', '.join(told)} do not count)" if told else ""
+
+
+def all_of(combinations: int) -> str:
+    """Return that all combinations are meant.
+
+    Examples
+    --------
+    >>> all_of(52920), all_of(1)
+    ('all 52 920 combinations', 'the only combination')
+    """
+    return "the only combination" if combinations == 1 else f"all {plain_number(combinations)} combinations"
+
+
+def none_of(combinations: int) -> str:
+    """Return that none is meant, without the verb's number in doubt.
+
+    Examples
+    --------
+    >>> none_of(52920), none_of(1)
+    ('none of the 52 920 combinations', 'not even the only combination')
+    """
+    return f"not even {all_of(1)}" if combinations == 1 else f"none of the {plain_number(combinations)} combinations"
 
 
 @dataclass(frozen=True)
@@ -56,23 +78,22 @@ class Certificate:
 
     def sentence(self) -> str:
         """Return the certificate in words."""
-        n = f"{self.combinations:,}".replace(",", " ")
         if self.kind == "global" and self.gap is None:
-            return f"proven: none of the {n} combinations of parts and counts can meet the requirements"
+            return f"proven: {none_of(self.combinations)} of parts and counts can meet the requirements"
         if self.kind == "global":
             return (
-                f"proven: over all {n} combinations of parts and counts no design improves one listed here "
+                f"proven: over {all_of(self.combinations)} of parts and counts no design improves one listed here "
                 f"by more than {percent(self.gap or 0)} in every objective{self.amounts()}"
             )
         end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
         if self.kind == "exhaustive":
             return (
-                f"exhaustive: of {n} combinations {self.excluded_by_bound} are excluded by bounds; every other one "
+                f"exhaustive: of {all_of(self.combinations)} bounds exclude {self.excluded_by_bound}; every other one "
                 f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
                 f"which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
             )
         gap = f"gap {_percent(self.gap)}{self.amounts()}{end}"
-        return f"not proven: stopped before all of {n} combinations were covered; {gap}"
+        return f"not proven: stopped before {all_of(self.combinations)} were covered; {gap}"
 
 
 def _percent(gap: float | None) -> str:

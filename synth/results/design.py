@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +14,8 @@ from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
 from synth.results.ratings import DesignRating
 from synth.units import finite_from_si, format_quantity, header
+
+SOURCE = re.compile(r" \[[^\[\]]*\]$")  # behind a remark
 
 
 class PartRow(Mapping[str, Any]):
@@ -112,6 +115,18 @@ class Design:
     steps: Mapping[str, float] = field(default_factory=DesignSteps)
     next_rows: Mapping[str, NextRow] = field(default_factory=dict)
     digits: int | None = None
+
+    @property
+    def names(self) -> set[str]:
+        """Return the names that sentences about it may have: of quantities, limits, requirements, slots and so on."""
+        frame = self.frame
+        stated = {*frame.requirement_values, *frame.not_asked, *frame.options}
+        return {*frame.units, *frame.limit_units, *stated, *self.parts, *self.choices}
+
+    @property
+    def bare_advice(self) -> list[str]:
+        """Return the remarks without their codes and sources, which ``describe`` and the sheet of the design tell."""
+        return [SOURCE.sub("", remark.partition(": ")[2] or remark) for remark in self.advice]
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""

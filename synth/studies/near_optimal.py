@@ -26,6 +26,7 @@ from synth.errors import InputError, at, whole_number
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.input_limits import INPUT_LIMITS
+from synth.margins import MARGINS
 from synth.nlp.batch import Tasks
 from synth.output_folder import NEAR_EQUALS, save_result
 from synth.plain_text import percent
@@ -56,7 +57,8 @@ class NearEquals:
 
     ``found`` counts all such combinations; ``complete`` tells that no further one exists, ``undecided`` how many could
     be neither shown nor excluded (None: the enumeration ended before all were looked at). ``changes`` holds, per
-    design, the relative change of every objective against the chosen design, ``differences`` what is other than there.
+    design, the relative change of every objective against the chosen design, ``differences`` what is other than there,
+    ``ranks`` which design of the front it is (None: it is not listed there).
     """
 
     reference: Design
@@ -67,6 +69,7 @@ class NearEquals:
     undecided: int | None
     changes: list[dict[str, float]]
     differences: list[tuple[str, ...]]
+    ranks: list[int | None]
     statistics: Mapping[str, Any]
     interrupted: str = ""
 
@@ -289,7 +292,7 @@ class _Enumeration:
         limits: NearLimits = NEAR,
     ) -> None:
         self.started, self.limits = time.monotonic(), limits
-        self.instance, self.reference, self.share = instance, reference, share
+        self.instance, self.reference, self.front, self.share = instance, reference, front, share
         self.chosen = dict(front.frame.objectives)
         self.m = len(self.chosen)
         self.own = instance.combinations.number(reference)
@@ -534,8 +537,24 @@ class _Enumeration:
             "seconds": time.monotonic() - self.started,
         }
         return NearEquals(
-            self.reference, designs, self.share, found, complete, left, changes, differences, statistics, interrupted
+            self.reference,
+            designs,
+            self.share,
+            found,
+            complete,
+            left,
+            changes,
+            differences,
+            [self._rank(design) for design in designs],
+            statistics,
+            interrupted,
         )
+
+    def _rank(self, design: Design) -> int | None:
+        """Return the rank of the design of the front that is the same."""
+        codec = self.instance.combinations
+        number = codec.number(design)
+        return next((d.rank for d in self.front.designs if codec.number(d) == number and _same(d, design)), None)
 
     def _differences(self, combination: int) -> tuple[str, ...]:
         """Return what is other than in the chosen design."""
@@ -547,6 +566,12 @@ class _Enumeration:
         words += [f"{n} {v:g}" for n, v in its[1].items() if own[1][n] != v]
         words += [f"{n} {v}" for n, v in its[2].items() if own[2][n] != v]
         return tuple(words)
+
+
+def _same(one: Design, other: Design) -> bool:
+    """Tell whether two designs of the same parts have the same sizes."""
+    sizes = [n for n, kind in one.frame.kinds.items() if kind == "variable"]
+    return all(math.isclose(one.values[n], other.values[n], rel_tol=MARGINS.same) for n in sizes)
 
 
 def _change(value: float, reference: float) -> float:

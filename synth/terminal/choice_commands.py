@@ -102,7 +102,7 @@ def prices(
             raise typer.Exit(STOPPED) from None
     target = found.save(folder, style)
     if not quiet:
-        print_prices(found, output(), every)
+        print_prices(found, front, output(), every)
         tell_written(target, folder, sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)

@@ -6,20 +6,22 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from synth.plain_text import percent, plain_number
+from synth.plain_text import alike, percent, plain_number, words
 from synth.results.drawings import report
 from synth.robust.rate import told_of
 from synth.studies.prices.price_list import NOTHING
-from synth.terminal.console import explanation_text, plain_table
+from synth.terminal.console import explanation_text, plain_table, print_wrapped
 from synth.terminal.plots import show_plot
-from synth.units import format_quantity
+from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:
+    from synth.results import ParetoFront
     from synth.studies.families.comparison import Comparison
     from synth.studies.near_optimal import NearEquals
     from synth.studies.prices.price_list import Price, Prices
 
 SHOWN = 10  # designs on one screen
+CHANGE = len(" (+1.23 %)")  # characters of a change behind a value
 
 
 def print_near_equals(found: NearEquals, console: Console) -> None:
@@ -28,45 +30,51 @@ def print_near_equals(found: NearEquals, console: Console) -> None:
     names = list(frame.objectives)
     console.print(f"{frame.title} ({frame.family}): near-equals of design {own.rank or ''}".rstrip())
     console.print()
-    table = plain_table("", *names, "differences", right=range(1, len(names) + 1), wide=len(names) + 1)
-    table.add_row("#0", *(format_quantity(own.values[n], frame.units[n], 5) for n in names), "the chosen design")
-    for number, (design, change, other) in enumerate(
-        zip(found.designs, found.changes, found.differences, strict=True), start=1
-    ):
-        values = [f"{format_quantity(design.values[n], frame.units[n], 5)} ({100 * change[n]:+.2f} %)" for n in names]
-        table.add_row(f"#{number}", *values, ", ".join(other))
+    headings = [f"{words(n)} [{unit_text(frame.units[n])}]".removesuffix(" []") for n in names]
+    table = plain_table("", *headings, "differences", right=range(1, len(names) + 1), wide=len(names) + 1)
+    columns = [alike([finite_from_si(d.values[n], frame.units[n], None) for d in (own, *found.designs)]) for n in names]
+    table.add_row("#0", *(f"{cells[0]}{' ' * CHANGE}" for cells in columns), "the chosen design")
+    for k, (design, change, rank) in enumerate(zip(found.designs, found.changes, found.ranks, strict=True), start=1):
+        values = [f"{c[k]} {f'({100 * change[n]:+.2f} %)':>{CHANGE - 1}}" for n, c in zip(names, columns, strict=True)]
+        other = in_words(", ".join(found.differences[k - 1]), design.names)
+        table.add_row(f"#{k}", *values, other if rank is None else f"design {rank} of the front: {other}")
     console.print(table)
     console.print()
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
-    console.print(found.sentence())
+    print_wrapped(console, found.sentence())
     if len(found.designs) < found.found:
-        console.print(f"shown are {len(found.designs)} that differ most from the chosen one and from each other")
+        shown = f"shown are {len(found.designs)} that differ most from the chosen one and from each other"
+        print_wrapped(console, shown)
 
 
-def print_prices(found: Prices, console: Console, every: bool = False) -> None:
+def print_prices(found: Prices, front: ParetoFront, console: Console, every: bool = False) -> None:
     """Print what a per cent costs in each objective, the dearest first, and what costs nothing."""
     frame, size = found.frame, percent(found.step)
     shown = found.finished if every else found.finished[:1]
+    named = front.designs[0].names
     for rank in shown:
         console.print(f"{frame.title} ({frame.family}): prices of design {rank}")
         for objective in frame.objectives:
             rows = [r for r in found.rows if (r.design, r.objective) == (rank, objective)]
             console.print()
-            table = plain_table(objective, "up", "down", "status", "why", right=(1, 2), wide=4)
+            table = plain_table(words(objective), "up", "down", "status", "why", right=(1, 2), wide=4)
             for row in sorted((r for r in rows if r.status != NOTHING), key=_dearness, reverse=True):
-                table.add_row(_priced(row), _shown(row.up), _shown(row.down), row.status, row.reason)
+                reason = in_words(row.reason, named)
+                table.add_row(_priced(row), _shown(row.up), _shown(row.down), row.status, reason)
             console.print(table)
-            idle = [_priced(r) for r in rows if r.status == NOTHING]
+            idle = sum(r.status == NOTHING for r in rows)
             if idle:
-                console.print(f"no influence: {', '.join(idle)}")
-            for words in dict.fromkeys(r.compared for r in rows if r.compared):
-                console.print(f"other parts: {words}" if "combinations" in words else words)
+                have = "requirement or limit has" if idle == 1 else "requirements and limits have"
+                console.print(f"{idle} more {have} no influence (prices.csv)")
+            for compared in dict.fromkeys(r.compared for r in rows if r.compared):
+                print_wrapped(console, f"other parts: {compared}" if "combinations" in compared else compared)
         console.print()
     if len(shown) < len(found.finished):
         more = len(found.finished) - len(shown)
         console.print(f"{more} more design{'' if more == 1 else 's'} with --all, and in prices.csv")
-    console.print(f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}")
+    up_and_down = f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}"
+    print_wrapped(console, up_and_down)
     held = ["the other objectives are held"] if len(frame.objectives) > 1 else []
     held += ["makeable sizes are taken as continuous"] if found.makeable else []
     if held:
@@ -77,7 +85,7 @@ def print_prices(found: Prices, console: Console, every: bool = False) -> None:
 
 
 def _priced(row: Price) -> str:
-    return f"limit {row.quantity}" if row.kind == "limit" else row.quantity
+    return f"limit {words(row.quantity)}" if row.kind == "limit" else words(row.quantity)
 
 
 def _dearness(row: Price) -> float:
@@ -108,9 +116,9 @@ def print_comparison(found: Comparison, console: Console, every: bool = False, p
                 meanings.setdefault(x.meanings[name], []).append(x.family)
         if len(meanings) > 1:
             told_of_each = "; ".join(f"{text} ({', '.join(families)})" for text, families in meanings.items())
-            console.print(f"{name.replace('_', ' ')} means: {told_of_each}")
+            print_wrapped(console, f"{words(name)} means: {told_of_each}")
     for sentence in found.not_compared:
-        console.print(sentence)
+        print_wrapped(console, sentence)
     told = [d for d in found.designs if d.robust]
     if told:
         console.print(told_of(told, told[0].frame.restated["robust"]["samples"]))
@@ -120,7 +128,7 @@ def print_comparison(found: Comparison, console: Console, every: bool = False, p
             console.print(f"{designs} not rated: in the family nothing scatters")
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
-    console.print(found.sentence())
+    print_wrapped(console, found.sentence())
 
 
 def _plain_common_front(found: Comparison, console: Console, every: bool) -> None:

@@ -532,5 +532,5 @@ def _plain_table(front: ParetoFront, console: Any, every: bool, calculation: Any
     names = list(front.frame.objectives)
     table = front.to_frame() if every else front.to_frame().head(10)
     print(table.iloc[:, [0, 1, *range(6, 6 + len(names))]].to_string(index=False))
-    for remark in (*front.designs[0].advice, *front.designs[0].not_checked):
+    for remark in (*front.designs[0].bare_advice, *front.designs[0].not_checked):
         print(f"remark on #1: {remark}")

@@ -22,10 +22,11 @@ from rich.text import Text
 
 from synth.files import csv_text
 from synth.margins import MARGINS
-from synth.plain_text import PlainStream, percent, plain_number, printable, wrapped
+from synth.plain_text import PlainStream, percent, plain_number, printable, words, wrapped
 from synth.results import Design, ParetoFront
+from synth.results.certificate import none_of
 from synth.results.least_infeasible import LeastInfeasible
-from synth.units import format_quantity, from_si, split_header
+from synth.units import format_quantity, from_si, in_words, quantity_text, split_header, unit_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -137,9 +138,9 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
     console.print(f"{title}: {found.message}")
     for guard in found.fired:
         console.print()
-        _print_indented(console, f"Refused: {guard.name}: expected {guard.message}", 0)
+        print_wrapped(console, f"Refused: {guard.name}: expected {guard.message}", 0)
         for name, value in guard.lifted_by.items():
-            _print_indented(console, f"not refused with {name} {value}", 2)
+            print_wrapped(console, f"not refused with {name} {value}", 2)
     titles = {
         "requirement": "One requirement alone",
         "limit": "One limit alone",
@@ -155,14 +156,15 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
             continue
         console.print(f"\n{heading}")
         for way in ways:
-            _print_indented(console, way.sentence + ("" if way.proven else " (less may do: not proven)"), 2)
+            print_wrapped(console, way.sentence + ("" if way.proven else " (less may do: not proven)"), 2)
     if found.conflict and not found.minimal:
         console.print("\nFewer limits may exclude each other as well: not proven to be minimal.")
     for sentence in found.not_settled:
         console.print(f"not settled: {sentence}")
 
 
-def _print_indented(console: Console, text: str, indent: int) -> None:
+def print_wrapped(console: Console, text: str, indent: int = 0) -> None:
+    """Print a text on lines no wider than the screen, the later ones indented."""
     for line in wrapped(text, console.width, indent, indent + 4):
         console.print(line, soft_wrap=True)
 
@@ -189,6 +191,7 @@ TITLES = {
 }
 
 
+CLOSE_CALL = 6  # digits of a limit that is violated, perhaps by little
 NEAREST = 3  # limits that are named as those with the least room
 CODED = ("refusal", "advice", "next_row")  # kinds of which only a code or name and a text are shown
 
@@ -276,7 +279,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     known = {row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "point", *CODED)}
     console.print(f"{frame.title} ({frame.family})")
     if frame.options:
-        console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
+        print_wrapped(console, "options: " + ", ".join(f"{words(n)} {v}" for n, v in frame.options.items()))
     states = _limit_states(design)
     tables = {
         "Requirements": _requirements(design, known),
@@ -288,15 +291,16 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         console.print(f"\n{heading}")
         console.print(table)
     for remark in _remarks(design):
-        console.print(remark)
+        print_wrapped(console, remark)
+    console.print()
     if design.violated:
-        console.print(f"\nviolated: {', '.join(design.violated)}")
+        print_wrapped(console, f"violated: {', '.join(map(words, design.violated))}")
         return
     used = sorted(((u, n) for n, u in design.utilisation.items() if u is not None), key=lambda x: (-x[0], x[1]))
     if used:
-        nearest = ", ".join(f"{name} ({percent(share)} used)" for share, name in used[:NEAREST])
-        console.print(f"\nnearest to their limits: {nearest}")
-    console.print(f"\nall {sum(s == 'ok' for s in states.values())} limits that apply hold")
+        nearest = ", ".join(f"{words(name)} ({percent(share)} used)" for share, name in used[:NEAREST])
+        print_wrapped(console, f"nearest to their limits: {nearest}")
+    console.print(f"all {sum(s == 'ok' for s in states.values())} limits that apply hold")
 
 
 def _requirements(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table:
@@ -304,24 +308,24 @@ def _requirements(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Tab
     for name, si in design.frame.requirement_values.items():
         row = known[name]
         stated = "" if name in design.frame.requirements else "default"
-        table.add_row(name, row["symbol"], format_quantity(si, row["unit"]), stated, row["text"])
+        table.add_row(words(name), row["symbol"], quantity_text(si, row["unit"]), stated, row["text"])
     return table
 
 
 def _parts(design: Design) -> Table:
     table = plain_table("slot", "designation", "table", "source", wide=3)
     for slot, part in design.parts.items():
-        table.add_row(slot, str(part), str(part["table"]), str(part.get("source") or ""))
+        table.add_row(words(slot), str(part), str(part["table"]), str(part.get("source") or ""))
     return table
 
 
 def _quantities(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table:
     table = plain_table("name", "symbol", "value", "meaning", right=(2,), wide=3)
     for name, label in design.choices.items():
-        table.add_row(name, known[name]["symbol"], label, known[name]["text"])
+        table.add_row(words(name), known[name]["symbol"], words(label), known[name]["text"])
     for name, si in design.values.items():
-        shown = format_quantity(si, design.frame.units[name]) if math.isfinite(si) else "does not exist"
-        table.add_row(name, known[name]["symbol"], shown, known[name]["text"])
+        shown = quantity_text(si, design.frame.units[name]) if math.isfinite(si) else "does not exist"
+        table.add_row(words(name), known[name]["symbol"], shown, known[name]["text"])
     return table
 
 
@@ -330,22 +334,22 @@ def _limits(design: Design, states: Mapping[str, str]) -> Table:
     for name, state in states.items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
-        shown_use = plain_number(used)
+        shown_use = "" if used is None else percent(used)
         style = "bold red" if state == "VIOLATED" else ""
-        table.add_row(name, value, SIGNS[design.frame.limit_senses[name]], limit, shown_use, Text(state, style))
+        table.add_row(words(name), value, SIGNS[design.frame.limit_senses[name]], limit, shown_use, Text(state, style))
     return table
 
 
 def _remarks(design: Design) -> list[str]:
     """Return what else is to be said of a design."""
-    not_asked = design.frame.not_asked
+    not_asked = ", ".join(map(words, design.frame.not_asked))
     return [
-        *design.not_checked,
-        *([f"not asked, so their limits are not built: {', '.join(not_asked)}"] if not_asked else []),
-        *(f"off the grid: {name}, {remark}" for name, remark in design.off_grid.items()),
-        *(f"outside the range that is searched: {name} {remark}" for name, remark in design.outside.items()),
-        *(f"next in the tables: {name} {row}" for name, row in design.next_rows.items()),
-        *(f"advice: {remark}" for remark in design.advice),
+        *(in_words(remark, design.names) for remark in design.not_checked),
+        *([f"not asked, so their limits are not built: {not_asked}"] if not_asked else []),
+        *(f"off the grid: {words(name)}, {remark}" for name, remark in design.off_grid.items()),
+        *(f"outside the range that is searched: {words(name)} {remark}" for name, remark in design.outside.items()),
+        *(f"next in the tables: {words(name)} {row}" for name, row in design.next_rows.items()),
+        *(f"remark: {remark}" for remark in design.bare_advice),
     ]
 
 
@@ -363,7 +367,8 @@ def print_state(found: pd.DataFrame, point: str, console: Console) -> None:
 
 def _limit_side(design: Design, name: str, side: int) -> str:
     si = design.limits[name][side]
-    return format_quantity(si, design.frame.limit_units[name]) if math.isfinite(si) else "-"
+    digits = CLOSE_CALL if name in design.violated else 4
+    return quantity_text(si, design.frame.limit_units[name], digits) if math.isfinite(si) else "-"
 
 
 def _limit_states(design: Design) -> dict[str, str]:
@@ -388,7 +393,7 @@ def print_simulation(
         console.print(frame.attrs["title"])
         unit = split_header(str(frame.attrs.get("x", frame.columns[0])))[1] or ""
         marks = [mark for mark in frame.attrs.get("marks", ()) if mark.get("label")]
-        events = [f"{mark['label']} {plain_number(mark['x'], 5)} {unit}" for mark in marks]
+        events = [f"{mark['label']} {plain_number(mark['x'])} {unit}" for mark in marks]
         if events:
             console.print(f"  {', '.join(events)}")
     if len(opinion):
@@ -399,11 +404,14 @@ def print_simulation(
             if abs(relative) < MARGINS.same:
                 relative = row["difference"] = 0.0  # rounding only
             numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
-            shown = [f"{plain_number(x, 6)} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]
-            table.add_row(row["quantity"], *shown, percent(relative) if math.isfinite(relative) else "")
+            unit = unit_text(row["unit"])
+            shown = [f"{plain_number(x)} {unit}".rstrip() if math.isfinite(x) else "does not exist" for x in numbers]
+            table.add_row(words(row["quantity"]), *shown, percent(relative) if math.isfinite(relative) else "")
         console.print(table)
     if design.violated:
-        console.print(f"\nlimits violated: {', '.join(design.violated)} (clutchsynth check lists them)")
+        console.print()
+        listed = ", ".join(map(words, design.violated))
+        print_wrapped(console, f"limits violated: {listed} (clutchsynth check lists them)")
     console.print()
 
 
@@ -477,12 +485,12 @@ def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -
     if front.designs or front.interrupted:
         console.print(front.certificate.sentence())
     elif front.certificate.kind == "global":
-        console.print(f"proven: none of the {_brief(front.certificate.combinations)} combinations is feasible")
+        console.print(f"proven: {none_of(front.certificate.combinations)} of parts and counts is feasible")
     else:
         console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
     few = len(front.designs) < len(front.frame.objectives) and not front.complete
     if front.designs and few:
-        best = [name.replace("_", " ") for name in front.frame.objectives][: len(front.designs)]
+        best = [words(name) for name in front.frame.objectives][: len(front.designs)]
         console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
     if front.complete and front.designs and len(front.frame.objectives) > 1:
         console.print("the front is complete: beyond that gap there is no other design that none beats in everything")
@@ -513,7 +521,7 @@ def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:
     """
     plain, lines = [], []
     for key, value in statistics.items():
-        name = STATISTICS.get(key, key.replace("_", " "))
+        name = STATISTICS.get(key, words(key))
         if isinstance(value, Mapping):
             if value:
                 lines.append(f"{name}: " + ", ".join(f"{k} {_brief(v)}" for k, v in value.items()))
@@ -527,11 +535,11 @@ def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:
 def _left_out(name: str, entries: Sequence[Any]) -> list[str]:
     """Group rows left out by slot and reason, so that a thousand rows make one line."""
     groups: dict[tuple[str, str], list[str]] = {}
-    words = [str(entry) for entry in entries if not isinstance(entry, Mapping)]
+    bare = [str(entry) for entry in entries if not isinstance(entry, Mapping)]
     for entry in entries:
         if isinstance(entry, Mapping):
             groups.setdefault((entry["slot"], entry["reason"]), []).append(entry["designation"])
-    lines = [f"{name}: {', '.join(words)}"] if words else []
+    lines = [f"{name}: {', '.join(bare)}"] if bare else []
     for (slot, reason), members in groups.items():
         shown = ", ".join(members[:3]) + (f" and {len(members) - 3} more" if len(members) > 3 else "")
         lines.append(f"{name}: {slot} {shown} ({reason})")

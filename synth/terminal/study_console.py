@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from synth.plain_text import alike, words
 from synth.question.uncertainty import RATE
 from synth.robust.rate import taken_off, told_of
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
-from synth.terminal.console import plain_table
+from synth.terminal.console import plain_table, print_wrapped
 from synth.terminal.robust_console import percent
-from synth.units import format_quantity
+from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from collections.abc import Mapping
 
+    from rich.console import Console
+    from rich.table import Table
+
+    from synth.results import Design
     from synth.studies.whatif.study import Study
     from synth.studies.whatif.vary import Varied
 
@@ -25,24 +30,20 @@ MOST_REASONS, MOST_PLACES = 8, 4
 def print_study(study: Study, console: Console) -> None:
     """Print a line per step with the best of each objective, the break points, and what is proven."""
     title = study.fronts[0].frame.title if study.fronts else ""
-    varied = " and ".join(x.label for x in study.varied)
+    varied = " and ".join(words(x.label) for x in study.varied)
     console.print(f"{title}{': ' if title else ''}{varied}, {len(study.steps)} steps")
     for x in study.varied:
         if x.remark:
-            console.print(f"{x.label}: {x.remark}")
+            print_wrapped(console, f"{words(x.label)}: {in_words(x.remark, ())}")
     console.print()
-    names = list(study.objectives())
-    rates = any(f.settings.get("robust", {}).get("mode") == RATE for f in study.fronts)
-    heads = [*(x.label for x in study.varied), "designs", *(f"best {n}" for n in names)]
-    heads += [*(["yield"] if rates else []), "of the leading design"]
-    last = len(heads) - 1
-    table = plain_table(*heads, right=range(len(study.varied), last), wide=last)
-    for step in study.steps[:MOST_ROWS]:
-        table.add_row(*_row(study, step, names, rates))
-    console.print(table)
+    console.print(_steps(study))
     if len(study.steps) > MOST_ROWS:
         console.print(f"{len(study.steps) - MOST_ROWS} more in whatif.csv")
     console.print()
+    shared = _shared(study)
+    if shared:
+        print_wrapped(console, f"#1 of every step: {_listed(shared)}")
+        console.print()
     _print_reasons(study, console)
     if study.breaks:
         _print_breaks(study, console)
@@ -50,31 +51,56 @@ def print_study(study: Study, console: Console) -> None:
         done = sum(s.front is not None for s in study.steps)
         console.print(f"stopped: {study.interrupted}; {done} of {len(study.steps)} steps are kept, run again to go on")
     for line in _robust(study):
-        console.print(line)
-    console.print(_proven(study))
+        print_wrapped(console, line)
+    print_wrapped(console, _proven(study))
 
 
-def _row(study: Study, step: StudyStep, names: list[str], rates: bool) -> list[str]:
-    cells = [x.shown(v) for x, v in zip(study.varied, step.values, strict=True)]
-    if step.front is None or not step.front.designs:
-        return [
-            *cells,
-            "0",
-            *("" for _ in names),
-            *([""] if rates else []),
-            "not reached" if step.front is None else "-",
-        ]
-    frame, leader = step.front.frame, step.front.designs[0]
-    best = [(n, best_design(step.front, n)) for n in names]
-    cells.append(str(len(step.front.designs)))
-    cells += [
-        "" if d is None or n not in frame.units else format_quantity(d.values[n], frame.units[n], 5) for n, d in best
+def _steps(study: Study) -> Table:
+    """Return a row per step: what is varied, the best of each objective, and what the leading design is made of."""
+    names = list(study.objectives())
+    rates = any(f.settings.get("robust", {}).get("mode") == RATE for f in study.fronts)
+    units = [next((f.frame.units[n] for f in study.fronts if n in f.frame.units), "-") for n in names]
+    heads = [
+        f"best {words(n)}{f' [{unit_text(u)}]' if unit_text(u) else ''}" for n, u in zip(names, units, strict=True)
     ]
-    if rates:
-        cells.append(percent(leader.robust["yield"]) if leader.robust else "")
-    made = Composition.of(leader, names[0])
-    words = [*made.parts.values(), *(f"{n} {v:g}" for n, v in made.counts.items()), *made.choices.values()]
-    return [*cells, ", ".join(words)]
+    heads = [*(words(x.label) for x in study.varied), "designs", *heads, *(["yield"] if rates else []), "parts of #1"]
+    last = len(heads) - 1
+    table = plain_table(*heads, right=range(len(study.varied), last), wide=last)
+    steps, shared = study.steps[:MOST_ROWS], _shared(study)
+    best = [alike([_best(s, n, u) for s in steps]) for n, u in zip(names, units, strict=True)]
+    for k, step in enumerate(steps):
+        cells = [x.valued(v) for x, v in zip(study.varied, step.values, strict=True)]
+        leader = step.front.designs[0] if step.front is not None and step.front.designs else None
+        cells += [str(len(step.front.designs)) if step.front is not None else "0", *(column[k] for column in best)]
+        if rates:
+            cells.append(percent(leader.robust["yield"]) if leader is not None and leader.robust else "")
+        if leader is None:
+            cells.append("not reached" if step.front is None else "")
+        else:
+            own = {name: text for name, text in _made(leader).items() if name not in shared}
+            cells.append(_listed(own) or "as all")
+        table.add_row(*cells)
+    return table
+
+
+def _best(step: StudyStep, objective: str, unit: str) -> float | None:
+    design = best_design(step.front, objective)
+    return None if design is None else finite_from_si(design.values.get(objective), unit, None)
+
+
+def _made(design: Design) -> dict[str, str]:
+    """Return the parts, counts and choices of a design by name."""
+    return Composition.of(design, next(iter(design.frame.objectives))).named
+
+
+def _shared(study: Study) -> dict[str, str]:
+    """Return what the leading designs of all steps have in common; nothing where there is but one."""
+    made = [_made(f.designs[0]) for f in study.fronts if f.designs]
+    return {n: text for n, text in made[0].items() if all(x.get(n) == text for x in made)} if len(made) > 1 else {}
+
+
+def _listed(made: Mapping[str, str]) -> str:
+    return ", ".join(f"{words(name)} {text}" for name, text in made.items())
 
 
 def _print_reasons(study: Study, console: Console) -> None:
@@ -84,9 +110,10 @@ def _print_reasons(study: Study, console: Console) -> None:
         if step.front is not None and not step.front.designs:
             reasons.setdefault(step.brief_reason, []).append(step)
     for reason, steps in list(reasons.items())[:MOST_REASONS]:
-        places = [", ".join(x.shown(v) for x, v in zip(study.varied, s.values, strict=True)) for s in steps]
+        places = [", ".join(x.valued(v) for x, v in zip(study.varied, s.values, strict=True)) for s in steps]
         shown = places if len(places) <= MOST_PLACES else [*places[:MOST_PLACES], f"{len(places) - MOST_PLACES} more"]
-        console.print(f"no design at {'; '.join(shown)}: {reason}")
+        names = {n for s in steps if s.front is not None for n in s.front.frame.limit_units}
+        print_wrapped(console, in_words(f"no design at {'; '.join(shown)}: {reason}", names))
     if len(reasons) > MOST_REASONS:
         console.print(f"{len(reasons) - MOST_REASONS} more reasons in whatif.csv")
     if reasons:
@@ -97,19 +124,22 @@ def _print_breaks(study: Study, console: Console) -> None:
     assert study.along is not None
     along = study.varied[study.along]
     others = [x for k, x in enumerate(study.varied) if k != study.along]
-    table = plain_table("break in", *(x.label for x in others), along.label, "change", "proven", wide=len(others) + 2)
+    heads = [words(x.label) for x in (*others, along)]
+    table = plain_table("break in", *heads, "change", "proven", wide=len(others) + 2)
+    names = {name for f in study.fronts for design in f.designs for name in design.names}
     for b in study.breaks[:MOST_BREAKS]:
-        table.add_row(b.objective, *(x.shown(v) for x, v in zip(others, b.others, strict=True)), *_told(b, along))
+        values = [x.valued(v) for x, v in zip(others, b.others, strict=True)]
+        table.add_row(words(b.objective), *values, *_told(b, along, names))
     console.print(table)
     if len(study.breaks) > MOST_BREAKS:
         console.print(f"{len(study.breaks) - MOST_BREAKS} more in breaks.csv")
     console.print()
 
 
-def _told(b: Break, along: Varied) -> list[str]:
+def _told(b: Break, along: Varied, names: set[str]) -> list[str]:
     return [
-        along.shown(float(f"{b.value:.5g}")),
-        b.change,
+        along.valued(float(f"{b.value:.5g}")),
+        in_words(b.change, names),
         "yes" if b.proven else f"no{': ' if b.remark else ''}{b.remark}",
     ]
 

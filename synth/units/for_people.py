@@ -28,12 +28,12 @@ def unit_text(unit: str) -> str:
     return FACTOR.sub(lambda m: WORDS.get(m[1], m[1]) + m[2].translate(RAISED), unit).replace("*", " ")
 
 
-def in_unit(si: float, unit: str) -> str:
+def in_unit(si: float, unit: str, digits: int = 4) -> str:
     """Return an SI value in a unit, for a screen; nothing where it does not exist."""
-    return plain_number(finite_from_si(si, unit, None))
+    return plain_number(finite_from_si(si, unit, None), digits)
 
 
-def quantity_text(si: float, unit: str) -> str:
+def quantity_text(si: float, unit: str, digits: int = 4) -> str:
     """Return an SI value with its unit, for a screen; nothing where it does not exist.
 
     Examples
@@ -41,7 +41,7 @@ def quantity_text(si: float, unit: str) -> str:
     >>> quantity_text(1058.8235, "N*m"), quantity_text(0.25, "-"), quantity_text(float("nan"), "mm")
     ('1 059 N m', '0.25', '')
     """
-    number, written = in_unit(si, unit), unit_text(unit)
+    number, written = in_unit(si, unit, digits), unit_text(unit)
     return f"{number}{'' if written in ('', '°') else ' '}{written}" if number else ""
 
 

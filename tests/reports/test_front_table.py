@@ -60,7 +60,7 @@ def test_why_names_best_knee_neighbours_and_binding_limits() -> None:
     light, middle, weak = design(2, 10, 2000), design(1, 12, 1500, 0.9995, "knee"), design(3, 20, 1000)
     shown = front(middle, light, weak)
     assert why(shown, middle) == (
-        "nearest to the best; knee of the front; between #2 and #3: 25 % less actuation force than #2, "
+        "nearest to the best, the knee too; between #2 and #3: 25 % less actuation force than #2, "
         "40 % less mass than #3; at the limit of jerk"
     )
     assert why(shown, light) == (

@@ -115,7 +115,7 @@ def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, 
     assert "utilisation: torque_capacity (friction low, load_torque high)" in designs[0]
     checked = at_once("check", folder / "design_01.yaml")
     assert checked.returncode == 0
-    assert "torque_capacity (friction low," in checked.stdout
+    assert "torque capacity (friction low," in checked.stdout
     done = at_once("verify", folder)
     assert done.returncode == 0, done.stdout
     # The question repeats what scatters: nothing needs to be said again.

@@ -86,8 +86,8 @@ def test_a_screen_fits_and_speaks_plainly(screen: str, columns: int, folder: Pat
 def test_names_and_words_stay_whole_on_a_narrow_screen(folder: Path) -> None:
     check = at_once("check", "front/design_01.yaml", folder=folder, COLUMNS="80").stdout
     lines = [line.rstrip() for line in check.splitlines()]
-    assert any(re.match(r"plate_count_worthwhile +0\.\d+ +>= +0\.5 ", line) for line in lines)
-    at = next(k for k, line in enumerate(lines) if line.startswith("switching_factor"))
+    assert any(re.match(r"plate count worthwhile +0\.\d+ +>= +0\.5 ", line) for line in lines)
+    at = next(k for k, line in enumerate(lines) if line.startswith("switching factor"))
     assert lines[at + 1] == "    Engagement-count factor; 1 up to about 50 engagements per hour"
     prices = at_once("prices", "front", "-o", "prices", folder=folder, COLUMNS="80").stdout
     told = next(line for line in prices.splitlines() if line.startswith("    ") and "of_" not in line and "sur" in line)

@@ -14,6 +14,7 @@ from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
 from synth.plain_text import percent
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
+from synth.results.certificate import all_of, none_of
 from synth.results.drawings import front_picture
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -86,15 +87,15 @@ class Comparison:
         """Return how far the common front is proven."""
         searched = sum(x.front is not None for x in self.outcomes)
         those = "the family" if searched == 1 else f"the {searched} families"
-        n = f"{self.certificate.combinations:,}".replace(",", " ")
+        count = self.certificate.combinations
         if self.certificate.kind == "global" and self.designs:
             return (
-                f"proven: over all {n} combinations of parts and counts of {those} searched no design improves one "
+                f"proven: over {all_of(count)} of parts and counts of {those} searched no design improves one "
                 f"listed here by more than {percent(self.certificate.gap or 0)} in every objective"
                 f"{self.certificate.amounts()}"
             )
         if self.certificate.kind == "global":
-            return f"proven: none of the {n} combinations of parts and counts of {those} searched is feasible"
+            return f"proven: {none_of(count)} of parts and counts of {those} searched is feasible"
         if self.interrupted:
             return f"not proven: stopped ({self.interrupted}) before every family was searched to the end"
         return f"not proven ({self.certificate.kind}): the certificate of each family says how far it is"

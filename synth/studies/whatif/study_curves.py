@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import plain_number
+from synth.plain_text import plain_number, words
 from synth.results import Design
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep, best_design
 from synth.studies.whatif.vary import Value, Varied
@@ -239,7 +239,7 @@ def _beside(study: StudyAnswers, k: int) -> str:
 
 
 def _and(names: Iterable[str], key: Callable[[str], int] | None = None) -> str:
-    *first, last = [name.replace("_", " ") for name in (names if key is None else sorted(names, key=key))]
+    *first, last = [words(name) for name in (names if key is None else sorted(names, key=key))]
     return f"{', '.join(first)} and {last}" if first else last
 
 

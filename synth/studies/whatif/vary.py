@@ -12,7 +12,7 @@ from synth.errors import InputError, at, shortened
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
 from synth.model.model import Model
-from synth.plain_text import listed
+from synth.plain_text import listed, words
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
 from synth.units import parse_quantity
@@ -61,7 +61,7 @@ class Varied:
     @property
     def in_words(self) -> str:
         """Return what it is for people: ``largest mass allowed``, ``friction pair``."""
-        name = self.name.replace("_", " ")
+        name = words(self.name)
         if self.kind == "weight":
             return f"weight of {name}"
         if self.kind == "scatter":
