@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -27,6 +27,7 @@ NUMBER = re.compile(
 DOUBTFUL = re.compile(r"[1-9]\d{0,2},\d{3}")  # 1.234 or 1234
 STRETCHED = re.compile(r"(?<![\d.])([1-9]\d{0,2}\.\d{3})0(?!\d)")  # what with_comma has put a zero to
 DECIMAL = re.compile(r"\d+\.\d+")
+NAMED_NUMBER = re.compile(r"^(\w+ -?\d+)([.,])(\d+(?:[eE][-+]?\d+)?(?: \S+)?)$")  # mass 9.36 kg
 
 
 def with_point(cell: str) -> str:
@@ -75,6 +76,28 @@ def with_comma(cell: str) -> str:
     return match["before"] + number + ("0" if DOUBTFUL.fullmatch(number) else "") + match["after"]
 
 
+def list_with_commas(cell: str) -> str:
+    """Return a list of quantities with decimal commas, and semicolons between them; designations stay.
+
+    Examples
+    --------
+    >>> list_with_commas("mass 9.36 kg, plates 12, plate core 1.5")
+    'mass 9,36 kg; plates 12; plate core 1.5'
+    """
+    return "; ".join(NAMED_NUMBER.sub(r"\1,\3", item) for item in cell.split(", "))
+
+
+def list_with_points(cell: str) -> str:
+    """Return a list as it was before ``list_with_commas``.
+
+    Examples
+    --------
+    >>> list_with_points("mass 9,36 kg; plates 12; plate core 1.5")
+    'mass 9.36 kg, plates 12, plate core 1.5'
+    """
+    return ", ".join(NAMED_NUMBER.sub(r"\1.\3", item) for item in cell.split("; "))
+
+
 @dataclass(frozen=True)
 class CsvStyle:
     """How CSV is written.
@@ -93,10 +116,11 @@ class CsvStyle:
     commas: bool = False
     mark: str = ""
 
-    def text(self, plain: str) -> str:
+    def text(self, plain: str, lists: Collection[str] = ()) -> str:
         """Return a table that is written with commas and decimal points in this style.
 
-        Columns that hold more numbers than words get decimal commas, so that readers know them by the whole column.
+        Columns that hold more numbers than words get decimal commas, so that readers know them by the whole column, and
+        so do the columns of ``lists`` of named quantities.
         """
         if self == ENGLISH:
             return plain
@@ -106,10 +130,15 @@ class CsvStyle:
                 cells = [row[k] for row in rows[1:] if k < len(row) and row[k]]
                 matches = [NUMBER.fullmatch(cell) for cell in cells]
                 numbers = [match["number"] for match in matches if match]
-                if 2 * len(numbers) > len(cells) and not any("," in number for number in numbers):
-                    for row in rows[1:]:
-                        if k < len(row):
-                            row[k] = with_comma(row[k])
+                if rows[0][k] in lists:
+                    written = list_with_commas
+                elif 2 * len(numbers) > len(cells) and not any("," in number for number in numbers):
+                    written = with_comma
+                else:
+                    continue
+                for row in rows[1:]:
+                    if k < len(row):
+                        row[k] = written(row[k])
         buffer = io.StringIO()
         csv.writer(buffer, delimiter=self.delimiter, lineterminator="\n").writerows(rows)
         return self.mark + buffer.getvalue()

@@ -138,8 +138,10 @@ class WayOutLimits:
         An elasticity as small as this is none.
     slack : float
         Relative, of bounds, for rounding.
+    digits : int
+        Of the value that is told where it does; where it does not, it has more.
     further : int
-        Roundings of an amount that are tried, each further on the side where it does.
+        Roundings of a value that are tried: to few digits, then to more, each further on the side where it does.
     """
 
     farthest: float = 3.0
@@ -149,7 +151,8 @@ class WayOutLimits:
     first: int = 4
     flat: float = 1e-12
     slack: float = 1e-12
-    further: int = 5
+    digits: int = 4
+    further: int = 6
 
 
 @dataclass(frozen=True, kw_only=True)

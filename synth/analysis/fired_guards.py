@@ -15,7 +15,7 @@ from synth.model.numbers import numeric
 from synth.question.instance import Instance
 from synth.question.requirement_values import RequirementValues
 from synth.special import expanded
-from synth.study_limits import GUARDS
+from synth.study_limits import GUARDS, WAYS_OUT
 from synth.units import format_quantity, outward, parse_quantity
 
 AT_LEAST, AT_MOST = "at_least", "at_most"
@@ -162,7 +162,8 @@ class _RefusedChoices:
                 if sense == AT_LEAST
                 else ("less than" if strictly else "at most")
             )
-            shown = f"{format_quantity(value, unit, 5)} where {side} {format_quantity(needed, unit, 5)} is needed"
+            sides = [format_quantity(x, unit, WAYS_OUT.digits) for x in (value, needed)]
+            shown = f"{sides[0]} where {side} {sides[1]} is needed"
             words += f": {name} is {shown}{f' with {part}' if part else ''}"
         if not math.isnan(missed):
             words += f" (missed by {format_quantity(missed, '%', 3)})"
@@ -201,7 +202,7 @@ class _RefusedChoices:
                 middle = (low + high) / 2
                 low, high = (middle, high) if self._fires_at(name, sign * middle) else (low, middle)
             needed = value * math.exp(sign * high)
-            for text in outward(needed, r.unit, up=sign > 0):
+            for text in (next(outward(needed, r.unit, sign > 0, WAYS_OUT.digits)), *outward(needed, r.unit, sign > 0)):
                 if not self._fires_text(name, text):
                     found.append((high, text))
                     break

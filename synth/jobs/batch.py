@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from sqlalchemy import URL
 
-from synth.csv_style import ENGLISH, GERMAN, CsvStyle
+from synth.csv_style import ENGLISH, GERMAN, CsvStyle, list_with_points
 from synth.errors import InputError, SeveralErrors, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.database import digest, encoded, file_url
@@ -23,7 +23,7 @@ from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.job_table import BATCH
-from synth.jobs.outputs import write_outputs
+from synth.jobs.outputs import BEST, write_outputs
 from synth.jobs.row_groups import RowGroups
 from synth.jobs.row_questions import Fault, Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
@@ -80,6 +80,8 @@ def _frame_of(path: Path, **how: Any) -> pd.DataFrame:
         style = GERMAN if file.read(1) == GERMAN.mark else ENGLISH
     decimal = "," if style.commas else "."
     frame = pd.read_csv(path, dtype={"row": str}, encoding="utf-8-sig", sep=style.delimiter, decimal=decimal, **how)
+    if style.commas and BEST in frame:
+        frame[BEST] = frame[BEST].map(list_with_points)
     return _as_meant(frame)
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -13,12 +15,14 @@ from synth.files import csv_writer, read_json
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
+from synth.plain_text import words
 from synth.results.provenance import installed_versions
 
 TABLES = ("designs.csv", "rows.csv")
 BATCH_FORMAT = 1  # of batch.json
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
 GROUPS = ("objectives", "searched", "choices", "parts", "derived", "limits")
+BEST = "best design"  # a list of quantities and parts in words
 ROW_COLUMNS = (
     "line",
     "row",
@@ -28,10 +32,12 @@ ROW_COLUMNS = (
     "seconds",
     "certificate",
     "gap",
-    "best design",
+    BEST,
     "explanation",
     "remarks",
 )
+MISSED = re.compile(r"design found misses ([^:]+):")  # in the explanation of a row
+TOLD = 3  # limits of a row that are named
 SHORT = 12  # digits of a key that tell rows apart
 
 
@@ -73,7 +79,7 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
                 counts = _write_rows(file, store, job, content)
             if csv != ENGLISH:
                 for name in TABLES:
-                    new.rewrite(name, csv.text(new.staged(name).read_text(encoding="utf-8")))
+                    new.rewrite(name, csv.text(new.staged(name).read_text(encoding="utf-8"), lists=(BEST,)))
             summary = {
                 "format": BATCH_FORMAT,
                 "job": job,
@@ -204,13 +210,65 @@ def explanation_of(row: Answered) -> str:
     return str(content.get("error") or content.get("explanation") or stopped)
 
 
+@dataclass(frozen=True)
+class RowOutcome:
+    """What became of a row: its line, what is carried along, status, and the leading design or the reason why none.
+
+    ``objectives`` and ``made`` (choices and parts) are cells of the leading design by heading.
+    """
+
+    line: int
+    carried: Mapping[str, str]
+    status: str
+    objectives: Mapping[str, str]
+    made: Mapping[str, str]
+    reason: str
+
+
+def row_outcomes(store: Store, job: str) -> Iterator[RowOutcome]:
+    """Return what became of each row, in the order of the table."""
+    record = store.job(job)
+    assert record is not None
+    layouts = store.layouts(job)
+    titles, places = _carried(record.content)
+    for row in store.rows(job, canonical=False):
+        designs = (row.content or {}).get("rows", [])
+        leading = _grouped(layouts[row.layout], designs[0]) if designs and row.layout else {}
+        yield RowOutcome(
+            row.line,
+            {title: row.cells[k] for title, k in zip(titles, places, strict=True) if k < len(row.cells)},
+            status_of(row),
+            leading.get("objectives", {}),
+            {**leading.get("choices", {}), **leading.get("parts", {})},
+            _reason(row),
+        )
+
+
+def _reason(row: Answered) -> str:
+    """Return in a few words why a row has no designs."""
+    if row.faults:
+        more = f" and {len(row.faults) - 1} more" if len(row.faults) > 1 else ""
+        return str(row.faults[0]["sentence"]).partition(", ")[2].partition("; expected")[0] + more
+    told = explanation_of(row)
+    missed = MISSED.search(told)
+    if missed is None:
+        return told
+    names = missed[1].split(", ")
+    more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
+    return f"nearest design misses {', '.join(map(words, names[:TOLD]))}{more}"
+
+
+def _grouped(layout: Mapping[str, Any], cells: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return the cells of a design by group and heading."""
+    values = iter(cells[len(RANKING) :])
+    return {group: {name: next(values) for name in layout[group]} for group in GROUPS}
+
+
 def best_design(layout: Mapping[str, Any], cells: Sequence[str]) -> str:
     """Return a design in words: objectives, sizes, choices and parts."""
-    names = [name for group in GROUPS for name in layout[group]]
-    shown = [name for group in ("objectives", "searched", "choices", "parts") for name in layout[group]]
-    return ", ".join(
-        _said(name, cell) for name, cell in zip(names, cells[len(RANKING) :], strict=True) if name in shown and cell
-    )
+    found = _grouped(layout, cells)
+    shown = ("objectives", "searched", "choices", "parts")
+    return ", ".join(_said(name, cell) for group in shown for name, cell in found[group].items() if cell)
 
 
 def _said(heading: str, cell: str) -> str:

@@ -118,7 +118,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
         must_answer(scheduler)
     with heard_again() as check:
         try:
-            from synth.terminal.batch_console import batch_display, print_summary, print_table_remarks
+            from synth.terminal.batch_console import batch_display, print_summary, print_table_remarks, shown_rows
 
             job = make()
             claim_output(job.folder, BATCH, job.id)
@@ -133,6 +133,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
             with batch_display(quiet) as progress:
                 stopped = job.work(_processes(workers), scheduler, _checked(progress, check), tell)
             counts = job.write()
+            rows = [] if quiet else shown_rows(job.store, job.id, counts)
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
             raise typer.Exit(STOPPED) from None
@@ -142,7 +143,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
         finally:
             job.close()
     if not quiet:
-        print_summary(counts, job.place, job.folder, stopped)
+        print_summary(counts, rows, job.place, job.folder, stopped)
     return _code(counts, stopped)
 
 
@@ -244,7 +245,7 @@ def resume(
     """Go on with a job that was stopped or cancelled, without its table."""
     from synth.jobs.batch import resume as go_on
     from synth.jobs.outputs import write_outputs
-    from synth.terminal.batch_console import batch_display, print_summary
+    from synth.terminal.batch_console import batch_display, print_summary, shown_rows
 
     style = csv_style(csv, "--csv")
     store, found = _find(job, database)
@@ -259,6 +260,7 @@ def resume(
                 shown = _checked(progress, check)
                 stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
             counts, place = write_outputs(store, found.id, Path(found.folder), style)
+            rows = [] if quiet else shown_rows(store, found.id, counts)
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
             raise typer.Exit(STOPPED) from None
@@ -266,7 +268,7 @@ def resume(
             _tell_no_room(error)
             raise typer.Exit(STOPPED) from error
     if not quiet:
-        print_summary(counts, place, Path(found.folder), stopped)
+        print_summary(counts, rows, place, Path(found.folder), stopped)
     raise typer.Exit(_code(counts, stopped))
 
 

@@ -6,44 +6,51 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from synth.errors import shortened
+from synth.jobs.outputs import RowOutcome, row_outcomes
 from synth.jobs.row_questions import Fault
-from synth.terminal.console import console_on, output, plain_table
-from synth.terminal.session import say, tell_written
+from synth.plain_text import alike, words
+from synth.terminal.console import console_on, in_common, made_of, output, plain_table, print_wrapped
+from synth.terminal.session import say, tell, tell_written
+from synth.units import split_header, unit_text
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob
     from synth.jobs.models import Job
-    from synth.jobs.store import Account
+    from synth.jobs.store import Account, Store
 
+MOST_ROWS = 20  # that are all shown
+FIRST = 5  # of many that have no design
+NAME, REASON = 24, 160  # characters
 LINES = 8  # of a fault that stands in many
 EVERY = 5.0  # seconds between lines of progress where there is no terminal
 
 
 def print_table_remarks(job: BatchJob, continues: bool) -> None:
     """Tell on standard error how the table was understood, and which rows cannot be asked."""
-    say = _error_lines()
     if continues:
-        say(f"going on with job {job.id}")
+        tell(f"going on with job {job.id}")
     if job.table.sentence():
-        say(f"read as {job.table.sentence().removeprefix(f'{job.table.name}: ')}: {job.table.name}")
+        tell(f"read as {job.table.sentence().removeprefix(f'{job.table.name}: ')}: {job.table.name}")
     for sentence in job.catalogs.readings():
         name, _, how = sentence.partition(": ")
-        say(f"read as {how}: {name}")
+        tell(f"read as {how}: {name}")
     if job.questioner.carried:
-        say(f"carried along unread: {', '.join(column.title for column in job.questioner.carried)}")
+        tell(f"carried along unread: {', '.join(column.title for column in job.questioner.carried)}")
     for family, columns in sorted(job.unused.items()):
-        say(f"not used by {family}: {', '.join(sorted(columns))}")
+        tell(f"not used by {family}: {', '.join(sorted(columns))}")
     for (column, value, expected), lines in job.faults.items():
-        say(Fault(lines[0], column, value, expected).sentence() + _more_lines(lines[1:]))
+        tell(Fault(lines[0], column, value, expected).sentence() + _more_lines(lines[1:]))
     if job.bad:
         shown = {line for lines in job.faults.values() for line in lines}
         more = "" if len(shown) == job.bad else ", the first are shown"
-        say(f"{counted(job.bad, 'row')} cannot be asked{more}; rows.csv lists them all, the others run")
+        tell(f"{counted(job.bad, 'row')} cannot be asked{more}; rows.csv lists them all, the others run")
 
 
 def _more_lines(lines: Sequence[int]) -> str:
@@ -52,10 +59,6 @@ def _more_lines(lines: Sequence[int]) -> str:
         return ""
     listed = ", ".join(map(str, lines[:LINES])) + (", ..." if len(lines) > LINES else "")
     return f" (also in {'line' if len(lines) == 1 else f'{len(lines)} lines:'} {listed})"
-
-
-def _error_lines() -> Callable[[str], None]:
-    return lambda sentence: print(f"clutchsynth: {sentence}", file=sys.stderr)
 
 
 @contextmanager
@@ -143,13 +146,71 @@ WORDS = {
 }
 
 
-def print_summary(counts: Mapping[str, int], place: Path, folder: Path, stopped: str) -> None:
+STATES = {
+    "optimal": "proven",
+    "feasible": "not proven",
+    "infeasible": "not feasible",
+    "bad_input": "bad input",
+    "refused": "refused",
+    "failed": "failed",
+    "not_solved": "not solved",
+}
+WITHOUT = frozenset(STATES) - {"optimal", "feasible"}  # a design
+
+
+def print_summary(
+    counts: Mapping[str, int], rows: Sequence[RowOutcome], place: Path, folder: Path, stopped: str
+) -> None:
     """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
     say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    _print_rows(rows, total)
     if stopped:
         say(f"stopped: {stopped}; what was found is saved, the same command goes on")
     tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
+
+
+def shown_rows(store: Store, job: str, counts: Mapping[str, int]) -> list[RowOutcome]:
+    """Return the rows that a screen shows: all of few, of many the first that have no design."""
+    if sum(counts.values()) <= MOST_ROWS:
+        return list(row_outcomes(store, job))
+    if not any(counts.get(status) for status in WITHOUT):
+        return []
+    return list(islice((row for row in row_outcomes(store, job) if row.status in WITHOUT), FIRST))
+
+
+def _print_rows(rows: Sequence[RowOutcome], total: int) -> None:
+    """Print a line per row: its name, how it stands, and the leading design or the reason why there is none."""
+    if not rows:
+        return
+    console = output()
+    console.print("\nthe first of those without a design" if len(rows) < total else "")
+    named = next(iter(rows[0].carried), "")
+    objectives = list(dict.fromkeys(heading for row in rows for heading in row.objectives))
+    shared = in_common([row.made for row in rows if row.made])
+    heads = ["line", *([named] if named else []), "state", *map(_heading, objectives), "parts of #1, or why not"]
+    last = len(heads) - 1
+    table = plain_table(*heads, right=(0, *range(last - len(objectives), last)), wide=last)
+    numbers = [alike([_number(row.objectives.get(heading)) for row in rows]) for heading in objectives]
+    for k, row in enumerate(rows):
+        name = [shortened(row.carried.get(named, ""), NAME)] if named else []
+        own = made_of({n: text for n, text in row.made.items() if n not in shared}) or "as all"
+        told = own if row.made else shortened(row.reason, REASON)
+        table.add_row(str(row.line), *name, STATES[row.status], *(column[k] for column in numbers), told)
+    console.print(table)
+    console.print()
+    if shared:
+        print_wrapped(console, f"#1 of every row: {made_of(shared)}")
+        console.print()
+
+
+def _heading(column: str) -> str:
+    name, unit = split_header(column)
+    return f"{words(name)} [{unit_text(unit or '-')}]".removesuffix(" []")
+
+
+def _number(cell: str | None) -> float | None:
+    return float(cell) if cell else None
 
 
 def _sorted(counts: Mapping[str, int]) -> list[tuple[str, int]]:

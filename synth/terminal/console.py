@@ -130,17 +130,32 @@ def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = No
     return table
 
 
+def in_common(made: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Return what several designs have in common of what they are made of; nothing of one alone."""
+    return {n: text for n, text in made[0].items() if all(x.get(n) == text for x in made)} if len(made) > 1 else {}
+
+
+def made_of(made: Mapping[str, str]) -> str:
+    """Return in words what a design is made of."""
+    return ", ".join(f"{words(name)} {text}" for name, text in made.items())
+
+
 # ---- explain --------------------------------------------------------------------------------------------------------
 
 
 def print_explanation(found: Explanation, title: str, console: Console) -> None:
     """Print why nothing is feasible, and every way out with the smallest change first."""
-    console.print(f"{title}: {found.message}")
+    names = found.names
+
+    def tell(sentence: str, indent: int = 0) -> None:
+        print_wrapped(console, in_words(sentence, names), indent)
+
+    tell(f"{title}: {found.message}")
     for guard in found.fired:
         console.print()
-        print_wrapped(console, f"Refused: {guard.name}: expected {guard.message}", 0)
+        tell(f"Refused: {guard.name}: expected {guard.message}")
         for name, value in guard.lifted_by.items():
-            print_wrapped(console, f"not refused with {name} {value}", 2)
+            tell(f"not refused with {name} {value}", 2)
     titles = {
         "requirement": "One requirement alone",
         "limit": "One limit alone",
@@ -156,11 +171,11 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
             continue
         console.print(f"\n{heading}")
         for way in ways:
-            print_wrapped(console, way.sentence + ("" if way.proven else " (less may do: not proven)"), 2)
+            tell(way.sentence + ("" if way.proven else " (less may do: not proven)"), 2)
     if found.conflict and not found.minimal:
         console.print("\nFewer limits may exclude each other as well: not proven to be minimal.")
     for sentence in found.not_settled:
-        console.print(f"not settled: {sentence}")
+        tell(f"not settled: {sentence}")
 
 
 def print_wrapped(console: Console, text: str, indent: int = 0) -> None:

@@ -25,8 +25,13 @@ INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C
 
 
 def tell(sentence: str) -> None:
-    """Say something beside the results: on standard error."""
-    print(f"clutchsynth: {sentence}", file=sys.stderr)
+    """Say something beside the results: on standard error, where that is a terminal on lines no wider than it."""
+    lines = [f"clutchsynth: {sentence}"]
+    if sys.stderr.isatty():
+        from synth.terminal.console import console_on
+
+        lines = wrapped(lines[0], console_on(sys.stderr).width, later=4, broken=False)
+    print("\n".join(lines), file=sys.stderr)
 
 
 def tell_readings(tables: Catalogs) -> None:

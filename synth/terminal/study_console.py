@@ -8,13 +8,11 @@ from synth.plain_text import alike, words
 from synth.question.uncertainty import RATE
 from synth.robust.rate import taken_off, told_of
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
-from synth.terminal.console import plain_table, print_wrapped
+from synth.terminal.console import in_common, made_of, plain_table, print_wrapped
 from synth.terminal.robust_console import percent
 from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rich.console import Console
     from rich.table import Table
 
@@ -42,7 +40,7 @@ def print_study(study: Study, console: Console) -> None:
     console.print()
     shared = _shared(study)
     if shared:
-        print_wrapped(console, f"#1 of every step: {_listed(shared)}")
+        print_wrapped(console, f"#1 of every step: {made_of(shared)}")
         console.print()
     _print_reasons(study, console)
     if study.breaks:
@@ -78,7 +76,7 @@ def _steps(study: Study) -> Table:
             cells.append("not reached" if step.front is None else "")
         else:
             own = {name: text for name, text in _made(leader).items() if name not in shared}
-            cells.append(_listed(own) or "as all")
+            cells.append(made_of(own) or "as all")
         table.add_row(*cells)
     return table
 
@@ -94,13 +92,8 @@ def _made(design: Design) -> dict[str, str]:
 
 
 def _shared(study: Study) -> dict[str, str]:
-    """Return what the leading designs of all steps have in common; nothing where there is but one."""
-    made = [_made(f.designs[0]) for f in study.fronts if f.designs]
-    return {n: text for n, text in made[0].items() if all(x.get(n) == text for x in made)} if len(made) > 1 else {}
-
-
-def _listed(made: Mapping[str, str]) -> str:
-    return ", ".join(f"{words(name)} {text}" for name, text in made.items())
+    """Return what the leading designs of all steps have in common."""
+    return in_common([_made(f.designs[0]) for f in study.fronts if f.designs])
 
 
 def _print_reasons(study: Study, console: Console) -> None:

@@ -17,7 +17,8 @@ from synth.output_folder import EXPLANATION, save_result
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.results.notebook import notebook_html
-from synth.units import from_si, outward, parse_unit
+from synth.study_limits import WAYS_OUT
+from synth.units import format_quantity, from_si, outward, parse_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -123,8 +124,7 @@ class Explanation:
             return "The question has feasible designs; there is nothing to explain."
         words = [f"Refused as it stands: {guard.sentence}." for guard in self.fired]
         if self.conflict:
-            always = f" (beside {', '.join(self.guards)}, which always count)" if self.guards else ""
-            names = ", ".join(self.conflict) + always
+            names = ", ".join(self.conflict)
             words.append(
                 f"These limits cannot hold together: {names}."
                 if len(self.conflict) > 1
@@ -141,6 +141,11 @@ class Explanation:
         if self.interrupted:
             words.append(f"Stopped early ({self.interrupted}).")
         return " ".join(words)
+
+    @property
+    def names(self) -> set[str]:
+        """Return the names that its sentences may have."""
+        return {*self.conflict, *(name for way in self.ways for name in (way.name, *way.design.names))}
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per way out."""
@@ -232,4 +237,15 @@ def _number(value: float) -> float | None:
 
 def rounded(value: float, unit: str, sense: str) -> str:
     """Return a value with its unit, rounded up where at least so much is needed, otherwise down."""
-    return next(outward(value, unit, up=sense == "at_least"))
+    return roundings(value, unit, sense == "at_least")[0]
+
+
+def roundings(value: float, unit: str, up: bool) -> tuple[str, ...]:
+    """Return a value with its unit, rounded to one side: to few digits, then to more, further and further."""
+    return (next(outward(value, unit, up, WAYS_OUT.digits)), *outward(value, unit, up))[: WAYS_OUT.further]
+
+
+def as_given(si: float, unit: str) -> str:
+    """Return what stands in a question, beside what is needed: with as many digits, whole parts in full."""
+    whole = math.floor(math.log10(abs(shown))) + 1 if (shown := float(from_si(si, unit))) else 0
+    return format_quantity(si, unit, max(WAYS_OUT.digits, whole))

@@ -14,12 +14,12 @@ from synth.question.ranges import declared_ranges
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
-from synth.studies.infeasibility.explanation import Relaxation
+from synth.studies.infeasibility.explanation import Relaxation, as_given, roundings
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import LIMIT, REQUIREMENT
 from synth.studies.infeasibility.single_ways import PIN
-from synth.units import format_quantity, outward
+from synth.units import format_quantity
 
 
 def widened(patches: Patches, found: LeastAmount, design: Design) -> Relaxation:
@@ -116,17 +116,17 @@ class JointWay:
         for name, sign in self.signs.items():
             r, given = instance.model.declaration.requirements[name], instance.values.requirements[name]
             needed = min(max(given * math.exp(sign * min(amount, self.rooms[name])), r.lower), r.upper)
-            texts = tuple(outward(needed, r.unit, up=sign > 0))
-            changes.append(_Change(REQUIREMENT, name, name, texts, format_quantity(given, r.unit)))
+            texts = roundings(needed, r.unit, sign > 0)
+            changes.append(_Change(REQUIREMENT, name, name, texts, as_given(given, r.unit)))
         return changes
 
     def _limits(self, amount: float) -> list[_Change]:
         changes = []
         for x in (x for x in self.question.own if x.name in self.own):
             factor = math.exp(self.question.sign(x.name) * amount * (1 if x.bound > 0 else -1))
-            texts = tuple(outward(x.bound * factor, x.unit, up=x.sense == "at_most"))
+            texts = roundings(x.bound * factor, x.unit, x.sense == "at_most")
             shown = f"limit {x.quantity} {SIGNS[x.sense]}"
-            changes.append(_Change(LIMIT, x.name, shown, texts, format_quantity(x.bound, x.unit)))
+            changes.append(_Change(LIMIT, x.name, shown, texts, as_given(x.bound, x.unit)))
         return changes
 
     def _pins(self, design: Design) -> list[_Change]:
@@ -136,7 +136,7 @@ class JointWay:
             if not pin.low <= value <= pin.high:
                 end = pin.high if value > pin.high else pin.low
                 texts = (format_quantity(value, pin.unit, None),) * self.search.ways.further
-                shown, given = format_quantity(value, pin.unit), format_quantity(end, pin.unit)
+                shown, given = as_given(value, pin.unit), as_given(end, pin.unit)
                 changes.append(_Change(PIN, pin.name, pin.name, texts, given, shown))
         return changes
 

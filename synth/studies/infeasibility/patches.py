@@ -19,8 +19,9 @@ from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.robust.counterpart import nominal, robust_counterpart
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
+from synth.studies.infeasibility.explanation import roundings
 from synth.studies.infeasibility.relaxation import AMOUNT
-from synth.units import format_quantity, outward
+from synth.units import format_quantity
 
 
 def chosen_in(design: Design, name: str) -> str:
@@ -117,7 +118,7 @@ class Patches:
         design : Design
             That the question with the patch must allow.
         """
-        texts = list(outward(needed, unit, up))
+        texts = roundings(needed, unit, up)
         for text in texts:
             if self.works(patch(text), design):
                 return patch(text), text

@@ -12,7 +12,7 @@ from synth.model.constraint import SIGNS, Constraint
 from synth.plain_text import percent
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
-from synth.studies.infeasibility.explanation import Relaxation, rounded
+from synth.studies.infeasibility.explanation import Relaxation, as_given, rounded
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT, REQUIREMENT
@@ -156,7 +156,7 @@ class SingleWays:
         patch, needed = self.patches.first_that_works(
             lambda text: self.patches.requirement(name, text), given * factor, unit, up, design
         )
-        words = f"{name} {needed} instead of {format_quantity(given, unit)}"
+        words = f"{name} {needed} instead of {as_given(given, unit)}"
         return _Value(given, given * factor, unit, words, patch)
 
     def _own_limit(self, own: Constraint, up: bool, factor: float, design: Design) -> _Value:
@@ -165,14 +165,14 @@ class SingleWays:
         patch, needed = self.patches.first_that_works(
             lambda text: self.patches.limits({own.name: text}), given * factor, own.unit, up, design
         )
-        words = f"limit {own.quantity} {SIGNS[own.sense]} {needed} instead of {format_quantity(given, own.unit)}"
+        words = f"limit {own.quantity} {SIGNS[own.sense]} {needed} instead of {as_given(given, own.unit)}"
         return _Value(given, given * factor, own.unit, words, patch)
 
     def _family_limit(self, name: str, up: bool, factor: float, design: Design) -> _Value:
         unit, given = self.question.by_name[name].unit, self.patches.as_asked(design).limits[name][1]
         factor = 1 / factor if given < 0 else factor
         needed = rounded(given * factor, unit, "at_least" if up else "at_most")
-        return _Value(given, given * factor, unit, f"limit {name} {needed} instead of {format_quantity(given, unit)}")
+        return _Value(given, given * factor, unit, f"limit {name} {needed} instead of {as_given(given, unit)}")
 
     def _column(self, name: str, up: bool, factor: float, design: Design) -> _Value:
         part, column = self.question.columns[name], name.split(".", 1)[1]
@@ -182,7 +182,7 @@ class SingleWays:
         unit = tables.table(part.table).columns[column.split("|")[0]].unit or "-"
         needed = rounded(given * factor, unit, "at_least" if up else "at_most")
         words = f"a {part.slot} with {column} {'>=' if up else '<='} {needed} would do; "
-        return _Value(given, given * factor, unit, f"{words}{row} has {format_quantity(given, unit)}")
+        return _Value(given, given * factor, unit, f"{words}{row} has {as_given(given, unit)}")
 
     # -- what was asked outright ---------------------------------------------------------------
 
@@ -194,7 +194,7 @@ class SingleWays:
         if not self.patches.works(patch, design):
             return None
         amount, more = abs(value / given - 1.0), value > given
-        shown = f"{pin.name} {format_quantity(value, pin.unit)} instead of {format_quantity(given, pin.unit)}"
+        shown = f"{pin.name} {as_given(value, pin.unit)} instead of {as_given(given, pin.unit)}"
         return Relaxation(
             kind="fix" if pin.key == "fix" else "limit",
             name=pin.name,
