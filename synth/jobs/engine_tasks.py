@@ -19,7 +19,7 @@ CHECK_ROWS_TASK, BATCH_FILE_TASK = "check_rows", "batch_file"
 FAMILIES_TASK, DECLARATION_TASK, EXAMPLES_TASK = "families", "declaration", "examples"
 CHECK_TASK, EVALUATE_TASK, CHANGED_TASK = "check", "evaluate", "changed"
 FILES_TASK, RENDER_TASK, DESIGNS_TASK = "files", "render", "designs"
-UPLOAD_TASK, PART_TABLE_TASK = "upload", "part_table"
+UPLOAD_TASK, TABLE_TEXT_TASK, PART_TABLE_TASK = "upload", "table_text", "part_table"
 TABLES_TASK, TABLE_TASK = "tables", "table"
 TASKS: Mapping[str, str] = MappingProxyType(
     {
@@ -39,6 +39,7 @@ TASKS: Mapping[str, str] = MappingProxyType(
         RENDER_TASK: "synth.jobs.engine_questions:render",
         DESIGNS_TASK: "synth.jobs.kinds.designs:page",
         UPLOAD_TASK: "synth.jobs.kinds.brought:rows_of_file",
+        TABLE_TEXT_TASK: "synth.jobs.kinds.brought:text_of_file",
         PART_TABLE_TASK: "synth.jobs.kinds.brought:part_table",
         TABLES_TASK: "synth.jobs.kinds.shipped:tables",
         TABLE_TASK: "synth.jobs.kinds.shipped:table",

@@ -13,7 +13,7 @@ from synth.files import yaml_text
 from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
 from synth.results.ratings import DesignRating
-from synth.units import finite_from_si, format_quantity, header
+from synth.units import finite_from_si, format_quantity, header, in_words
 
 SOURCE = re.compile(r" \[[^\[\]]*\]$")  # behind a remark
 
@@ -125,8 +125,8 @@ class Design:
 
     @property
     def bare_advice(self) -> list[str]:
-        """Return the remarks without their codes and sources, which ``describe`` and the sheet of the design tell."""
-        return [SOURCE.sub("", remark.partition(": ")[2] or remark) for remark in self.advice]
+        """Return the remarks in words, without codes and sources, which ``describe`` and the sheet of a design tell."""
+        return [in_words(SOURCE.sub("", remark.partition(": ")[2] or remark), self.names) for remark in self.advice]
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""

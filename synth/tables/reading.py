@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.errors import InputError, at
+from synth.files import csv_text, read_bytes
 from synth.tables.csv_file import read_csv_bytes, read_csv_file
+from synth.tables.delimited_text import decoded
 from synth.tables.schema import SCHEMA_SUFFIX, Column, Schema, load_schema
 from synth.tables.table import SHIPPED, FloatArray, Table
 from synth.tables.table_text import TableText
-from synth.tables.workbook import cell_text, is_workbook, sheet_of, split_sheet
+from synth.tables.workbook import Sheet, cell_text, is_workbook, sheet_of, split_sheet
 from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -241,8 +243,31 @@ def load_table(
     return _table_of(*written.rows(), schema, name, path.name, shipped, written.sentence())
 
 
+def csv_of_file(path: Path) -> str:
+    """Return the text of a user's table as a CSV file holds it, whatever its encoding; of a workbook that of a sheet.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
+    """
+    if not is_workbook(path):
+        return decoded(read_bytes(path, "catalogue file", "a CSV or .xlsx file"), path.name)[0]
+    _, lines = _lines_of_sheet(path, None)
+    (_, head), *rows = lines
+    return csv_text(head, [cells for _, cells in rows])
+
+
 def _table_of_sheet(path: Path, schema: Schema | None, name: str) -> Table:
     """Read a user's table from a workbook: the sheet that is named, or the first that has what is needed."""
+    sheet, ((_, head), *rows) = _lines_of_sheet(path, schema)
+    wide = max((len(cells) for _, cells in rows), default=0)
+    place = f"{sheet.name}, sheet {sheet.title}"
+    return _table_of(head + [""] * (wide - len(head)), rows, schema, name, place, False, sheet.sentence())
+
+
+def _lines_of_sheet(path: Path, schema: Schema | None) -> tuple[Sheet, list[tuple[int, list[str]]]]:
+    """Return the sheet that holds a table, and its lines that are not empty, the header first."""
     wanted = None if schema is None or schema.get("designation") is not None else {c.name for c in schema.columns}
 
     def fits(header: list[str]) -> bool:
@@ -256,8 +281,7 @@ def _table_of_sheet(path: Path, schema: Schema | None, name: str) -> Table:
         raise InputError(place, "an empty first row", "a header row and at least one row below it")
     (_, head), *rows = lines
     rows = [(line, cells + [""] * (len(head) - len(cells))) for line, cells in rows]
-    wide = max((len(cells) for _, cells in rows), default=0)
-    return _table_of(head + [""] * (wide - len(head)), rows, schema, name, place, False, sheet.sentence())
+    return sheet, [(1, head), *rows]
 
 
 def _flag_or_text(cell: object) -> str:

@@ -496,34 +496,38 @@ def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -
     console.print()
     if front.interrupted:
         kept = "the designs found so far are shown and saved" if front.designs else "no design was found until then"
-        console.print(f"stopped: {front.interrupted}; {kept}")
+        print_wrapped(console, f"stopped: {front.interrupted}; {kept}")
     if front.designs or front.interrupted:
-        console.print(front.certificate.sentence())
+        print_wrapped(console, front.certificate.sentence())
     elif front.certificate.kind == "global":
-        console.print(f"proven: {none_of(front.certificate.combinations)} of parts and counts is feasible")
+        print_wrapped(console, f"proven: {none_of(front.certificate.combinations)} of parts and counts is feasible")
     else:
-        console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
+        print_wrapped(
+            console, "not proven: bounds could not exclude every combination, solving found none that is feasible"
+        )
     few = len(front.designs) < len(front.frame.objectives) and not front.complete
     if front.designs and few:
         best = [words(name) for name in front.frame.objectives][: len(front.designs)]
-        console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
+        print_wrapped(console, f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
     if front.complete and front.designs and len(front.frame.objectives) > 1:
-        console.print("the front is complete: beyond that gap there is no other design that none beats in everything")
+        print_wrapped(
+            console, "the front is complete: beyond that gap there is no other design that none beats in everything"
+        )
     left_out = front.statistics.get("rows_left_out", ())
     if verbose:
         for line in statistics_lines(front.statistics):
-            console.print(line)
+            print_wrapped(console, line)
     elif left_out:
         slots = Counter(row["slot"] for row in left_out)
         rows = ", ".join(f"{count} of {slot}" for slot, count in slots.items())
-        console.print(f"rows left out although they were offered: {rows} (--verbose tells why)")
+        print_wrapped(console, f"rows left out although they were offered: {rows} (--verbose tells why)")
 
 
 def print_verification(verification: Verification, console: Console) -> None:
     """Print what checking a front again has shown: every finding and what stays open, then the outcome."""
     for sentence in (*verification.findings, *verification.open):
-        console.print(f"- {sentence}")
-    console.print(verification.sentence())
+        print_wrapped(console, f"- {sentence}")
+    print_wrapped(console, verification.sentence())
 
 
 def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:

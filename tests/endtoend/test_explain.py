@@ -74,7 +74,7 @@ def test_a_refusal_ends_with_amounts_and_exit_code_3(tmp_path):
     told = json.loads((tmp_path / "why" / "explanation.json").read_text(encoding="utf-8"))
     assert [guard["name"] for guard in told["refused"]] == ["envelope_too_small"]
     assert told["refused"][0]["missed_by"] == pytest.approx(0.4427, rel=1e-3)
-    assert "outer_diameter_limit is 60 mm where at least 107.66 mm is needed" in " ".join(done.stdout.split())
+    assert "outer diameter limit is 60 mm where at least 107.7 mm is needed" in " ".join(done.stdout.split())
     asked = {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}
     parts = {"roller": ["6203"], "float_material": ["100Cr6"]}
     first = told["ways"][0]["patch"]["requirements"]

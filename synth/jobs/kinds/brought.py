@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from synth.plain_text import printable
 from synth.question.catalogs import as_catalogs, meant_by, needed_columns
 from synth.tables.catalogs import Catalogs
 from synth.tables.delimited_text import DelimitedText, delimited_text
+from synth.tables.reading import csv_of_file
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, schema_of_text
 from synth.tables.table_text import TableText
 from synth.units import split_header
@@ -33,15 +35,34 @@ def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     InputError
         It cannot be read.
     """
-    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
-        file = Path(folder) / f"table{Path(payload['name']).suffix}"
-        file.write_bytes(payload["content"])
+    with _as_file(payload) as file:
         table = RowTable(payload["name"], file)
         first = list(itertools.islice(table.lines(), payload["most"]))
         return {
             "header": list(table.header()),
             "rows": [{"line": line, "cells": list(cells)} for line, cells in first],
         }
+
+
+def text_of_file(payload: Mapping[str, Any], tell: Tell) -> str:
+    """Return the text of a file with a part table; of a workbook that of ``sheet``, or the first with designations.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+    with _as_file(payload) as file:
+        return csv_of_file(file.with_name(f"{file.name}#{payload['sheet']}") if payload["sheet"] else file)
+
+
+@contextmanager
+def _as_file(payload: Mapping[str, Any]) -> Iterator[Path]:
+    """Put what was brought into a file while it is read."""
+    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
+        file = Path(folder) / f"table{Path(payload['name']).suffix}"
+        file.write_bytes(payload["content"])
+        yield file
 
 
 def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:

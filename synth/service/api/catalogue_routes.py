@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.errors import InputError
-from synth.jobs.engine_tasks import PART_TABLE_TASK
+from synth.jobs.engine_tasks import PART_TABLE_TASK, TABLE_TEXT_TASK
 from synth.jobs.models import Catalogue
 from synth.jobs.shelf import NAME, Shelf, text_of
 from synth.service.api.schemas import (
@@ -46,17 +46,19 @@ async def add_catalogue(
 ) -> BroughtCatalogue:
     """Keep a part table as the next version of its name, after it was read as questions will read it.
 
+    Its rows stand in `csv`, or in a file that was brought (`POST /uploads`) and is named as `upload`.
     The answer tells how it was read, which columns no family knows, and what slots of families lack in it.
     """
     if not NAME.fullmatch(asked.name):
         right = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
         raise InputError("name", asked.name, right, ("name",))
     table = asked.table or asked.name
-    payload = {"name": asked.name, "table": table, "csv": asked.csv, "schema": asked.schema_}
+    csv = await _text(asked, principal.tenant, context)
+    payload = {"name": asked.name, "table": table, "csv": csv, "schema": asked.schema_}
     told = await context.files.ask(PART_TABLE_TASK, payload)
     shelf = Shelf(context.store)
     added, is_new = await in_thread(
-        shelf.add_catalogue, principal.tenant, asked.name, table, asked.csv, asked.schema_, told["rows"], asked.note
+        shelf.add_catalogue, principal.tenant, asked.name, table, csv, asked.schema_, told["rows"], asked.note
     )
     place = f"{request.app.url_path_for('list_catalogues')}/{added.name}/{added.version}"
     if not is_new:
@@ -65,6 +67,30 @@ async def add_catalogue(
     response.headers["Location"] = place
     understood = {key: told[key] for key in ("reading", "columns", "missing", "remarks")}
     return BroughtCatalogue(**_entry(added).model_dump(), **understood)
+
+
+async def _text(asked: CatalogueRequest, tenant: int, context: ServiceContext) -> str:
+    """Return the rows that are brought, as text.
+
+    Raises
+    ------
+    InputError
+        There are none, or there are two; the file is not there, or cannot be read.
+    """
+    if bool(asked.csv) == bool(asked.upload):
+        got = "both" if asked.csv else None
+        raise InputError("csv", got, "the rows as text, or upload with the id of a file that was brought", ("csv",))
+    if not asked.upload:
+        return asked.csv
+    kept = await in_thread(Shelf(context.store).upload, tenant, asked.upload)
+    if kept is None:
+        raise InputError("upload", asked.upload, "the id of a file that was brought and is still kept", ("upload",))
+    payload = {"name": kept.name, "content": kept.content, "sheet": asked.sheet}
+    try:
+        return str(await context.files.ask(TABLE_TEXT_TASK, payload))
+    except InputError as fault:
+        fault.path = ("upload",)
+        raise
 
 
 @router.get("/catalogues/{name}/{version}", summary="A version of a part table")

@@ -324,7 +324,9 @@ class CatalogueRequest(BaseModel):
 
     name: str = Field(min_length=1, max_length=60, description="By which questions name it: `my_linings@3`.")
     table: Words = Field("", description="The table of a family that it is rows for; by default its name.")
-    csv: str = Field(min_length=1, description="The rows.")
+    csv: str = Field("", description="The rows, as text.")
+    upload: str = Field("", description="Instead of text: the id of a file, CSV in any encoding or an .xlsx workbook.")
+    sheet: Words = Field("", description="Which sheet of a workbook; by default the first with designations.")
     schema_: str = Field("", alias="schema", description="What its columns are, where the table is none of ours.")
     note: Words = ""
 

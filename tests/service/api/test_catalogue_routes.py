@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any
 
+import openpyxl
 import pytest
 
 from tests.service.working import FAMILY, QUICK, Client
@@ -123,3 +125,45 @@ def test_versions_with_semicolons_are_compared_cell_by_cell(client: Client) -> N
     told = client.get("catalogues/changes/2/changes?since=1").json()
     assert told["changed"] == [{"designation": "L1", "column": "mu_dynamic [-]", "before": "0.12", "after": "0.13"}]
     assert (told["added"], told["removed"]) == ([], [])
+
+
+# ---- files ----------------------------------------------------------------------------------------------------------
+
+
+def file_id(client: Client, name: str, content: bytes) -> str:
+    answer = client.post("uploads", files={"file": (name, content)})
+    assert answer.status_code == 201, answer.text
+    return str(answer.json()["id"])
+
+
+def workbook(*rows: tuple[object, ...]) -> bytes:
+    book, target = openpyxl.Workbook(), io.BytesIO()
+    book.active.append(["a cover sheet"])
+    sheet = book.create_sheet("Linings")
+    for row in rows:
+        sheet.append(row)
+    book.save(target)
+    return target.getvalue()
+
+
+def test_a_table_may_be_a_file_as_spreadsheets_write_it(client: Client) -> None:
+    german = file_id(client, "own.csv", "designation;mu_dynamic [-];Händler\nL1;0,125;Müller\n".encode("cp1252"))
+    book = file_id(client, "own.xlsx", workbook(("designation", "mu_dynamic [-]", "Händler"), ("L1", 0.125, "Müller")))
+    for name, brought_as in (("western", {"upload": german}), ("sheet", {"upload": book, "sheet": "Linings"})):
+        answer = client.post("catalogues", {"name": name, "table": TABLE, **brought_as})
+        assert answer.status_code == 201, answer.text
+        kept = client.get(f"catalogues/{name}/1").json()["csv"]
+        assert "Müller" in kept
+        assert "0,125" in kept or "0.125" in kept
+    found = client.post("catalogues", {"name": "found", "table": TABLE, "upload": book})
+    assert found.json()["rows"] == 1  # the first sheet with designations
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [({}, "csv"), ({"csv": "designation\nL1\n", "upload": "x"}, "csv"), ({"upload": "nothing"}, "upload")],
+)
+def test_rows_are_brought_in_one_way(client: Client, body: dict[str, str], field: str) -> None:
+    refused = client.post("catalogues", {"name": "own", "table": TABLE, **body})
+    assert refused.status_code == 422
+    assert [one["path"] for one in refused.json()["error"]["problems"]] == [[field]]
