@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from synth.analysis.evaluate import evaluate
@@ -152,3 +152,31 @@ def weighed(drawing: Drawing, design: Design) -> list[tuple[str, float, float]]:
         mass = sum(math.nan if value is None else value for value in told)
         rows.append((" + ".join(weight.quantities), drawing.volume(weight) * 1e-9 * density, mass))
     return rows
+
+
+def is_drawn(family: str) -> bool:
+    """Return whether there is a drawing of a family that is installed."""
+    try:
+        return draws(load(family))
+    except InputError:
+        return False
+
+
+def drawings_of(
+    problem: DesignProblem, designs: Sequence[Design], *, asked: bool = False
+) -> tuple[dict[int, Drawing], list[str]]:
+    """Return the drawings of designs by rank, 0 for one without, and why there is none of some of them.
+
+    ``asked``: whether drawings were asked for by name, so that it must be told where a family has none.
+    """
+    found: dict[int, Drawing] = {}
+    notes: list[str] = []
+    if not draws(problem):
+        return found, [f"no drawing: {problem.title or problem.name} has none"] if asked else []
+    for design in designs:
+        try:
+            found[design.rank or 0] = drawing_of(problem, design)
+        except InputError as error:
+            which = f"design #{design.rank}" if design.rank else "the design"
+            notes.append(f"no drawing of {which}: {error}")
+    return found, notes
