@@ -44,6 +44,7 @@ LAYERS = {
 GEOMETRY = ("OUTLINE", "THIN", "HIDDEN", "CENTRE", "PHANTOM")
 PATTERNS = {Filling.RIGHT: ("ANSI31", 0.0), Filling.LEFT: ("ANSI31", 90.0), Filling.CROSS: ("ANSI37", 0.0)}
 PATTERN_SCALE = {Filling.RIGHT: 0.5, Filling.LEFT: 0.5, Filling.CROSS: 0.35}  # of ANSI31: lines 3.175 mm apart
+SPARE = 5.0  # mm around what a viewport shows: letters of another program may be wider
 APART = 200.0  # mm on paper between views in the model
 
 
@@ -237,18 +238,20 @@ class _Dxf:
             add = self.model.add_diameter_dim if measured.diameter else self.model.add_radius_dim
             made = add(
                 center=at(measured.centre), radius=measured.radius, angle=measured.angle, location=text,
-                dimstyle=style, override={**override, "dimtmove": 1}, dxfattribs=attributes,
+                dimstyle=style, override={**override, "dimtmove": 1, "dimtoh": 1, "dimtih": 1}, dxfattribs=attributes,
             )  # fmt: skip
         made.render()
 
     def _viewports(self, k: int, placed: PlacedView, offset: XY) -> None:
         others = [name for j, own in self.own_layers.items() if j != k for name in own]
+        x0, y0, x1, y1 = placed.region
+        around = (x0 - SPARE, y0 - SPARE, x1 + SPARE, y1 + SPARE)
         if placed.detail is None:
-            self._viewport(placed.region, placed, offset, others)
+            self._viewport(around, placed, offset, others)
             return
         dimensions, hatching = self.own_layers[k]
         self._viewport(placed.window, placed, offset, [*others, dimensions])
-        self._viewport(placed.region, placed, offset, [*others, hatching, *GEOMETRY])
+        self._viewport(around, placed, offset, [*others, hatching, *GEOMETRY])
 
     def _viewport(self, box: Box2, placed: PlacedView, offset: XY, frozen: Iterable[str]) -> None:
         centre = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
