@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 from synth.drawing import Area, Drawable, Line, LineKind, rectangle
@@ -64,6 +65,10 @@ def shaft_end(x0: float, x1: float, radius: float, *, broken: float) -> tuple[Dr
 
 
 def envelope(x0: float, x1: float, inner: float, outer: float) -> tuple[Drawable, ...]:
-    """Return room that something takes whose shape the model does not know: a rectangle of phantom lines [mm]."""
-    corners = ((x0, inner), (x1, inner), (x1, outer), (x0, outer))
-    return tuple(Line(p, q, LineKind.PHANTOM) for p, q in zip(corners, (*corners[1:], corners[0]), strict=True))
+    """Return room that something takes whose shape the model does not know: a rectangle of phantom lines [mm].
+
+    What reaches to the axis has no line there.
+    """
+    corners = [(x1, inner), (x1, outer), (x0, outer), (x0, inner)]
+    corners += [(x1, inner)] if inner > 0 else []
+    return tuple(Line(p, q, LineKind.PHANTOM) for p, q in pairwise(corners))

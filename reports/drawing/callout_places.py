@@ -70,8 +70,8 @@ def _called(of: Balloon | Detail | Radius, scale: float, origin: XY) -> _Called:
     else:
         x0, y0, x1, y1 = of.window
         ends = {
-            "left": (x0, (y0 + y1) / 2),
-            "right": (x1, (y0 + y1) / 2),
+            "left": (x0, y0 + 0.8 * (y1 - y0)),
+            "right": (x1, y0 + 0.8 * (y1 - y0)),
             "top": ((x0 + x1) / 2, y1),
             "bottom": ((x0 + x1) / 2, y0),
         }

@@ -91,7 +91,8 @@ def _fit(new: _Taken, old: _Taken) -> bool:
         return new.place.clear_of(old.place)
     low, high = (new, old) if new.tier < old.tier else (old, new)
     # Extension lines to the higher tier pass the lower one: not through its text, nor along arrows from outside.
-    return all(not low.place.text_low - CLEAR < end < low.place.text_high + CLEAR for end in high.ends)
+    nearly = CLEAR - 1e-3
+    return all(not low.place.text_low - nearly < end < low.place.text_high + nearly for end in high.ends)
 
 
 def _ways(ends: tuple[float, float], wide: float, others: Sequence[float]) -> Iterable[_Place]:
@@ -206,7 +207,8 @@ def angular(dimension: Angle, scale: float, origin: XY) -> PlacedMeasure:
     words = label(dimension)
     wide = width(words, TEXT)
     away = radius + 1.5 + abs(math.cos(middle)) * wide / 2 + abs(math.sin(middle)) * TEXT / 2
-    centre = _polar(vertex, away, middle)
+    # Where arrows come from outside the text stands at the end of the first of them.
+    centre = _polar(vertex, radius, start - (TAIL + TEXT) / radius) if inwards else _polar(vertex, away, middle)
     text = Text((centre[0], centre[1] - TEXT / 2), words, TEXT, "middle")
     return PlacedMeasure(dimension, text, tuple(lines), _polar(vertex, radius, middle), inwards, tuple(bows))
 

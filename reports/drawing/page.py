@@ -29,7 +29,7 @@ SHEETS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1"
 FILING, MARGIN = 20.0, 10.0  # left, and around (ISO 5457)
 SCALES = tuple(sorted((n * 10.0**e for e in (-2, -1, 0, 1) for n in (1, 2, 5)), reverse=True))
 STANDARD = tuple(s for s in SCALES if s <= 50)
-LARGE_ENOUGH = {"A4": 95.0, "A3": 95.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
+LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
 ROOM = 6.0  # around a view
 PLAIN = 2.5  # mm on paper of the thinnest part of a detail
 

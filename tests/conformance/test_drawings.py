@@ -52,15 +52,22 @@ def random_designs(family, structure):
 
 def drawings_of(family, structure):
     """Return the smallest, the largest and other random designs that have bodies, with their drawings."""
-    found, refused = [], []
-    for problem, design in random_designs(family, structure):
-        try:
-            found.append((design, drawing_of(problem, design)))
-        except synth.InputError as error:
-            refused.append(str(error))
+    designs = list(random_designs(family, structure))
+    refused = []
+
+    def first_drawn(among):
+        for problem, design in among:
+            try:
+                return [(design, drawing_of(problem, design))]
+            except synth.InputError as error:
+                refused.append(str(error))
+        return []
+
+    others = [designs[(k + 1) * len(designs) // (OTHERS + 1) :] for k in range(OTHERS)]
+    found = [x for among in (designs, *others, designs[::-1]) for x in first_drawn(among)]
+    assert found
     assert all("whose parts have bodies" in words for words in refused)
-    assert len(found) > POINTS / 10
-    return [found[k] for k in sorted({0, len(found) - 1, *range(1, OTHERS + 1)})] + known_drawing(family, structure)
+    return found + known_drawing(family, structure)
 
 
 def known_drawing(family, structure):
