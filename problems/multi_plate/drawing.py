@@ -117,7 +117,7 @@ def pack_items(size: Sizes, pack: DrawnPack, end_plates: int = 0) -> list[Item]:
 
 
 def pack_detail(size: Sizes, pack: DrawnPack, *, wall: float, letter: str = "X") -> Detail:
-    """Return the detail of the last plates at the drum.
+    """Return the detail of the first plates at the drum.
 
     Parameters
     ----------
@@ -128,12 +128,12 @@ def pack_detail(size: Sizes, pack: DrawnPack, *, wall: float, letter: str = "X")
     letter : str
     """
     lining, b = size(pack.names.lining), size("outer_spline_radius")
-    core = pack.last_outer
+    core = pack.outer_plate
     outside = size("ring_outer_diameter") / 2
     inner = size(pack.names.inner)
     pitch = core[1] - core[0] + 2 * (lining + pack.gap) + inner
     low = core[0] - lining - pack.gap
-    high = min(pack.end, core[1] + lining + pack.gap + pitch * 0.6)
+    high = min(pack.end, core[1] + lining + pack.gap + pitch * 0.35)
     window_low = low - pitch * 0.42
     y0 = outside - 0.7 * pitch
     window = (window_low, y0, high, b + wall)

@@ -26,6 +26,6 @@ def filling(area: Area, item: Item | None, scale: float) -> Filling:
     """Return how an area of a part is filled at a scale."""
     if not area.cut or item is None or item.filling is Hatch.NONE:
         return Filling.WHITE
-    if thickness(area) * scale < THIN:
+    if thickness(area) * scale < THIN * (1 + 1e-6):
         return Filling.BLACK if item.filling in (Hatch.RIGHT, Hatch.LEFT) else Filling.GREY
     return Filling(item.filling.value)

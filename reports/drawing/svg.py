@@ -48,10 +48,11 @@ class _Svg:
         told = f"{self.sheet.title}, scale {scale_label(self.sheet.scale)}, sheet {self.sheet.name}"
         self.out = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:g}mm" height="{high:g}mm" '
-            f'viewBox="0 0 {wide:g} {high:g}" font-family="{FONT}" role="img" stroke-linecap="butt" fill="#000">',
+            f'viewBox="0 0 {wide:g} {high:g}" font-family="{FONT}" role="img">',
             f"<title>{escape(told)}</title>",
             self._definitions(),
             f'<rect width="{wide:g}" height="{high:g}" fill="#fff"/>',
+            f'<g fill="none" stroke="#000" stroke-width="{NARROW:g}">',
         ]
         for placed in self.sheet.views:
             self._view(placed)
@@ -61,7 +62,7 @@ class _Svg:
             self._ring(ring)
         for text in self.sheet.texts:
             self._text(text)
-        return [*self.out, "</svg>", ""]
+        return [*self.out, "</g>", "</svg>", ""]
 
     def _definitions(self) -> str:
         """Return the hatchings."""
@@ -77,7 +78,7 @@ class _Svg:
         )
         found.append(
             f'<pattern id="{self.prefix}-{Filling.DOTS}" width="1.2" height="1.2" patternUnits="userSpaceOnUse" '
-            'patternTransform="rotate(30)"><circle cx=".4" cy=".4" r=".18"/></pattern>'
+            'patternTransform="rotate(30)"><circle cx=".4" cy=".4" r=".18" fill="#000"/></pattern>'
         )
         return f"<defs>{''.join(found)}</defs>"
 
@@ -87,13 +88,13 @@ class _Svg:
         if placed.detail:
             x0, y0, x1, y1 = placed.window
             high = self.sheet.size[1]
-            box = f"{x0:.3f} {high - y1:.3f} {x1 - x0:.3f} {y1 - y0:.3f}"
-            place = f'x="{x0:.3f}" y="{high - y1:.3f}" width="{x1 - x0:.3f}" height="{y1 - y0:.3f}"'
-            self.out.append(f'<svg {place} viewBox="{box}" overflow="hidden">')
+            place = f'x="{x0:.2f}" y="{high - y1:.2f}" width="{x1 - x0:.2f}" height="{y1 - y0:.2f}"'
+            clip = f"{self.prefix}-window-{placed.detail.letter}"
+            self.out.append(f'<clipPath id="{clip}"><rect {place}/></clipPath><g clip-path="url(#{clip})">')
         for shape in placed.shapes:
             self._shape(placed, shape)
         if placed.detail:
-            self.out.append("</svg>")
+            self.out.append("</g>")
         for stroke in placed.bounds:
             self._stroke(stroke)
         for measure in placed.measures:
@@ -119,7 +120,7 @@ class _Svg:
             self._stroke(Stroke((a, b), shape.kind))
         elif isinstance(shape, Circle):
             (x, y), r = self._at(placed.on_paper(shape.centre)), shape.radius * placed.scale
-            self.out.append(f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{r:.3f}" fill="none"{_pen(shape.kind)}/>')
+            self.out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}"{_pen(shape.kind)}/>')
         else:
             centre, r = placed.on_paper(shape.centre), shape.radius * placed.scale
             self._bow(centre, r, math.radians(shape.start), math.radians(shape.end), _pen(shape.kind))
@@ -133,7 +134,7 @@ class _Svg:
         pen = 0.05 if kind in (Filling.BLACK, Filling.GREY) else 0.3 if thin < NARROW_PART else WIDE
         colour = GREY if kind is Filling.GREY else "#000"
         path = " ".join(self._outline(placed, outline) for outline in (area.outline, *area.holes))
-        back = f'<path d="{path}" fill="#fff" fill-rule="evenodd"/>' if kind not in solid else ""
+        back = f'<path d="{path}" fill="#fff" fill-rule="evenodd" stroke="none"/>' if kind not in solid else ""
         self.out.append(
             f'{back}<path d="{path}" fill="{fill}" fill-rule="evenodd" stroke="{colour}" stroke-width="{pen}">'
             f"<title>{escape(f'{item.number} {item.name}' if item else '')}</title></path>"
@@ -145,14 +146,14 @@ class _Svg:
             x, y = self._at(placed.on_paper(b))
             if not steps:
                 u, v = self._at(placed.on_paper(a))
-                steps.append(f"M{u:.3f} {v:.3f}")
+                steps.append(f"M{u:.2f} {v:.2f}")
             if bulge:
                 _, radius, _, turned = arc_of(a, b, bulge)
                 r = radius * placed.scale
                 large, sweep = int(abs(turned) > math.pi), int(turned < 0)
-                steps.append(f"A{r:.3f} {r:.3f} 0 {large} {sweep} {x:.3f} {y:.3f}")
+                steps.append(f"A{r:.2f} {r:.2f} 0 {large} {sweep} {x:.2f} {y:.2f}")
             else:
-                steps.append(f"L{x:.3f} {y:.3f}")
+                steps.append(f"L{x:.2f} {y:.2f}")
         return "".join(steps) + "Z"
 
     def _measure(self, measure: PlacedMeasure) -> None:
@@ -179,13 +180,13 @@ class _Svg:
         a = self._at((centre[0] + r * math.cos(start), centre[1] + r * math.sin(start)))
         b = self._at((centre[0] + r * math.cos(end), centre[1] + r * math.sin(end)))
         large = int(end - start > math.pi)
-        path = f"M{a[0]:.3f} {a[1]:.3f}A{r:.3f} {r:.3f} 0 {large} 0 {b[0]:.3f} {b[1]:.3f}"
-        self.out.append(f'<path d="{path}" fill="none"{pen}/>')
+        path = f"M{a[0]:.2f} {a[1]:.2f}A{r:.2f} {r:.2f} 0 {large} 0 {b[0]:.2f} {b[1]:.2f}"
+        self.out.append(f'<path d="{path}"{pen}/>')
 
     def _stroke(self, stroke: Stroke) -> None:
-        points = " ".join(f"{x:.3f},{y:.3f}" for x, y in map(self._at, stroke.points))
+        points = " ".join(f"{x:.2f},{y:.2f}" for x, y in map(self._at, stroke.points))
         tag = "polygon" if stroke.closed else "polyline"
-        self.out.append(f'<{tag} points="{points}" fill="none"{_pen(stroke.kind, stroke.wide)}/>')
+        self.out.append(f'<{tag} points="{points}"{_pen(stroke.kind, stroke.wide)}/>')
         first, last = stroke.arrows
         ends = stroke.points
         if first:
@@ -198,24 +199,25 @@ class _Svg:
         (ux, uy), half = towards, ARROW / 6
         back = (tip[0] - ux * ARROW, tip[1] - uy * ARROW)
         wings = (back[0] - uy * half, back[1] + ux * half), (back[0] + uy * half, back[1] - ux * half)
-        points = " ".join(f"{x:.3f},{y:.3f}" for x, y in map(self._at, (tip, *wings)))
-        self.out.append(f'<polygon points="{points}"/>')
+        points = " ".join(f"{x:.2f},{y:.2f}" for x, y in map(self._at, (tip, *wings)))
+        self.out.append(f'<polygon points="{points}" fill="#000" stroke="none"/>')
 
     def _ring(self, ring: Ring) -> None:
         x, y = self._at(ring.centre)
-        fill = "#fff" if ring.filled else "none"
-        self.out.append(f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{ring.radius:g}" fill="{fill}"{_pen(LineKind.THIN)}/>')
+        fill = ' fill="#fff"' if ring.filled else ""
+        self.out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{ring.radius:g}"{fill}/>')
 
     def _text(self, text: Text) -> None:
         x, y = self._at(text.at)
-        turn = f' transform="rotate({-text.turn:g} {x:.3f} {y:.3f})"' if text.turn else ""
+        turn = f' transform="rotate({-text.turn:g} {x:.2f} {y:.2f})"' if text.turn else ""
         wide = width(text.text, text.height)
         bold = ' font-weight="bold"' if text.bold else ""
         whole = f"<title>{escape(text.whole)}</title>" if text.whole else ""
+        spaced = ' xml:space="preserve"' if text.text != text.text.strip() else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
         self.out.append(
-            f'<text x="{x:.3f}" y="{y:.3f}" font-size="{size_of(text.height):.3f}"{anchor}{turn}{bold} '
-            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" xml:space="preserve">'
+            f'<text x="{x:.2f}" y="{y:.2f}" font-size="{size_of(text.height):.2f}"{anchor}{turn}{bold} '
+            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" stroke="none"{spaced}>'
             f"{escape(text.text)}{whole}</text>"
         )
 
@@ -235,5 +237,7 @@ def _towards(a: XY, b: XY) -> XY:
 
 
 def _pen(kind: LineKind, wide: float | None = None) -> str:
+    """Return what differs from a narrow continuous line."""
     dash = f' stroke-dasharray="{DASHES[kind]}"' if kind in DASHES else ""
-    return f' stroke="#000" stroke-width="{wide or (WIDE if kind is LineKind.OUTLINE else NARROW):g}"{dash}'
+    thick = wide or (WIDE if kind is LineKind.OUTLINE else NARROW)
+    return (f' stroke-width="{thick:g}"' if thick != NARROW else "") + dash
