@@ -53,8 +53,17 @@ export function amount(value) {
 /** Return a name of the interface as words. */
 export const words = (name) => String(name).replaceAll("_", " ");
 
-/** Return a sentence of the engine as people read it: names in words, units as they are written. */
-export const asWords = (text) => words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
+const LONG_NUMBER = /(?<![\w.,'"#-])\d[\d.]{3,}\d(?![\w'"]|,\d)/g; // neither quoted nor part of a name
+
+const figure = (found) => (/^\d+(\.\d+)?$/.test(found) ? amount(Number(found)) : found);
+
+/** Return a text with its long numbers as they are shown elsewhere. */
+export const withFigures = (text) => text.replaceAll(LONG_NUMBER, figure);
+
+/** Return a sentence of the engine as people read it: names in words, units, signs and numbers as they are written. */
+export const asWords = (text) =>
+  withFigures(words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`))
+    .replaceAll("<=", "≤").replaceAll(">=", "≥").replaceAll("->", "→");
 
 /** Return a symbol with its subscript; nothing where there is none. */
 export function symbol(text) {

@@ -37,7 +37,7 @@ export class Field {
     this.fault = h("p", { class: "fault", id: `${id}-fault` });
     this.element = h("div", { class: "field" },
       h("div", {}, h("label", { for: id }, words(row.name), symbol(row.symbol)), h("p", { class: "note", id: `${id}-text` }, row.text)),
-      h("div", { class: "entry" }, h("div", { class: "typed" }, this.input, row.unit ? h("span", {}, unitText(row.unit) || "–") : null), this.read),
+      h("div", { class: "entry" }, h("div", { class: "typed" }, this.input, unitText(row.unit) ? h("span", {}, unitText(row.unit)) : null), this.read),
       h("div", { class: "range note" }, range(row), row.source ? h("span", { class: "source", title: row.source }, row.source) : null),
       this.fault);
     this.mark();
@@ -51,7 +51,7 @@ export class Field {
   show(problem, read) {
     this.told = problem;
     const open = problem && this.value === "" && !this.touched;
-    const text = problem && !open ? problem.message : "";
+    const text = problem && !open ? faultText(problem) : "";
     if (this.fault.textContent !== text) this.fault.textContent = text;
     this.input.setAttribute("aria-invalid", String(Boolean(text)));
     this.element.classList.toggle("bad", Boolean(text));
@@ -59,6 +59,12 @@ export class Field {
     if (this.read.textContent !== said) this.read.textContent = said;
   }
 }
+
+/** Return what is wrong as it is read below its field, which says already of what it is told. */
+const faultText = ({ message, value }) => {
+  const start = value === null || value === undefined ? -1 : message.indexOf(": got ");
+  return start < 0 ? message : `G${message.slice(start + 3)}`;
+};
 
 const plain = (text) => text.replaceAll(/\s+/g, "");
 
@@ -75,7 +81,7 @@ function range(row) {
 
 /** Return what stands in an empty field. */
 export function hintOf(row) {
-  if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "follows from others";
+  if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "by others";
   if (row.section === "limit") return "not asked";
   if (row.section === "part") return "all that fit";
   return ["needed", "duty"].includes(row.section) ? "" : "free";

@@ -1,6 +1,6 @@
 // How jobs stand, in words.
 
-import { h, words } from "./dom.js";
+import { asWords, h, words } from "./dom.js";
 
 export const LIVE = ["open", "running"];
 export const KINDS = {
@@ -17,7 +17,7 @@ const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one
 export { count };
 
 /** Return what a job is doing. */
-export const stageText = (progress) => (progress?.stage ? STAGES[progress.stage] ?? words(progress.stage) : "Starting");
+export const stageText = (progress) => (progress?.stage ? STAGES[progress.stage] ?? asWords(progress.stage) : "Starting");
 
 /** Return how much of a job is done, from 0 to 1; null where nobody knows. */
 export function share(job) {
