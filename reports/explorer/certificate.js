@@ -128,7 +128,7 @@ export function nothingCard(x) {
       null,
       h("th", { scope: "row" }, miss.label.replace(/ [≤≥] .*$/, "")),
       h("td", null, amount(miss.sides[0], miss.unit, 4)),
-      h("td", null, `${miss.sign} ${amount(miss.sides[1], miss.unit, 4)}`),
+      h("td", null, `${miss.sign}\u00a0${amount(miss.sides[1], miss.unit, 4)}`),
       h("td", { class: "missed" }, miss.by === null ? "" : miss.by < LEAST_MISS ? "< 0.1\u00a0%" : percent(miss.by)),
     ),
   );

@@ -88,25 +88,28 @@ const missText = (text) => asWords(text.replace(/^(\w+) [<>]= .*? is (?=[-\d])/,
 const REQUIREMENT = /^(\w+) (\S+) (.+) instead of (\S+) (.+?)( \(.*)?$/;
 
 /** Return the sentence of a requirement that was typed in another unit than the declared one with both. */
-function inUnit(way, typed) {
-  const own = typeof typed === "string" ? quantity(typed, "") : null, found = REQUIREMENT.exec(way.sentence);
-  if (way.kind !== "requirement" || !own?.unit || !found || own.unit === found[5] || /deg/.test(own.unit + found[5])) return way.sentence;
+function inUnit(text, typed) {
+  const own = typeof typed === "string" ? quantity(typed, "") : null, found = REQUIREMENT.exec(text);
+  if (!own?.unit || !found || own.unit === found[5] || /deg/.test(own.unit + found[5])) return text;
   const [, name, needed, unit, given, , rest = ""] = found;
   return `${name} ${needed} ${unit} (${Number(((own.number * needed) / given).toPrecision(5))} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
 }
 
+/** Return how much a way out changes, and whether less would do. */
+const amountText = (way, by = "") => h("p", { class: "note" }, by ? `${by}; ` : "", way.proven ? "proven: nothing less would do" : "perhaps less would do as well: not proven");
+
 /** Return a way out as what changes, to what, and by how much: the change is told apart from its amount. */
 function change(way, typed) {
-  const text = asWords(inUnit(way, typed[way.name]));
+  const text = asWords(inUnit(way.sentence, typed[way.name]));
   const [, what, by] = /^(.*) \(([^()]* (?:more|less))\)$/.exec(text) ?? [null, text, ""];
-  return [h("p", {}, what.replace(/^limit /, "")), h("p", { class: "note" }, by ? `${by}; ` : "", way.proven ? "proven: nothing less would do" : "perhaps less would do as well: not proven")];
+  return [h("p", {}, what.replace(/^limit /, "")), amountText(way, by)];
 }
 
 /** Return what gives way together, as a list. */
-function together(way) {
-  const [, share, rest] = /^together, each by (.*?): (.*)$/.exec(asWords(way.sentence)) ?? [null, "", asWords(way.sentence)];
-  return [h("p", {}, "All of these together", share ? `, each by ${share}:` : ":"), h("ul", { class: "together" }, rest.split("; ").map((text) => h("li", {}, text.replace(/^limit /, "")))),
-    h("p", { class: "note" }, way.proven ? "proven: nothing less would do" : "perhaps less would do as well: not proven")];
+function together(way, typed) {
+  const [, share, rest] = /^together, each by (.*?): (.*)$/.exec(way.sentence) ?? [null, "", way.sentence];
+  const told = (text) => asWords(inUnit(text, typed[text.split(" ")[0]])).replace(/^limit /, "");
+  return [h("p", {}, "All of these together", share ? `, each by ${share}:` : ":"), h("ul", { class: "together" }, rest.split("; ").map((text) => h("li", {}, told(text)))), amountText(way)];
 }
 
 /** Return what cannot hold, in words. */
