@@ -8,10 +8,11 @@ export const KINDS = {
   verify: "Verification", report: "Report", batch: "Batch", size_range: "Size range",
 };
 const STAGES = {
-  bounds: "Bounding what is possible", coarse: "Looking for first designs", extremes: "Finding the ends of the front", front: "Filling the front",
+  bounds: "Bounding what is possible", coarse: "Looking for first designs", extremes: "Finding the ends of the front", front: "Filling the front", first: "Looking for the design that comes nearest to the best",
   report: "Working out the designs", explanation: "Looking for what stands in the way", "ways out": "Looking for ways out",
 };
-export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "report"];
+export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "first", "report"];
+export const STEPS = { bounds: "bounds", coarse: "first designs", extremes: "ends of the front", front: "between them", first: "the best compromise", report: "results" };
 
 const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
 export { count };
