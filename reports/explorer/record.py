@@ -129,7 +129,7 @@ class RecordOf:
     def restrictions(self) -> list[dict[str, Any]]:
         """Return what was asked beside requirements: own limits, fixed sizes, parts held to, what scatters."""
         rows = []
-        for key, words in (("limits", ""), ("fix", "is "), ("parts", "only "), ("robust", "scatters ")):
+        for key, words in (("limits", ""), ("fix", "fixed at "), ("parts", "only "), ("robust", "scatters ")):
             told = self.front.settings.get(key)
             for name, value in told.items() if isinstance(told, Mapping) else ():
                 if key != "robust" or name not in HOW_RATED:
