@@ -67,7 +67,7 @@ $(DEV): requirements-dev.lock pyproject.toml | $(BIN)/python
 lock: $(DEV)
 	$(BIN)/python -m pip install --quiet uv
 	$(COMPILE) --output-file requirements.lock
-	$(COMPILE) --extra service --extra postgres --extra excel --extra pdf --output-file requirements-service.lock
+	$(COMPILE) --extra service --extra postgres --extra excel --extra pdf --extra dxf --output-file requirements-service.lock
 	$(COMPILE) --extra dev --output-file requirements-dev.lock
 
 clean:

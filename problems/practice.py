@@ -129,6 +129,16 @@ class ShaftRequirements(ShaftSize):
         return shaft_formulas.boss_mass(density, self.shaft_diameter, self.hub_factor)
 
 
+def name_boss(d: Declaration, wants: ShaftRequirements) -> None:
+    """Name the sizes of the bosses on a shaft, whose mass :meth:`ShaftRequirements.boss_mass` tells."""
+    length = shaft_formulas.BOSS_LENGTH * wants.shaft_diameter
+    for name, value, symbol, text in (
+        ("boss_diameter", wants.hub_diameter, "d_boss", "Outside of a boss on the shaft"),
+        ("boss_length", length, "L_boss", "Length of a boss on the shaft"),
+    ):
+        d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
+
+
 def shaft_for(torque: Any) -> Any:
     """Return the default of shaft_diameter [m] for a torque [N m], as a function of the block."""
     return lambda block: shaft_formulas.shaft_diameter(torque, block.shaft_shear_allow)

@@ -10,22 +10,25 @@ from typing import Any
 
 from reports.about import About
 from reports.comparison_report import comparison_report
+from reports.drawing.files import dxf_of, svg_of
 from reports.explorer.comparison import comparison_record
 from reports.explorer.page import explorer_page
 from reports.explorer.record import explorer_record
 from reports.front_report import FrontReportRequest, front_report
 from reports.sheet.blocks import Document
-from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
+from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet, program_name
 from reports.sheet.html import html
 from reports.sheet.pdf import pdf_with_notes
 from reports.sheet.record import sheet_record
 from reports.workbook import live_workbook
 from reports.workbook_front import front_workbook
+from synth.drawing import Drawing
 from synth.errors import InputError
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 
-FORMATS = ("html", "explorer", "pdf", "xlsx", "json")
+FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf")
+MAKERS = {"svg": svg_of, "dxf": dxf_of}  # of drawings
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class ReportRequest:
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``.
     length : {"summary", "normal", "full"}
         Of the sheets.
     about : About
@@ -53,6 +56,8 @@ class ReportRequest:
         Folders of fonts for the PDF beside its own.
     rows : mapping
         Slot -> rows that may be chosen in live workbooks.
+    drawings : mapping
+        Rank, or 0 for a design that was checked -> Drawing.
     prices, near_equals, curves : list
         What else stands in the folder of the front.
     """
@@ -68,6 +73,7 @@ class ReportRequest:
     about: About = field(default_factory=About)
     fonts: Sequence[Path] = ()
     rows: Mapping[str, Sequence[Mapping[str, Any]]] = field(default_factory=dict)
+    drawings: Mapping[int, Drawing] = field(default_factory=dict)
     prices: Sequence[Mapping[str, Any]] = ()
     near_equals: Sequence[Mapping[str, Any]] = ()
     curves: Sequence[str] = ()
@@ -170,18 +176,33 @@ class _Files:
         )
         self._document(document, "report")
         if "explorer" in request.formats:
-            self.files["explorer.html"] = self._explorer(front, sheets)
+            self.files["explorer.html"] = self._explorer(front, sheets, names)
         if "xlsx" in request.formats:
             self.files["designs.xlsx"] = front_workbook(front, request.calculation)
         for design in chosen:
             self._sheet(design, names[design.rank or 0])
         return self.files, self.notes
 
-    def _explorer(self, front: ParetoFront, sheets: Mapping[int, str]) -> str:
+    def _drawing_files(self, rank: int, name: str) -> dict[str, str]:
+        """Return the names of the drawings of a design that are asked for, by what they are."""
+        words = [word for word in MAKERS if word in self.request.formats and rank in self.request.drawings]
+        return {word: f"{name}_drawing.{word}" for word in words}
+
+    def _explorer(self, front: ParetoFront, sheets: Mapping[int, str], names: Mapping[int, str]) -> str:
         """Return the page of the explorer; it leads to the files that are written beside it."""
         request = self.request
-        beside = {rank: {"Calculation sheet": file} for rank, file in sheets.items()}
-        record = explorer_record(front, request.calculation, about=request.about, prices=request.prices, files=beside)
+        beside: dict[int, dict[str, str]] = {rank: {"Calculation sheet": file} for rank, file in sheets.items()}
+        for rank, name in names.items():
+            drawn = {f"Drawing, {word.upper()}": file for word, file in self._drawing_files(rank, name).items()}
+            beside[rank] = {**beside.get(rank, {}), **drawn}
+        record = explorer_record(
+            front,
+            request.calculation,
+            about=request.about,
+            prices=request.prices,
+            files=beside,
+            drawings=request.drawings,
+        )
         return explorer_page(record)
 
     def _document(self, document: Document, name: str) -> None:
@@ -191,7 +212,10 @@ class _Files:
 
     def _sheet(self, design: Design, name: str) -> None:
         request = self.request
-        sheet = SheetRequest(request.calculation, design, request.front, request.about, request.length)
+        told = design.frame.title, program_name(request.front), request.about
+        drawing = request.drawings.get(design.rank or 0)
+        picture = "" if drawing is None or request.length == "summary" else svg_of(drawing, *told)
+        sheet = SheetRequest(request.calculation, design, request.front, request.about, request.length, picture)
         self._document(design_sheet(sheet), f"{name}_sheet")
         if "json" in request.formats:
             content = sheet_record(request.calculation, design)
@@ -204,6 +228,8 @@ class _Files:
             self.files[f"{name}_live.xlsx"] = live_workbook(
                 request.calculation, design, request.rows, request.about, proven
             )
+        for word, file in self._drawing_files(design.rank or 0, name).items():
+            self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
 
 
 def chosen_by(front: ParetoFront, words: Sequence[str]) -> list[Design]:

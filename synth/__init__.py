@@ -14,6 +14,7 @@ from synth.errors import InputError
 if TYPE_CHECKING:
     from synth.analysis.calculation import calculation
     from synth.analysis.describe import describe
+    from synth.analysis.drawing import draw
     from synth.analysis.evaluate import evaluate
     from synth.analysis.hooks import curves, second_opinion, simulate
     from synth.analysis.operating_state import state
@@ -60,6 +61,7 @@ __all__ = [
     "connect",
     "curves",
     "describe",
+    "draw",
     "evaluate",
     "explain",
     "families",
@@ -100,6 +102,7 @@ _HOME = {
     "connect": "synth.client.connection",
     "curves": "synth.analysis.hooks",
     "describe": "synth.analysis.describe",
+    "draw": "synth.analysis.drawing",
     "evaluate": "synth.analysis.evaluate",
     "explain": "synth.studies.infeasibility.explain",
     "families": "synth.model.registry",

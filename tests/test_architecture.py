@@ -67,9 +67,10 @@ def test_imports_are_found_wherever_they_stand() -> None:
 
 
 # package: what it may import besides the standard library
-FAMILY = {"problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special"}
+FAMILY = {"problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.drawing"}
+FAMILY |= {"synth.errors", "synth.special"}
 REPORT = {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors", "synth.files"}
-REPORT |= {"synth.feasibility", "synth.plain_text"}
+REPORT |= {"synth.feasibility", "synth.plain_text", "synth.drawing"}
 MAY_IMPORT = {
     **dict.fromkeys(PROBLEMS, FAMILY),
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},

@@ -17,7 +17,7 @@ LAYERS = (
     ("errors",),
     ("files", "csv_style"),
     ("output_folder",),
-    ("units",),
+    ("units", "drawing"),
     ("results", "tables"),
     ("declaration",),
     ("model",),

@@ -10,6 +10,7 @@ import numpy as np
 
 from problems import cost, friction, practice, wear
 from problems.cone import body as cone_body
+from problems.cone import drawing as cone_drawing
 from problems.cone import formulas as cone
 from problems.cone.body import Cone
 from problems.friction import startup_curves
@@ -17,6 +18,7 @@ from problems.mechanics import heat, plates
 from problems.sources import S1, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -223,6 +225,10 @@ class ConeClutch(DesignProblem):
         )
         friction.declare_envelope(d, duty=duty, force=shape.force, diameter=size.diameter, length=size.length)
         self._declare_objectives(d, scope=scope)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through the engaged cones."""
+        return cone_drawing.cone_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
         d.headline(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from problems import cost, friction, practice, wear
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
+from problems.disc import drawing as disc_drawing
 from problems.disc import facing_sets
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
@@ -15,6 +16,7 @@ from problems.mechanics import ring as ring_formulas
 from problems.sources import S1
 from synth import DesignProblem
 from synth.declaration import Declaration
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -135,6 +137,10 @@ class DiscClutch(DesignProblem):
             d.objective(name, default=False)
         if body is not None:
             wear.offer_wear_life(d)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through the released discs, with their hubs where the whole clutch is counted."""
+        return disc_drawing.disc_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""

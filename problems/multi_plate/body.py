@@ -25,7 +25,7 @@ from problems.multi_plate.requirements import (
     PackRules,
     PistonPackRules,
 )
-from problems.practice import UNSOURCED, name_shaft_end, shaft_for
+from problems.practice import UNSOURCED, name_boss, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Declaration
 
@@ -57,6 +57,7 @@ class Body:
     parts: Mapping[str, Any]
     stroke: Any = None
     piston_area: Any = None
+    actuator_length: Any = None
 
 
 def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any) -> BodyRequirements:
@@ -174,6 +175,7 @@ def complete_body(
         parts=parts,
         stroke=way,
         piston_area=None if wants.actuator == "external" else piston,
+        actuator_length=None if wants.actuator == "external" else actuator,
     )
 
 
@@ -315,6 +317,16 @@ def declare_body(
         ("rim_radius", pack.inner_spline_radius - pack_wants.drum_wall, "r_rim", "Inside of the rim of the hub"),
     ):
         d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
+    name_boss(d, body.wants)
+    if body.actuator_length is not None:
+        d.step(
+            "actuator_length",
+            "mm",
+            body.actuator_length,
+            symbol="L_act",
+            text="Room of the ring piston along the shaft: its stroke and as much as an end plate",
+            source="geometry",
+        )
     inertia = d.derive(
         "inner_inertia",
         "kg*m2",

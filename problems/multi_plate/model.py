@@ -11,12 +11,14 @@ from problems import cost, friction, practice, wear
 from problems.friction import startup_curves
 from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
+from problems.multi_plate import drawing as pack_drawing
 from problems.multi_plate import pack as plate_pack
 from problems.multi_plate import plate_sets
 from problems.multi_plate.requirements import MadePackOptions, PackOptions
 from problems.sources import S0
 from synth import DesignProblem
 from synth.declaration import Declaration, Part
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -183,6 +185,12 @@ class MultiPlateClutch(DesignProblem):
         if design is not None:
             frames["force_along_pack"] = pack_curves.force_along_pack(self, spec, design)
         return frames
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through the released clutch; the pack alone where only that is counted."""
+        complete = self.option("mass_scope") == "complete"
+        piston = complete and self.option("actuator") != "external"
+        return pack_drawing.multi_plate_drawing(spec, design, complete=complete, piston=piston)
 
     def _declare_force(self, d: Declaration) -> Any:
         return d.variable(

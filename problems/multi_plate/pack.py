@@ -315,6 +315,7 @@ def declare_pack(
         if aid_row is None
         else ReleaseAid(aid_row.force_fraction, aid_row.area_factor, aid_row.drag_factor),
     )
+    d.step("release_gap", "mm", pack.gap, symbol="g_pl", text="Gap per surface of the released pack", source=S0)
     if wants.hub_bore_diameter is not None:
         d.at_least(
             "hub_bore",

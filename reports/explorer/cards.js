@@ -30,19 +30,25 @@ export function heading(x) {
 /** Return what was asked, and on request what was assumed. */
 export function chips(x) {
   const { asked, assumed } = x.model.record;
-  const chip = (entry) =>
-    h(
+  const told = (entry) => entry.words ?? amount(entry.value, entry.unit);
+  const before = x.other && [...x.other.record.asked, ...x.other.record.assumed];
+  const chip = (entry) => {
+    const earlier = before?.find((other) => other.label === entry.label);
+    const differs = before && (!earlier || told(earlier) !== told(entry));
+    return h(
       "li",
-      { class: "chip", title: entry.text || null },
+      { class: differs ? "chip differs" : "chip", title: entry.text || null },
       `${entry.label} `,
-      h("b", null, entry.words ?? amount(entry.value, entry.unit)),
+      h("b", null, told(entry)),
+      differs ? h("span", { class: "note" }, earlier ? ` in place of ${told(earlier)}` : " not asked before") : null,
     );
+  };
   const row = (entry) =>
     h(
       "tr",
       { title: entry.text || null },
       h("th", { scope: "row" }, entry.label),
-      h("td", null, entry.words ?? amount(entry.value, entry.unit)),
+      h("td", null, told(entry)),
     );
   const rest = [...asked.slice(FIRST_CHIPS), ...assumed];
   const more =

@@ -3,6 +3,7 @@
 import { h, s } from "./dom.js";
 import { amount, number, percent } from "./numbers.js";
 
+const LEAST_MISS = 5e-4; // that is told as a number
 const ICONS = {
   good: "M4.2 9.4l3.2 3.2 6.4-7",
   open: "M9 4.5v5.6M9 12.6v.9",
@@ -125,10 +126,10 @@ export function nothingCard(x) {
     h(
       "tr",
       null,
-      h("th", { scope: "row" }, miss.label),
+      h("th", { scope: "row" }, miss.label.replace(/ [≤≥] .*$/, "")),
       h("td", null, amount(miss.sides[0], miss.unit, 4)),
-      h("td", null, `${miss.sign} ${amount(miss.sides[1], miss.unit, 4)}`),
-      h("td", { class: "missed" }, miss.by === null ? "" : percent(miss.by)),
+      h("td", null, `${miss.sign}\u00a0${amount(miss.sides[1], miss.unit, 4)}`),
+      h("td", { class: "missed" }, miss.by === null ? "" : miss.by < LEAST_MISS ? "< 0.1\u00a0%" : percent(miss.by)),
     ),
   );
   const table =

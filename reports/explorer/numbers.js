@@ -1,6 +1,7 @@
 // How numbers are shown: as reports/numbers.py prints them, with a thin space between thousands.
 
 const THIN = "\u202f";
+const WIDE = 30; // between the least and the largest number of a column, beyond which each has its own digits
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
 const trimmed = (text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
@@ -32,6 +33,21 @@ export function number(value, digits = 5) {
   }
   const raised = String(exponent).replace(/[-\d]/g, (figure) => RAISED[figure]);
   return `${sign}${trimmed(mantissa)}·10${raised}`;
+}
+
+/**
+ * Return how the numbers of a column are shown: all with the decimals that the one that needs most of them has.
+ * @param {(number | null)[]} values
+ * @param {number} digits
+ * @returns {(value: number | null) => string}
+ */
+export function columnNumbers(values, digits) {
+  const sizes = values.filter((value) => value).map(Math.abs);
+  const wide = Math.max(...sizes) > WIDE * Math.min(...sizes);
+  const places = Math.max(0, ...values.map((value) => number(value, digits).split(".")[1]?.length ?? 0));
+  const plain = sizes.every((size) => size >= 1e-4 && size < 1e6);
+  if (wide || !plain || !places) return (value) => number(value, digits);
+  return (value) => (value ? (value < 0 ? "−" : "") + grouped(Math.abs(value).toFixed(places)) : number(value));
 }
 
 /**

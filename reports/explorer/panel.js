@@ -101,7 +101,13 @@ export function panelView(x) {
   function drawing(d) {
     if (!d.drawing) return null;
     const address = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(d.drawing)}`;
-    return block("", h("img", { class: "drawing", src: address, alt: `Drawing of design ${d.rank}` }));
+    const picture = () => h("img", { class: "drawing", src: address, alt: `Drawing of design ${d.rank}` });
+    const large = h("dialog", { class: "sheet", "aria-label": `Drawing of design ${d.rank}` });
+    const open = () => {
+      large.replaceChildren(picture(), h("button", { onclick: () => large.close() }, "Close"));
+      large.showModal();
+    };
+    return block("", picture(), h("button", { onclick: open }, "Enlarge"), large);
   }
 
   function parts(d) {

@@ -7,6 +7,9 @@ import { amount, number } from "./numbers.js";
 import { axisOf } from "./scales.js";
 
 const MOST_AXES = 9;
+const MOST_LETTERS = 20; // of a word beside its axis
+const LETTER = 7.6; // pixels
+const MOST_RIGHT = 168; // pixels that words may take
 const NEAR = 16; // pixels from an axis within which it is meant
 const REACH = 14; // pixels from a line
 
@@ -54,7 +57,10 @@ export function parallelView(x) {
     const wide = Math.max(280, Math.round(box.clientWidth || 800));
     flat = wide < 560;
     const shown = columns(wide);
-    const gap = flat ? 62 : (wide - 130) / Math.max(1, shown.length - 1);
+    const last = shown[shown.length - 1];
+    const letters = last?.kind === "word" ? Math.max(...last.values.map((v) => String(v).length)) : 0;
+    const right = Math.min(MOST_RIGHT, Math.max(72, 16 + LETTER * Math.min(MOST_LETTERS, letters)));
+    const gap = flat ? 62 : (wide - 58 - right) / Math.max(1, shown.length - 1);
     const high = flat ? 20 + gap * shown.length : 292;
     ends = flat ? [18, wide - 18] : [high - 24, 74];
     const group = x.group();
@@ -159,7 +165,7 @@ export function parallelView(x) {
       axis.words.forEach((word) => {
         const i = column.values.indexOf(word);
         const colour = grouped ? `word ${colourClass(group.of[i], group.rest)}` : "word";
-        made.push(s("text", { x: at + 8, y: along(axis.share(word)) + 4, class: colour }, short(String(word), 10)));
+        made.push(s("text", { x: at + 8, y: along(axis.share(word)) + 4, class: colour }, short(String(word), MOST_LETTERS)));
       });
     } else {
       made.push(s("text", { x: at, y: ends[1] - 9, class: "mid" }, number(axis.range[1], 3)));

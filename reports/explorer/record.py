@@ -7,9 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from reports.about import About
+from reports.drawing.files import svg_of
 from reports.front_report import NOT_COVERED
 from reports.reasons import BINDING, SIGN_OF, why
 from reports.sheet.design_sheet import front_details, front_state, over_range_in_words, program_name
+from synth.drawing import Drawing
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
@@ -30,7 +32,7 @@ def explorer_record(
     about: Any = None,
     prices: Sequence[Mapping[str, Any]] = (),
     files: Mapping[int, Mapping[str, str]] | None = None,
-    drawings: Mapping[int, str] | None = None,
+    drawings: Mapping[int, Drawing] | None = None,
 ) -> dict[str, Any]:
     """Return what the explorer shows of a front, as JSON knows it.
 
@@ -46,9 +48,11 @@ def explorer_record(
     files : mapping
         Rank -> label -> file beside the page.
     drawings : mapping
-        Rank -> SVG of ours; it is shown as a picture, in which nothing runs.
+        Rank -> Drawing; it is shown as a picture, in which nothing runs.
     """
     told = RecordOf(front, calculation, About.of(about))
+    title, program = front.frame.title, program_name(front)
+    pictures = {rank: svg_of(drawing, title, program, told.about) for rank, drawing in (drawings or {}).items()}
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
@@ -64,7 +68,7 @@ def explorer_record(
         "limits": [told.limit(name) for name in front.frame.limit_units],
         "parts": told.parts(),
         "spec": told.spec(),
-        "designs": [told.design(d, prices, (files or {}).get(d.rank or 0, {}), drawings or {}) for d in front.designs],
+        "designs": [told.design(d, prices, (files or {}).get(d.rank or 0, {}), pictures) for d in front.designs],
     }
 
 
@@ -124,7 +128,7 @@ class RecordOf:
     def restrictions(self) -> list[dict[str, Any]]:
         """Return what was asked beside requirements: own limits, fixed sizes, parts held to, what scatters."""
         rows = []
-        for key, words in (("limits", ""), ("fix", "is "), ("parts", "only "), ("robust", "scatters ")):
+        for key, words in (("limits", ""), ("fix", "fixed at "), ("parts", "only "), ("robust", "scatters ")):
             told = self.front.settings.get(key)
             for name, value in told.items() if isinstance(told, Mapping) else ():
                 if key != "robust" or name not in HOW_RATED:

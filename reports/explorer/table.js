@@ -2,7 +2,7 @@
 
 import { h, hidden } from "./dom.js";
 import { glyph } from "./marks.js";
-import { number } from "./numbers.js";
+import { columnNumbers, number } from "./numbers.js";
 
 const FIRST_ROWS = 200; // that are laid out before more are asked for
 const MOST_SIZES = 6; // columns of sizes that are shown unless others are chosen
@@ -63,6 +63,7 @@ export function tableView(x) {
     );
     const bounds = (d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
     const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
+    const numbers = new Map(columns.filter((c) => c.kind !== "word").map((c) => [c, columnNumbers(c.values, 4)]));
     rows = model.record.designs.map((d, i) => {
       const first = h(
         "th",
@@ -72,7 +73,7 @@ export function tableView(x) {
       const cells = columns.map((c) =>
         c.kind === "word"
           ? h("td", { class: "words" }, c.key === state.by ? glyph(group.of[i], group.rest) : null, c.values[i])
-          : h("td", null, number(c.values[i], 4)),
+          : h("td", null, numbers.get(c)(c.values[i])),
       );
       const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
       if (names) first.append(names);

@@ -17,6 +17,7 @@ from reports.sheet.blocks import (
     Code,
     Column,
     Document,
+    Figure,
     Heading,
     Listing,
     Paragraph,
@@ -32,6 +33,8 @@ from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, 
 from synth.results.provenance import installed_versions
 
 LENGTHS = ("summary", "normal", "full")
+DRAWN = "Design layout: computed sizes without tolerances. The scale holds on a sheet of the size in the title block."
+DRAWN_ALT = "Dimensioned drawing of the design, with its parts list and what is not part of the model."
 CONFIDENCE_NOTED = ("typical", "assumed")
 
 
@@ -48,6 +51,8 @@ class SheetRequest:
     about : About
     length : {"summary", "normal", "full"}
         ``summary`` leaves out the steps, ``full`` adds the list of symbols.
+    drawing : str
+        The drawing as SVG; nothing where there is none.
     """
 
     calculation: Calculation
@@ -55,6 +60,7 @@ class SheetRequest:
     front: ParetoFront | None = None
     about: About = field(default_factory=About)
     length: str = "normal"
+    drawing: str = field(default="", repr=False)
 
 
 def design_sheet(request: SheetRequest) -> Document:
@@ -85,6 +91,7 @@ class _Sheet:
         frame = self.design.frame
         name = f"Design #{self.design.rank}" if self.design.rank else "Design"
         blocks: list[Block] = [state_of(self.design, self.front), *self._input(), *self._sizes(), *self._parts()]
+        blocks += self._drawing()
         blocks += self._limits()
         steps = self.steps.all()
         if self.request.length != "summary":
@@ -182,6 +189,12 @@ class _Sheet:
         following = next_in_tables(self.design)
         blocks += [Bullets(tuple(following))] if following else []
         return [Heading("Parts", anchor="parts"), *blocks] if blocks else []
+
+    def _drawing(self) -> list[Block]:
+        """Return the drawing, to the scale that its title block tells on a sheet of the size told there."""
+        if not self.request.drawing:
+            return []
+        return [Heading("Drawing", anchor="drawing"), Figure(self.request.drawing, DRAWN_ALT, DRAWN)]
 
     # -- limits --------------------------------------------------------------------------------
 

@@ -10,7 +10,8 @@ from typing import Any
 
 from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
-from synth.analysis.restate import question_of
+from synth.analysis.drawing import drawings_of
+from synth.analysis.restate import problem_of, question_of
 from synth.csv_style import unstyled
 from synth.errors import InputError
 from synth.files import read_bytes, read_json
@@ -24,6 +25,7 @@ from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
 
 CURVES = ("*.svg",)
+DRAWN = 8  # designs whose drawings the explorer has, the first by rank
 NO_REPORTS = "the package reports, which clutchsynth is installed with"
 
 
@@ -52,7 +54,7 @@ def report(
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``.
     about : mapping, optional
         Project, customer, number, author, date, ...
     length : {"summary", "normal", "full"}
@@ -112,7 +114,8 @@ def explored(front: ParetoFront, *, about: Any = None, problem: Any = None, cata
         raise InputError("explore", None, NO_REPORTS)
     read = calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front)
     beside = _beside(Path(front.folder), front) if front.folder is not None else {}
-    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()))
+    drawn, _ = _drawings(front, front.designs[:DRAWN], problem, catalogs)
+    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=drawn)
     return found
 
 
@@ -154,6 +157,11 @@ class ReportOptions:
         words = (formats,) if isinstance(formats, str) else tuple(formats)
         return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
 
+    @property
+    def draws(self) -> bool:
+        """Whether files of drawings are asked for."""
+        return bool({"svg", "dxf"} & set(self.formats))
+
     def asked(self) -> dict[str, Any]:
         """Return it as reports take it."""
         return {
@@ -181,7 +189,24 @@ def _of_front(
         asked["rows"] = _offered(front, problem, catalogs)
     if front.folder is not None:
         asked |= _beside(Path(front.folder), front)
-    return _made(asked, how)
+    wanted = {str(word).strip() for word in chosen}
+    named = [d for d in front.designs if str(d.rank) in wanted or ("knee" in wanted and "knee" in d.note)]
+    asked["drawings"], untold = _drawings(front, named, problem, catalogs, asked=how.draws)
+    if "explorer" in how.formats:
+        asked["drawings"] |= _drawings(front, front.designs[:DRAWN], problem, catalogs)[0]
+    files, notes = _made(asked, how)
+    return files, [*notes, *untold]
+
+
+def _drawings(
+    front: ParetoFront, designs: Sequence[Design], problem: Any = None, catalogs: Any = None, *, asked: bool = False
+) -> tuple[dict[int, Any], list[str]]:
+    """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
+    try:
+        own, _ = problem_of(front, problem, catalogs)
+    except InputError as error:
+        return {}, [f"no drawing: {error}"] if asked else []
+    return drawings_of(own, designs, asked=asked)
 
 
 def _refuse_another_front(front: ParetoFront, place: Path) -> None:
@@ -213,9 +238,10 @@ def report_design(
     asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design, "name": name}
     if "xlsx" in how.formats:
         asked["rows"] = _rows(instance)
+    asked["drawings"], untold = drawings_of(instance.problem, [design], asked=how.draws)
     files, notes = _made(asked, how)
     save_files(place, files)
-    return place, list(files), notes
+    return place, list(files), [*notes, *untold]
 
 
 def report_comparison(

@@ -206,8 +206,11 @@ class Batches:
             "bounds": np.ascontiguousarray(boxes.bounds, dtype=float),
             "tag": np.ascontiguousarray(boxes.tag, dtype=np.int32),
         }
+        # The record holds addresses alone: the arrays live as long as this.
         self._moving = own | dict(moving or {})
         self._fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)} | dict(still or {})
+        self._places = {name: a.ctypes.data for name, a in self._fixed.items()}
+        self._steps = {name: (a.ctypes.data, a.strides[0]) for name, a in self._moving.items()}
         self._numbers = {
             **prepared.numbers,
             "weights_step": weights.shape[1],
@@ -219,9 +222,8 @@ class Batches:
 
     def part(self, first: int, last: int) -> BatchStructure:
         """Return the boxes from a first to a last one; it knows addresses only, of arrays that live as long as this."""
-        places = {name: a.ctypes.data for name, a in self._fixed.items()}
-        places |= {name: a.ctypes.data + first * a.strides[0] for name, a in self._moving.items()}
-        return BatchStructure(count=last - first, **self._numbers, **places)
+        places = {name: place + first * step for name, (place, step) in self._steps.items()}
+        return BatchStructure(count=last - first, **self._numbers, **self._places, **places)
 
 
 def all_done(work: Sequence[Callable[[], None]], workers: int) -> None:

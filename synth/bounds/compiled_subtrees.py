@@ -169,6 +169,7 @@ class SubtreeCode:
         """
         batches, sizes = Batches(prepared, boxes, weights, passes, still=self._read), prepared.sizes
         fixed, numbers = halves.kept | cutoffs.arrays(), {"levels": levels, **cutoffs.numbers()}
+        places = {name: a.ctypes.data for name, a in fixed.items()}
         # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
         # must not depend on it.
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
@@ -179,8 +180,8 @@ class SubtreeCode:
                 first, last = ends[k]
                 capacity = sizes.tree_room * (last - first) + sizes.tree_beside
                 taken = _places(prepared, boxes, capacity)
-                places = {name: a.ctypes.data for name, a in (fixed | taken).items()}
-                tree = _TreeStructure(capacity=capacity, **numbers, **places)
+                room = {name: a.ctypes.data for name, a in taken.items()}
+                tree = _TreeStructure(capacity=capacity, **numbers, **places, **room)
                 kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
                 if kept >= 0:  # else told below: an exception would end a thread, not the search
                     found[k] = (*_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted))

@@ -15,6 +15,7 @@ from synth.tables.catalogs import Catalogs
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.drawing import Drawing
     from synth.results import Design
 
 
@@ -100,6 +101,21 @@ class DesignProblem:
         ----------
         spec : mapping
             As for :meth:`curves`, and what the user set of ``simulation_settings``: SI floats, words, rows of tables.
+        design : Design
+            The design.
+        """
+        return None
+
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing | None:
+        """Return the dimensioned drawing of a design, or None where a family has none.
+
+        ``synth.drawing`` says what it consists of. Nothing is drawn that the design does not have; every dimension
+        names its quantity, and what the model leaves out is told in ``omitted``.
+
+        Parameters
+        ----------
+        spec : mapping
+            As for :meth:`curves`.
         design : Design
             The design.
         """

@@ -289,9 +289,11 @@ class BatchNlp:
             sizes = self._inverse_sizes(tasks, [*np.clip(start, low, high).T, *data], bounds)
             stored = self._stored(self._fixed_inputs(data, bounds, sizes, scales))
             found = self._first_order(list(self._to_search(points, scales)), [], stored)
-            values = [np.broadcast_to(np.asarray(x, dtype=float), len(points)) for x in found]
+            values = np.empty((len(found), len(points)))
+            for k, value in enumerate(found):
+                values[k] = value  # many are the same at all points
         rows = self.functions.n_rows
-        return np.array(values[:rows]), np.array(values[rows:]).reshape(-1, len(points))
+        return values[:rows], values[rows:]
 
     @cached_property
     def layout(self) -> SparsityPattern:

@@ -65,7 +65,7 @@ class Solver:
         )
         stored = [np.ascontiguousarray(x, dtype=float).reshape(-1) for x in problems.stored]
         steps = np.array([0 if len(x) == 1 else 1 for x in stored] or [0], dtype=np.int64)
-        columns = (DOUBLES * max(len(stored), 1))(*(x.ctypes.data_as(DOUBLES) for x in stored))
+        columns = np.array([x.ctypes.data for x in stored] or [0], dtype=np.uintp)
         # The arrays must outlive the call, so they are kept by name until it is over.
         inputs = {
             name: np.ascontiguousarray(getattr(problems, name), dtype=float)
@@ -74,7 +74,7 @@ class Solver:
         counts = np.ascontiguousarray(problems.counts, dtype=np.uint8)
         given = _Problems(
             count=count,
-            stored=columns,
+            stored=columns.ctypes.data_as(ctypes.POINTER(DOUBLES)),
             stored_steps=steps.ctypes.data_as(INTEGERS),
             counts=counts.ctypes.data_as(ctypes.POINTER(ctypes.c_ubyte)),
             status=ends.status.ctypes.data_as(INTEGERS),

@@ -87,6 +87,7 @@ class Pieces:
         flat = [k for a, b in self._sides for k in (a, b) if k is not None]
         flat += [k for terms in self._terms for k in terms]
         self._evaluate = program.compile(flat)
+        self._needed = program.needed(rows.nodes)
 
     def __len__(self) -> int:
         return len(self.decisions)
@@ -202,13 +203,17 @@ class Pieces:
                     truths[k] = inner[0] & inner[1] if node.op == ca.OP_AND else inner[0] | inner[1]
             return truths[k]
 
-        for k in reversed(program.needed(self.rows.nodes)):
+        for k in reversed(self._needed):
             own, node = read.get(k, nothing), program.nodes[k]
             shares = [own] * len(node.args)
             if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) and (chosen := truth(node.args[0])) is not None:
                 shares = [own, own & chosen, own & ~chosen][: len(node.args)]
             for a, share in zip(node.args, shares, strict=True):
-                read[a] = share if a not in read else read[a] | share
+                known = read.get(a)
+                if known is None or share is everything:
+                    read[a] = share
+                elif known is not everything and known is not share:
+                    read[a] = known | share
         return np.stack([read.get(k, nothing) for k in self.decisions], axis=1)
 
 
@@ -343,7 +348,11 @@ class _Question:
 
     def inputs(self, rows: np.ndarray) -> list[np.ndarray]:
         """Return the data of some problems."""
-        return _clean([x if x.ndim == 0 else x[rows] for x in self.data])
+        return [x if x.ndim == 0 else x[rows] for x in self._clean_data]
+
+    @cached_property
+    def _clean_data(self) -> list[np.ndarray]:
+        return _clean(self.data)
 
     def _posed(self, rows: np.ndarray, ways: np.ndarray, size: np.ndarray) -> tuple[Tasks, list[Any]]:
         """Return some problems with the pieces that are to be used, and their data."""

@@ -30,6 +30,7 @@ from synth.robust.uncertainty import LEAST, MOST, SLIDING, Member, Scattered, sc
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.drawing import Drawing
     from synth.model.constraint import Constraint
     from synth.model.model import Model
     from synth.results import Design
@@ -113,6 +114,10 @@ class RobustProblem(DesignProblem):
     def simulate(self, spec: Mapping[str, Any], design: Design) -> Mapping[str, pd.DataFrame] | None:
         """Return the simulations of the family."""
         return self.base.simulate(spec, design)
+
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing | None:
+        """Return the drawing of the family."""
+        return self.base.drawing(spec, design)
 
     def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame | None:
         """Return the state of the family at an operating point."""

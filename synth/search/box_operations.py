@@ -290,7 +290,8 @@ class BoxOperations:
 
         What is narrower than ``point_share`` of its range counts as that wide, so that one point is not nothing.
         """
-        ranged = np.flatnonzero(self._span[: self.n] > 0)
-        shares = (boxes.high[:, ranged] - boxes.low[:, ranged]) / self._span[ranged]
-        least = self.tuning.tolerances.point_share
-        return float(self.cells.size(boxes.cell) @ np.maximum(shares, least).prod(axis=1))
+        least, shares = self.tuning.tolerances.point_share, np.ones(len(boxes))
+        # Variable by variable: boxes are many, and variables few.
+        for k in np.flatnonzero(self._span[: self.n] > 0).tolist():
+            shares *= np.maximum((boxes.high[:, k] - boxes.low[:, k]) / self._span[k], least)
+        return float(self.cells.size(boxes.cell) @ shares)

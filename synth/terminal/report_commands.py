@@ -35,6 +35,8 @@ def report(
     explorer: Annotated[bool, typer.Option("--explorer", help="The front to explore, as explorer.html.")] = False,
     as_pdf: Annotated[bool, typer.Option("--pdf", help="PDF as well (extra pdf).")] = False,
     as_xlsx: Annotated[bool, typer.Option("--xlsx", help="Live workbooks and designs.xlsx (extra excel).")] = False,
+    as_svg: Annotated[bool, typer.Option("--drawing", help="Drawings of the chosen designs, as SVG.")] = False,
+    as_dxf: Annotated[bool, typer.Option("--dxf", help="The same drawings for CAD, as DXF (extra dxf).")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Sheets for programs as well.")] = False,
     about: Annotated[
         Path | None, typer.Option(help="YAML: project, customer, number, author, date, ...", metavar="FILE")
@@ -46,8 +48,15 @@ def report(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Write what can be handed on: the report of a front, calculation sheets, PDF, live workbooks."""
-    wanted = (("explorer", explorer), ("pdf", as_pdf), ("xlsx", as_xlsx), ("json", as_json))
+    """Write what can be handed on: the report of a front, calculation sheets, drawings, PDF, live workbooks."""
+    wanted = (
+        ("explorer", explorer),
+        ("pdf", as_pdf),
+        ("xlsx", as_xlsx),
+        ("svg", as_svg),
+        ("dxf", as_dxf),
+        ("json", as_json),
+    )
     asked: dict[str, Any] = {
         "formats": ["html", *(word for word, on in wanted if on)],
         "length": length,

@@ -36,6 +36,8 @@ API = "/api/v1"
 ENDED = ("done", "failed", "cancelled", "stopped")
 SECONDS = 60.0
 MOST_REPEATED = 100  # times that a busy service is asked for one job
+LIGHT = ("hoist_multi_plate", "wrap_spring_freewheel")  # least mass in some tenths of a second
+FOLLOWING = ("verify", "report", "near_equals")
 FAMILIES = ("hoist_multi_plate", "cone_drive", "automobile_disc", "wrap_spring_freewheel", "powder_winder")
 
 
@@ -154,11 +156,11 @@ def submit(client: httpx.Client, request: Mapping[str, Any], kind: str = "synthe
     return str(answer.json()["id"])
 
 
-def patiently(client: httpx.Client, request: Mapping[str, Any]) -> tuple[str, int]:
+def patiently(client: httpx.Client, request: Mapping[str, Any], kind: str = "synthesis") -> tuple[str, int]:
     """Ask for a job, and again when a busy service says so, as clients are told to; return its id, and how often."""
     again = 0
     while True:
-        answer = client.post(f"{API}/jobs", json={"kind": "synthesis", "request": request})
+        answer = client.post(f"{API}/jobs", json={"kind": kind, "request": request})
         if answer.status_code != httpx.codes.SERVICE_UNAVAILABLE or again == MOST_REPEATED:
             answer.raise_for_status()
             return str(answer.json()["id"]), again
@@ -430,27 +432,44 @@ def wait(database: str | None = None, rows: int = 1000, count: int = 20) -> dict
 # ---- soak -----------------------------------------------------------------------------------------------------------
 
 
+def soaking(k: int, front: str) -> tuple[str, dict[str, Any]]:
+    """Return the kind and the request of the job numbered ``k``: of twenty, three follow from a front, one is a front.
+
+    The others ask for the least mass, each with a seed of its own, so that none of them is known already.
+    """
+    place = k % 20
+    if place < len(FOLLOWING):
+        return FOLLOWING[place], {"of": front}
+    if place == len(FOLLOWING):
+        return "synthesis", spec(FAMILIES[k // 20 % len(FAMILIES)], points=5, seed=k)
+    quick = (FAMILIES + LIGHT * 20)[place - len(FOLLOWING) - 1]
+    return "synthesis", spec(quick, **QUICK, seed=k)
+
+
 def soak(database: str | None = None, jobs: int = 10_000, pages: int = 10) -> dict[str, Any]:
     """Ask for many jobs one after the other, two at a time; memory of every process, ten times on the way."""
     sizes: list[dict[str, float]] = []
     ends: Counter[str] = Counter()
     with served(database) as service, httpx.Client(base_url=service.url, timeout=60.0) as client:
-        begin, waiting, refused = time.monotonic(), list[str](), 0
+        front = submit(client, spec(points=5))
+        ended(client, front)
+        begin, waiting, refused = time.monotonic(), list[tuple[str, str]](), 0
         for k in range(1, jobs + 1):
-            how: dict[str, Any] = {"points": 5} if k % 7 == 0 else QUICK
-            job, busy = patiently(client, spec(FAMILIES[k % len(FAMILIES)], **how, seed=k))
-            waiting.append(job)
+            kind, request = soaking(k, front)
+            job, busy = patiently(client, request, kind)
+            waiting.append((kind, job))
             refused += busy
             if len(waiting) > 2:
-                job = waiting.pop(0)
+                kind, job = waiting.pop(0)
                 ends[ended(client, job)["state"]] += 1
                 client.get(f"{API}/jobs/{job}/result").raise_for_status()
-                client.get(f"{API}/jobs/{job}/designs").raise_for_status()
+                if kind == "synthesis":
+                    client.get(f"{API}/jobs/{job}/designs").raise_for_status()
             if k % max(jobs // pages, 1) == 0:
                 found = service.processes()
                 sizes.append({name: sum(map(resident, pids)) / 1e6 for name, pids in found.items()})
                 print(k, f"{time.monotonic() - begin:.0f} s", sizes[-1], flush=True)
-        ends.update(ended(client, job)["state"] for job in waiting)
+        ends.update(ended(client, job)["state"] for _, job in waiting)
     return {
         "jobs": jobs,
         "ends": dict(ends),

@@ -320,6 +320,26 @@ def test_a_long_table_shows_the_rest_when_asked(shown: Shown):
         assert found.page.locator("button.more").is_hidden()
 
 
+def test_a_column_has_as_many_decimals_everywhere_and_words_are_whole(shown: Shown):
+    record = small_record()
+    with shown(record) as found:
+        page = found.page
+        cells = page.locator("table.designs tbody tr td:nth-child(2)").all_inner_texts()
+        assert len({len(text.partition(".")[2]) for text in cells}) == 1
+        masses = sorted(design["v"][0] for design in record["designs"])
+        assert sorted(map(float, cells)) == pytest.approx(masses, rel=1e-3)
+        words = page.locator("svg.parallel text.word").all_text_contents()
+        assert words
+        assert set(words) <= {part["name"] for part in record["parts"].values()}
+
+
+def test_what_goes_on_beyond_an_edge_has_a_shadow_there(shown: Shown):
+    with shown(small_record(), PHONE) as found:
+        place = found.page.locator(".card.table .scroll")
+        assert place.evaluate("one => one.scrollWidth > one.clientWidth")
+        assert place.evaluate("one => getComputedStyle(one).backgroundAttachment").count("scroll") >= 4
+
+
 def test_print_has_all_designs_and_no_controls(shown: Shown):
     with shown(grown(60)) as found:
         found.page.emulate_media(media="print")

@@ -19,6 +19,7 @@ MEDIA = {
     "csv": "text/csv; charset=utf-8",
     "yaml": "application/yaml",
     "svg": "image/svg+xml",
+    "dxf": "image/vnd.dxf",
     "html": "text/html; charset=utf-8",
     "pdf": "application/pdf",
     "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",

@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from synth.analysis.drawing import is_drawn
 from synth.analysis.reporting import explored, explored_comparison
 from synth.errors import ExtraNeededError
 from synth.jobs.kinds import kind as kind_named
@@ -31,6 +32,7 @@ WORKBOOK = "designs.xlsx"
 REPORTS = ("report.html", "report.pdf")
 EXPLORER, EXPLORED = "explorer.html", "explorer.json"  # the page, and what it shows for a page of others
 SHEETS = ("_sheet.html", "_sheet.pdf", "_sheet.json", "_live.xlsx")
+DRAWINGS = ("_drawing.svg", "_drawing.dxf")
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of all in an archive, so that the same records give the same bytes
 OPTIONS = ("length", "full", "about", "design")
 
@@ -117,7 +119,7 @@ def render(
         if not drawn:
             raise UnknownFileError(PLOT)
         return Record.of(name, drawn)
-    sheet = re.fullmatch(r"design_(\d+)(_sheet|_live)\.[a-z]+", name)
+    sheet = re.fullmatch(r"design_(\d+)(_sheet|_live|_drawing)\.[a-z]+", name)
     if sheet is not None:
         given["design"] = int(sheet.group(1))
     return Record.of(name, _report(records, name, given, sources))
@@ -125,7 +127,9 @@ def render(
 
 def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, Any], sources: Sources) -> bytes:
     """Return one file of a report of a front."""
-    files, _ = reported(records, ReportAsked.read({**given, "formats": [name.rsplit(".", 1)[-1]]}), sources)
+    files, notes = reported(records, ReportAsked.read({**given, "formats": [name.rsplit(".", 1)[-1]]}), sources)
+    if name not in files:
+        raise UnknownFileError(notes[-1] if notes else name)  # a design that cannot be drawn
     return files[name]
 
 
@@ -149,7 +153,8 @@ def _front_files(front: ParetoFront) -> list[str]:
     stems = [name.removesuffix(".yaml") for name in derived if name.startswith("design_")]
     drawn = [PLOT] if front.svg() else []
     drawn += _explorer_files("explorer_record")
-    return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in SHEETS)]
+    endings = (*SHEETS, *(DRAWINGS if is_drawn(front.frame.family) else ()))
+    return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in endings)]
 
 
 def _explorer_files(needed: str) -> list[str]:

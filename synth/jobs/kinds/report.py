@@ -35,8 +35,9 @@ from synth.results.loading import load_front
 
 MAIN = "report.json"  # which files there are, and what else is to be told
 KEYS = (OF, FAMILY, "design", "full", "formats", "length", "about")
-FORMATS = ("html", "explorer", "pdf", "xlsx", "json")
-NEEDED = {"pdf": ("typst", "pdf"), "xlsx": ("xlsxwriter", "excel")}  # what makes a format: a package, and its extra
+FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf")
+# What makes a format: a package, and its extra.
+NEEDED = {"pdf": ("typst", "pdf"), "xlsx": ("xlsxwriter", "excel"), "dxf": ("ezdxf", "dxf")}
 LENGTHS = ("summary", "normal", "full")
 FULL = 5
 LOGO = "logo"  # of ``about`` names a file: no request does

@@ -36,7 +36,16 @@ def test_every_file_of_the_list_is_rendered() -> None:
     listed = files_of("synthesis", disc())
     assert {"designs.csv", "designs.xlsx", "front.json", "design_01.yaml", "report.html", "report.pdf"} <= set(listed)
     assert {"design_04_sheet.pdf", "design_04_live.xlsx", "bundle.zip"} <= set(listed)
-    starts = {".pdf": b"%PDF", ".xlsx": b"PK", ".zip": b"PK", ".html": b"<!", ".json": b"{"}
+    assert {"design_04_drawing.svg", "design_04_drawing.dxf"} <= set(listed)
+    starts = {
+        ".svg": b"<",
+        ".dxf": b"  0\nSECTION",
+        ".pdf": b"%PDF",
+        ".xlsx": b"PK",
+        ".zip": b"PK",
+        ".html": b"<!",
+        ".json": b"{",
+    }
     for name, size in listed.items():
         if "_02" in name or "_03" in name:
             continue

@@ -61,7 +61,7 @@ def test_its_form_is_filled_in_and_its_front_explored(site: Site) -> None:
     with chromium() as browser, visit(browser, site, site.tenant("pages")) as seen:
         seen.goes("/new?family=flat_bracket")
         seen.page.get_by_label("load").first.fill("80 kg")
-        seen.sees(".fault", "load")
+        seen.sees(".fault", "Got '80 kg'")
         seen.page.get_by_label("load").first.fill("800 N")
         seen.page.get_by_role("button", name="Find designs").click()
         rows = seen.page.locator("table.designs tbody tr")

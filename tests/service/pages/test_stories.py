@@ -141,6 +141,10 @@ def test_where_nothing_is_feasible_a_way_out_is_applied(site: Site, visited: Vis
         found.sees(".job-head .badge", "Not feasible")
         page.get_by_role("button", name="Find ways out").click()
         way = found.sees(".ways li", "outer diameter limit", seconds=60.0)
+        assert "nothing less would do" in way.inner_text()
+        found.sees(".nothing h4", "enough")
+        assert not re.search("[<>]=|_", page.locator(".nothing").inner_text())
+        assert "outer diameter limit 100\xa0mm" in page.locator(".chip").all_inner_texts()
         way.get_by_role("link", name="Apply").click()
         page.wait_for_url("**/new?from=*")
         found.sees("#f-requirements-outer_diameter_limit")
@@ -225,8 +229,9 @@ def test_a_table_is_understood_checked_asked_and_led_from_a_row_to_its_designs(s
         page.reload()
         found.sees("h2", "Rows: faulty")
         page.get_by_role("button", name="Show all rows").click()
-        page.get_by_role("link", name="Line 4").click()
+        page.locator("tr", has=page.get_by_role("link", name="Line 4")).locator(".best a").click()
         found.sees("h1", "Line 4")
+        assert page.url.endswith("/rows/4#design")
         assert "kg" in found.sees(".figures dd").inner_text()
         assert page.locator(".facts dd", has_text="hoist").is_visible()
         page.get_by_role("button", name="Open in the explorer").click()
@@ -405,7 +410,12 @@ def shelf(site: Site) -> dict[str, str]:
     }
 
 
-READY = {"front": ".explored table.designs tbody tr", "batch": ".rows, .plot", "sizes": ".sheet", "nothing": ".misses"}
+READY = {
+    "front": ".explored table.designs tbody tr",
+    "batch": ".rows, .plot",
+    "sizes": ".sheet",
+    "nothing": ".nothing .missing",
+}
 PAGES = (
     *("studies", "form", "table", "front", "nothing", "batch", "row", "faulty row", "sizes", "catalogues", "own"),
     *("shipped", "families", "family", "interface", "tokens", "sign in", "refusal"),

@@ -87,6 +87,13 @@ def test_a_slider_asks_anew_and_the_front_as_asked_stays_as_outlines(sliders: Sl
         (child,) = sliders.children("synthesis")
         assert page.locator(".what-if a").get_attribute("href") == f"/jobs/{child['id']}"
         assert (child["parent"], child["priority"]) == (sliders.front, 1)
+        assert page.locator(".job-head b").inner_text() == "Shown with load torque 540 N·m"
+        assert page.title().startswith("load torque 540 N·m: Lifting drive")
+        assert page.locator(".chip.differs").all_inner_texts() == ["load torque 540\xa0N·m in place of 600\xa0N·m"]
+        assert "driver speed 26.6 rad/s" in page.locator(".chip").all_inner_texts()  # as it was typed
+        assert page.locator(".job-head a.button").get_attribute("href") == f"/new?from={child['id']}"
+        page.locator(f".files-card a[href*='{child['id']}']").first.wait_for()
+        assert page.locator(f".files-card a[href*='{sliders.front}']").count() == 0
         asked = {**ASKED, "requirements": {**DUTY, "load_torque": "540 N*m"}}
         (tmp_path / "spec.yaml").write_text(yaml_text(asked))
         assert in_process("run", str(tmp_path / "spec.yaml"), "-o", str(tmp_path / "out")).returncode == 0
@@ -108,6 +115,8 @@ def test_the_address_brings_the_same_back_and_nothing_is_asked_twice(sliders: Sl
         assert "It fits up to" in page.locator(".knob .unseen").inner_text()
         page.get_by_role("button", name="Back to what was asked").click()
         page.wait_for_selector(".scatter .ghost", state="detached")
+        assert page.locator(".job-head b, .chip.differs").count() == 0
+        page.locator(f".files-card a[href*='{sliders.front}']").first.wait_for()
         assert page.locator(".knob .typed input").input_value() == "600"
         assert "if=" not in page.url
 

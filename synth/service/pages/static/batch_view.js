@@ -1,7 +1,7 @@
 // A batch: how its rows stand, and what each has found.
 
 import { faultCard, get } from "./api.js";
-import { amount, asWords, duration, h, unitText, words } from "./dom.js";
+import { amount, asWords, duration, h, unitText, withFigures, words } from "./dom.js";
 import { sizesCard } from "./sizes_card.js";
 import { LIVE, ROWS, rowBadge } from "./words.js";
 
@@ -10,7 +10,13 @@ const SHOWN_CELLS = 4;
 const WAITING = "waiting"; // rows that nobody has answered yet: no status of a row
 
 /** Return what a row has found as people read it: names in words, units as they are written. */
-export const designText = (text) => words(text).replaceAll(/(\d) ([A-Za-z%°][A-Za-z0-9*/()%°]*)(?=,|$)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
+export const designText = (text) => withFigures(words(text).replaceAll(/(\d) ([A-Za-z%°][A-Za-z0-9*/()%°]*)(?=,|$)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`));
+
+/** Return a design in words; the first of them lead to it. */
+function designLink(href, text) {
+  const [first, ...rest] = text.split(", ");
+  return [h("a", { href }, first), rest.length ? `, ${rest.join(", ")}` : ""];
+}
 
 /** Show a batch, while it is worked at and after. */
 export function batchView(element, job) {
@@ -75,7 +81,7 @@ export function batchView(element, job) {
     if (known?.text === text) return known.line;
     const waits = row.status === "not_solved" && LIVE.includes(shown.state);
     const line = h("tr", {}, h("th", { scope: "row", class: "number" }, h("a", { href: `/jobs/${job.id}/rows/${row.line}`, "aria-label": `Line ${row.line}` }, row.line)), h("td", {}, rowBadge(waits ? WAITING : row.status)), heads.map((_, k) => h("td", { class: "cell" }, row.cells[k] ?? "")),
-      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designText(row.best_design) : row.status === "bad_input" ? row.explanation : asWords(row.explanation) || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
+      h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designLink(`/jobs/${job.id}/rows/${row.line}#design`, designText(row.best_design)) : row.status === "bad_input" ? row.explanation : asWords(row.explanation) || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
     const focused = known?.line.contains(document.activeElement);
     known?.line.replaceWith(line);
     if (focused) line.querySelector("a").focus();

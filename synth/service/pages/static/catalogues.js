@@ -68,7 +68,7 @@ function shippedTable(table) {
   document.title = `${words(table.name)} · clutchsynth`;
   const name = words(table.name), numeric = table.columns.map((_, k) => table.rows.some((row) => typeof row[k] === "number"));
   const order = inOrder(table.columns.map((column) => column.name));
-  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(value) : value === null ? h("span", { class: "note" }, "–") : short(amount(value)));
+  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(value) : value === null ? h("span", { class: "note" }, "–") : short(typeof value === "string" ? value.replaceAll(/;(?=\S)/g, "; ") : amount(value)));
   const rows = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Rows" }, h("table", { class: "sheet" },
     h("thead", {}, h("tr", {}, order.map((k) => [table.columns[k], k]).map(([column, k]) => h("th", { scope: "col", class: numeric[k] ? "right" : "", title: column.text }, words(column.name), unitText(column.unit) && !column.unit.startsWith("column:") ? h("span", { class: "unit" }, ` ${unitText(column.unit)}`) : null)))),
     h("tbody", {}, table.rows.map((row) => h("tr", {}, order.map((k) => h(k ? "td" : "th", { scope: k ? null : "row", class: numeric[k] ? "right" : typeof row[k] === "string" && row[k].length > 40 ? "long" : "" }, cell(row[k], k))))))));

@@ -40,21 +40,30 @@ export function unitText(unit) {
   return unit && unit !== "-" ? unit.replaceAll("*", "·").replace(/([A-Za-z])([23])(?!\d)/g, (_, letter, power) => letter + SUPERSCRIPT[power]) : "";
 }
 
-/** Return a number with five digits and thin spaces between thousands; a text as it is. */
+/** Return a number with five digits and thin spaces, at which no line ends, between thousands; a text as it is. */
 export function amount(value) {
   if (typeof value !== "number") return value ?? "";
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e7 || size < 1e-4)) return value.toExponential(3).replace(/\.?0*e\+?/, "e");
   const [whole, part] = String(Number(value.toPrecision(size >= 1e5 ? 7 : 5))).split(".");
-  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u2009") : whole;
+  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") : whole;
   return part ? `${spaced}.${part}` : spaced;
 }
 
 /** Return a name of the interface as words. */
 export const words = (name) => String(name).replaceAll("_", " ");
 
-/** Return a sentence of the engine as people read it: names in words, units as they are written. */
-export const asWords = (text) => words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`);
+const LONG_NUMBER = /(?<![\w.,'"#-])\d[\d.]{3,}\d(?![\w'"]|,\d)/g; // neither quoted nor part of a name
+
+const figure = (found) => (/^\d+(\.\d+)?$/.test(found) ? amount(Number(found)) : found);
+
+/** Return a text with its long numbers as they are shown elsewhere. */
+export const withFigures = (text) => text.replaceAll(LONG_NUMBER, figure);
+
+/** Return a sentence of the engine as people read it: names in words, units, signs and numbers as they are written. */
+export const asWords = (text) =>
+  withFigures(words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit}\u00a0${unitText(unit)}`))
+    .replaceAll("<=", "≤").replaceAll(">=", "≥").replaceAll("->", "→");
 
 /** Return a symbol with its subscript; nothing where there is none. */
 export function symbol(text) {

@@ -1,6 +1,6 @@
 // Fields of the form: what a family declares, one row for each name.
 
-import { amount, h, symbol, unitText, words } from "./dom.js";
+import { asWords, amount, h, symbol, unitText, words } from "./dom.js";
 
 /** What somebody has typed, as a spec states it: a number alone is meant in the unit that stands beside it. */
 export function stated(text, unit) {
@@ -36,8 +36,8 @@ export class Field {
     this.read = h("span", { class: "read good", id: `${id}-read` });
     this.fault = h("p", { class: "fault", id: `${id}-fault` });
     this.element = h("div", { class: "field" },
-      h("div", {}, h("label", { for: id }, words(row.name), symbol(row.symbol)), h("p", { class: "note", id: `${id}-text` }, row.text)),
-      h("div", { class: "entry" }, h("div", { class: "typed" }, this.input, row.unit ? h("span", {}, unitText(row.unit) || "–") : null), this.read),
+      h("div", {}, h("label", { for: id }, words(row.name), symbol(row.symbol)), h("p", { class: "note", id: `${id}-text` }, asWords(row.text))),
+      h("div", { class: "entry" }, h("div", { class: "typed" }, this.input, unitText(row.unit) ? h("span", {}, unitText(row.unit)) : null), this.read),
       h("div", { class: "range note" }, range(row), row.source ? h("span", { class: "source", title: row.source }, row.source) : null),
       this.fault);
     this.mark();
@@ -51,7 +51,7 @@ export class Field {
   show(problem, read) {
     this.told = problem;
     const open = problem && this.value === "" && !this.touched;
-    const text = problem && !open ? problem.message : "";
+    const text = problem && !open ? faultText(problem) : "";
     if (this.fault.textContent !== text) this.fault.textContent = text;
     this.input.setAttribute("aria-invalid", String(Boolean(text)));
     this.element.classList.toggle("bad", Boolean(text));
@@ -59,6 +59,12 @@ export class Field {
     if (this.read.textContent !== said) this.read.textContent = said;
   }
 }
+
+/** Return what is wrong as it is read below its field, which says already of what it is told. */
+const faultText = ({ message, value }) => {
+  const start = value === null || value === undefined ? -1 : message.indexOf(": got ");
+  return start < 0 ? message : `G${message.slice(start + 3)}`;
+};
 
 const plain = (text) => text.replaceAll(/\s+/g, "");
 
@@ -75,7 +81,7 @@ function range(row) {
 
 /** Return what stands in an empty field. */
 export function hintOf(row) {
-  if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "follows from others";
+  if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "by others";
   if (row.section === "limit") return "not asked";
   if (row.section === "part") return "all that fit";
   return ["needed", "duty"].includes(row.section) ? "" : "free";
@@ -85,7 +91,7 @@ export function hintOf(row) {
 export function choices(row, chosen, changed) {
   const names = row.choices.split(", ");
   return h("div", { class: "field option" },
-    h("div", {}, h("span", { class: "label", id: `o-${row.name}` }, words(row.name)), h("p", { class: "note" }, row.text)),
+    h("div", {}, h("span", { class: "label", id: `o-${row.name}` }, words(row.name)), h("p", { class: "note" }, asWords(row.text))),
     h("div", { class: "segments", role: "radiogroup", "aria-labelledby": `o-${row.name}` }, names.map((name) =>
       h("label", {}, h("input", { type: "radio", name: `o-${row.name}`, value: name, checked: name === chosen, onchange: () => changed(name) }), words(name)))));
 }

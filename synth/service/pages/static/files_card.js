@@ -8,13 +8,29 @@ const MEANS = {
   "front.svg": "Picture of the front", "bundle.zip": "Everything in one archive", "explorer.html": "Explorer, one file",
 };
 
-/** Add the files of a job below what is shown of it. */
+/**
+ * Add the files of a job below what is shown of it.
+ * @param {HTMLElement} element
+ * @param {object} job
+ * @returns {Promise<{show: (other: {id: string}) => Promise<void>}>} `show` offers those of another job in the same place
+ */
 export async function filesCard(element, job) {
-  const { files } = await get(`/jobs/${job.id}/files`);
-  if (!files.length) return;
+  const slot = h("div");
+  let wanted = job.id;
+  async function show(other) {
+    wanted = other.id;
+    const { files } = await get(`/jobs/${other.id}/files`);
+    if (wanted === other.id) slot.replaceChildren(...(files.length ? [cardOf(files, other.moved)] : []));
+  }
+  await show(job);
+  element.append(slot);
+  return { show };
+}
+
+function cardOf(files, moved) {
   const link = (file, button) => h("a", { class: button ? "button" : "", href: file.href, download: file.name.split("/").at(-1) }, button ? MEANS[file.name] : file.name);
   const first = Object.keys(MEANS).map((name) => files.find((file) => file.name === name)).filter(Boolean);
   const rest = files.filter((file) => !MEANS[file.name]);
-  element.append(h("section", { class: "card files-card" }, h("h2", {}, "Take it away"), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
-    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "file" : "files"}`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null));
+  return h("section", { class: "card files-card" }, h("h2", {}, "Take it away", moved ? h("span", { class: "note" }, `with ${moved}`) : null), first.length ? h("p", { class: "row" }, first.map((file) => link(file, true))) : null,
+    rest.length ? h("details", { class: "more" }, h("summary", {}, `${rest.length} more ${rest.length === 1 ? "file" : "files"}`), h("ul", { class: "files" }, rest.map((file) => h("li", {}, link(file, false))))) : null);
 }

@@ -2,6 +2,8 @@
 
 import { API, get, maySubmit } from "./api.js";
 import { amount, h, unitText, words } from "./dom.js";
+import { asTyped } from "./as_typed.js";
+import { nothingView, seek } from "./nothing_view.js";
 import { plotOf } from "./plot.js";
 import { whatIf } from "./what_if.js";
 import { count } from "./words.js";
@@ -15,11 +17,13 @@ const MOST = 200, SHOWN = 14;
  * @param {HTMLElement} element
  * @param {object} job
  * @param {string} explorer address of the module that draws fronts, empty where there is none
- * @param {(job: object, rank: number | null) => void} heard is told whose front is shown, and which design of it is chosen
+ * @param {(job: object, rank: number | null, moved?: string) => void} heard is told whose front is shown, which design of it is chosen, and with which
+ *   values it was asked where they are others than those of the page
  */
 export async function frontView(element, job, explorer, heard) {
   element.replaceChildren(h("p", { class: "note" }, "Loading the front …"));
   if (explorer && (await explored(element, job, explorer, heard))) return;
+  if (job.summary?.outcome === "infeasible") return nothingView(element, job, null);
   const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
   const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
   const table = tableCard(job, record, page, objectives);
@@ -34,11 +38,12 @@ async function explored(element, job, explorer, heard) {
   if (!files.some((file) => file.name === RECORD)) return false;
   let drawn;
   try {
-    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`), styled(explorer.replace(/\.js$/, ".css"))]);
+    drawn = await Promise.all([import(explorer), get(`/jobs/${job.id}/files/${RECORD}`), get(`/jobs/${job.id}/request`), styled(explorer.replace(/\.js$/, ".css"))]);
   } catch {
     return false;
   }
-  const [{ mount }, record] = drawn;
+  const [{ mount }, found, request] = drawn;
+  const record = asTyped(found, request.requirements);
   const slot = h("div", { class: "explored" });
   element.replaceChildren(slot);
   const told = { explorer: "", moved: movedOf(location.hash.slice(1)) };
@@ -46,7 +51,7 @@ async function explored(element, job, explorer, heard) {
     const text = [told.explorer, told.moved].filter(Boolean).join("&");
     history.replaceState(null, "", text ? `#${text}` : location.pathname);
   };
-  const page = { job, record, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other) => { shown = other; heard(shown, null); } };
+  const page = { job, record, request, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other, what) => { shown = other; heard(shown, null, what); } };
   const endings = [...new Set(files.map((file) => /^design_\d+(.+)$/.exec(file.name)?.[1]).filter(Boolean))];
   const digits = files.map((file) => /^design_(\d+)/.exec(file.name)?.[1].length).find(Boolean) ?? 2;
   let shown = job, strip = null, ready = null;
@@ -59,10 +64,13 @@ async function explored(element, job, explorer, heard) {
       const name = `design_${String(design.rank).padStart(digits, "0")}${ending}`;
       return { label: name, href: `${API}/jobs/${shown.id}/files/${name}`, download: name };
     }),
-    ...(maySubmit() && job.kind === "synthesis" ? {
+    ...(maySubmit() && job.kind === "synthesis" && record.designs.length ? {
       whatIf: (place, handle) => { ready = whatIf(place, handle, page).then((made) => { strip = made; }, () => place.setAttribute("hidden", "")); },
-      ways: (place) => strip?.ways(place),
     } : {}),
+    ways: (place) => {
+      if (record.designs.length) strip?.ways(place);
+      else if (job.kind === "synthesis") ready = seek(place, job, { heading: "h3" });
+    },
   });
   await ready;
   return true;

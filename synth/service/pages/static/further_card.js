@@ -41,6 +41,8 @@ export async function furtherCard(job) {
   const fault = h("p", { class: "fault", role: "alert" });
   const list = h("div", { class: "followed" });
   const buttons = offered.map((ask) => h("button", { type: "button", onclick: () => asked(ask) }));
+  const asks = h("ul", { class: "ask-list" }, offered.map((ask, k) => h("li", {}, buttons[k], h("span", { class: "note" }, ask.note))));
+  const lacking = h("p", { class: "note", hidden: true }, "There is no design with these values that could be asked about.");
   let of = job, rank = 1, stop = null, known = [];
 
   /** Take note of what is shown: what is asked is asked of that. */
@@ -48,9 +50,10 @@ export async function furtherCard(job) {
     if (other.id !== of.id) load();
     of = other;
     rank = chosen ?? rank;
+    lacking.hidden = Boolean(of.summary?.designs);
+    asks.hidden = !lacking.hidden;
     offered.forEach((ask, k) => {
       buttons[k].textContent = ask.text(rank, many(of));
-      buttons[k].disabled = !of.summary?.designs;
     });
   }
 
@@ -99,7 +102,7 @@ export async function furtherCard(job) {
     if (focused) list.querySelector(`a[href="${focused}"]`)?.focus();
   }
 
-  element.replaceChildren(...(offered.length ? [h("h2", {}, "Ask further"), h("ul", { class: "ask-list" }, offered.map((ask, k) => h("li", {}, buttons[k], h("span", { class: "note" }, ask.note)))), fault] : []), list);
+  element.replaceChildren(...(offered.length ? [h("h2", {}, "Ask further"), asks, lacking, fault] : []), list);
   shown(job, null);
   await load();
   return { element, shown };

@@ -15,7 +15,8 @@ import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 const place = document.getElementById("job");
 const id = place.dataset.job;
 const RESUMABLE = ["cancelled", "failed", "stopped"];
-let job, titles = {}, content = null, stop = null;
+let job, titles = {}, content = null, stop = null, files = null;
+let shown = { id, moved: "" }; // whose front is shown, and with which values other than those of the job
 
 const head = h("div", { class: "job-head" });
 const below = h("div");
@@ -81,15 +82,16 @@ function heading() {
   const buttons = maySubmit() ? [
     live ? h("button", { type: "button", class: "danger", onclick: () => act("POST", "/cancel") }, "Cancel") : null,
     RESUMABLE.includes(job.state) ? h("button", { type: "button", class: "primary", onclick: () => act("POST", "/resume") }, "Resume") : null,
-    ["synthesis", "explain", "compare"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${id}` }, "Change and ask again") : null,
+    ["synthesis", "explain", "compare"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${shown.id}` }, "Change and ask again") : null,
     h("button", { type: "button", "aria-pressed": String(job.pinned), title: "Pinned jobs are kept for good", onclick: () => act("PATCH", "", { pinned: !job.pinned }) }, job.pinned ? "Kept for good" : "Keep for good"),
     live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
   ] : [];
   head.replaceChildren(
     h("div", { class: "heading" }, h("h1", {}, job.title), h("div", { class: "row" }, buttons)),
     h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took),
+      shown.moved ? h("b", {}, `Shown with ${shown.moved}`) : null,
       job.parent ? h("a", { href: `/jobs/${job.parent}` }, "what it follows from") : null));
-  document.title = `${live ? "… " : ""}${job.title} · clutchsynth`;
+  document.title = `${live ? "… " : ""}${shown.moved ? `${shown.moved}: ` : ""}${job.title} · clutchsynth`;
 }
 
 async function act(method, path, body) {
@@ -144,13 +146,21 @@ async function ended() {
     const further = await furtherCard(job);
     if (job.kind === "batch") await batchView(slot, job).loaded;
     else if (job.kind === "explain") await nothingView(slot, job, job);
-    else if (job.kind === "synthesis" && job.summary?.outcome === "infeasible") await nothingView(slot, job, null);
-    else if (job.kind === "compare" || (job.kind === "synthesis" && job.summary?.designs)) await frontView(slot, job, place.dataset.explorer, further.shown);
+    else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || job.summary?.outcome === "infeasible"))) {
+      await frontView(slot, job, place.dataset.explorer, (other, rank, moved) => {
+        further.shown(other, rank);
+        if (moved === undefined || other.id === shown.id) return;
+        shown = { id: other.id, moved };
+        heading();
+        files?.show(shown);
+      });
+    }
     else if (job.kind === "size_range" && job.summary?.variants) await sizesView(slot, job);
     else if (hasView(job)) await kindView(slot, job);
     else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
     below.append(further.element);
-    await filesCard(below, job);
+    files = await filesCard(below, job);
+    if (shown.id !== id) files.show(shown);
   } catch (error) {
     slot.replaceChildren(faultCard(error, () => ended()));
   }

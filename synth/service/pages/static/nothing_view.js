@@ -2,7 +2,10 @@
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { asWords, h } from "./dom.js";
+import { quantity } from "./what_if_knobs.js";
 import { LIVE, outcomeText, stageText } from "./words.js";
+
+const MOST_OPEN = 4; // sentences of what was neither shown nor excluded
 
 /**
  * Show why there is no design.
@@ -23,7 +26,7 @@ export async function nothingView(element, job, explaining) {
   why.append(h("h2", {}, "Nothing is feasible"),
     h("p", {}, record.certificate?.kind === "global" ? "This is proven: no combination of parts and sizes holds all limits." : "No design was found that holds all limits."),
     conflicts.length ? h("p", {}, "The nearest that was found misses:") : h("p", {}, sentence(told.message)),
-    h("ul", { class: "misses" }, conflicts.map((conflict) => h("li", {}, asWords(conflict.sentence)))));
+    h("ul", { class: "misses" }, conflicts.map((conflict) => h("li", {}, missText(conflict.sentence)))));
   await seek(ways, job);
 }
 
@@ -68,7 +71,7 @@ function follow(ways, job, explaining, how) {
   const stage = h("p", { role: "status" }, stageText(explaining.progress));
   const show = async (found) => {
     how.told?.();
-    if (found.state === "done") tell(ways, job, await get(`/jobs/${found.id}/result`), how);
+    if (found.state === "done") await tell(ways, job, await get(`/jobs/${found.id}/result`), how);
     else ways.replaceChildren(h(how.heading, {}, "Ways out"), h("p", {}, outcomeText(found)), h("p", {}, h("a", { href: `/jobs/${found.id}` }, "Look at it")));
   };
   if (!LIVE.includes(explaining.state)) return show(explaining);
@@ -79,19 +82,65 @@ function follow(ways, job, explaining, how) {
   });
 }
 
-function tell(ways, job, found, how) {
-  const proven = (way) => h("span", { class: `badge ${way.proven ? "good" : ""}` }, way.proven ? "proven" : "not proven to be the least");
-  const excluded = found.conflict.join(", ").replaceAll("_", " ");
-  const several = `Together these cannot hold: ${excluded}${found.minimal ? "; without any one of them the others could" : ""}.`;
-  const conflict = h("p", {}, found.conflict.length > 1 ? several : found.conflict.length ? `This cannot hold, whatever is done about other limits: ${excluded}.` : sentence(found.message));
+/** Return how a limit is missed, as people read it; a limit of one's own is told by its quantity alone. */
+const missText = (text) => asWords(text.replace(/^(\w+) [<>]= .*? is (?=[-\d])/, "$1 is ").replace(/(at least .*?) is allowed/, "$1 is needed"));
+
+const REQUIREMENT = /^(\w+) (\S+) (.+) instead of (\S+) (.+?)( \(.*)?$/;
+
+/** Return the sentence of a requirement that was typed in another unit than the declared one with both. */
+function inUnit(text, typed) {
+  const own = typeof typed === "string" ? quantity(typed, "") : null, found = REQUIREMENT.exec(text);
+  if (!own?.unit || !found || own.unit === found[5] || /deg/.test(own.unit + found[5])) return text;
+  const [, name, needed, unit, given, , rest = ""] = found;
+  return `${name} ${needed} ${unit} (${Number(((own.number * needed) / given).toPrecision(5))} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
+}
+
+/** Return how much a way out changes, and whether less would do. */
+const amountText = (way, by = "") => h("p", { class: "note" }, by ? `${by}; ` : "", way.proven ? "proven: nothing less would do" : "perhaps less would do as well: not proven");
+
+/** Return a way out as what changes, to what, and by how much: the change is told apart from its amount. */
+function change(way, typed) {
+  const text = asWords(inUnit(way.sentence, typed[way.name]));
+  const [, what, by] = /^(.*) \(([^()]* (?:more|less))\)$/.exec(text) ?? [null, text, ""];
+  return [h("p", {}, what.replace(/^limit /, "")), amountText(way, by)];
+}
+
+/** Return what gives way together, as a list. */
+function together(way, typed) {
+  const [, share, rest] = /^together, each by (.*?): (.*)$/.exec(way.sentence) ?? [null, "", way.sentence];
+  const told = (text) => asWords(inUnit(text, typed[text.split(" ")[0]])).replace(/^limit /, "");
+  return [h("p", {}, "All of these together", share ? `, each by ${share}:` : ":"), h("ul", { class: "together" }, rest.split("; ").map((text) => h("li", {}, told(text)))), amountText(way)];
+}
+
+/** Return what cannot hold, in words. */
+function conflictText(found) {
+  const names = found.conflict.map(asWords);
+  if (!names.length) return asWords(sentence(found.message));
+  if (names.length === 1) return `No design keeps ${names[0]}, however far other limits give way.`;
+  return `These cannot hold together: ${names.join(", ")}.${found.minimal ? " If any one of them gives way, the others can hold." : ""}`;
+}
+
+const JOINT = ["joint", "physics"];
+
+async function tell(ways, job, found, how) {
+  const typed = (await get(`/jobs/${job.id}/request`)).requirements ?? {};
   const apply = (way) => {
-    if (!maySubmit() || !Object.keys(way.patch ?? {}).length) return null;
+    if (!maySubmit()) return null;
+    if (!Object.keys(way.patch ?? {}).length) return way.kind === "part" ? h("a", { class: "button", href: "/catalogues#bring" }, "Bring a table") : null;
     const own = how.apply?.(way.patch);
-    if (own) return h("button", { type: "button", onclick: own }, "Apply");
-    return h("a", { class: how.apply ? "button" : "button primary", href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
+    const said = `Apply: ${asWords(way.name)}`;
+    if (own) return h("button", { type: "button", "aria-label": said, onclick: own }, "Apply");
+    return h("a", { class: how.apply ? "button" : "button primary", "aria-label": said, href: `/new?from=${job.id}#patch=${encodeURIComponent(JSON.stringify(way.patch))}` }, "Apply");
   };
-  ways.replaceChildren(h(how.heading, {}, "Ways out"), conflict,
-    found.ways.length ? h("ul", { class: "ways" }, found.ways.map((way) => h("li", {}, h("div", {}, h("p", {}, asWords(way.sentence)), proven(way)), apply(way))))
-      : h("p", {}, found.feasible ? "All limits can hold together." : "No single change was found that helps."),
+  const list = (some, told) => h("ul", { class: "ways" }, some.map((way) => h("li", {}, h("div", {}, told(way, typed)), apply(way))));
+  const single = found.ways.filter(({ kind }) => !JOINT.includes(kind) && kind !== "part"), joint = found.ways.filter(({ kind }) => JOINT.includes(kind)), parts = found.ways.filter(({ kind }) => kind === "part");
+  const sub = how.heading === "h2" ? "h3" : "h4";
+  const group = (title, some, told) => (some.length ? [h(sub, {}, title), list(some, told)] : []);
+  ways.replaceChildren(h(how.heading, {}, "Ways out"), h("p", {}, conflictText(found)),
+    ...group(single.length > 1 ? "Any one of these changes is enough" : "This change is enough", single, change),
+    ...group(single.length ? "Or everything gives way a little" : "Everything gives way a little", joint, together),
+    ...group("Or a part that no table has yet", parts, change),
+    ...(found.ways.length ? [] : [h("p", {}, found.feasible ? "All limits can hold together." : "No single change was found that helps.")]),
+    ...(found.not_settled ?? []).slice(0, MOST_OPEN).map((text) => h("p", { class: "note" }, `Not settled: ${asWords(text)}`)),
     found.interrupted ? h("p", { class: "note" }, `Interrupted: ${found.interrupted}`) : "");
 }

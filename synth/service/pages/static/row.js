@@ -24,6 +24,7 @@ async function begin() {
       : faultCard(error, () => location.reload()));
   }
   place.setAttribute("aria-busy", "false");
+  if (location.hash === "#design") document.getElementById("design")?.scrollIntoView();
 }
 
 function declarationOf({ family, options }) {
@@ -82,11 +83,15 @@ function found(row, columns, designs, request, family) {
   const kinds = new Map((family?.rows ?? []).filter((one) => ["variable", "count", "choice", "part", "derived"].includes(one.section)).map((one) => [one.name, one]));
   const wanted = Array.isArray(request.objectives) ? request.objectives : request.objectives ? Object.keys(request.objectives) : (family?.rows ?? []).filter((one) => one.section === "objective" && one.default === "yes").map((one) => one.name);
   const objectives = wanted.map((name) => columns.find((column) => column.name === name)).filter(Boolean);
-  const shown = h("div");
-  const panel = (design) => shown.replaceChildren(panelOf(design, designs.length, columns, objectives, kinds));
+  const shown = h("div", { id: "design" });
+  const panel = (design) => {
+    shown.replaceChildren(panelOf(design, designs.length, columns, objectives, kinds));
+    designs.forEach((one, k) => buttons[k].setAttribute("aria-pressed", String(one === design)));
+  };
+  const buttons = designs.map((design) => h("button", { type: "button", class: "small", "aria-label": `Show design ${design.rank}`, onclick: () => panel(design) }, design.rank));
   panel(designs[0]);
   const points = designs.map((design) => ({ rank: design.rank, note: designs.length > 1 ? design.note : "", values: objectives.map(({ name }) => design[name]), design }));
-  const lines = designs.map((design) => h("tr", {}, h("th", { scope: "row" }, h("button", { type: "button", class: "small", "aria-label": `Show design ${design.rank}`, onclick: () => panel(design) }, design.rank)), objectives.map(({ name }) => h("td", { class: "right" }, amount(design[name]))), h("td", { class: "note" }, words(design.note))));
+  const lines = designs.map((design, k) => h("tr", {}, h("th", { scope: "row" }, buttons[k]), objectives.map(({ name }) => h("td", { class: "right" }, amount(design[name]))), h("td", { class: "note" }, words(design.note))));
   return [designs.length > 1 && objectives.length ? plotOf(objectives, points, { label: "Designs of this row", choose: (point) => panel(point.design) }) : "",
     designs.length > 1 ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Designs" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Design"), objectives.map(({ name, unit }) => h("th", { scope: "col", class: "right" }, words(name), h("span", { class: "unit" }, ` ${unitText(unit)}`))), h("th", { scope: "col" }, "What it is"))), h("tbody", {}, lines)))) : "",
     shown];

@@ -1,9 +1,9 @@
 // Standard sizes for the rows of a batch: asked beside it, and shown as a page of their own.
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
-import { cellsOf, headingOf, sheet } from "./csv.js";
+import { cellsOf, headingOf, sheet, short } from "./csv.js";
 import { curveOf } from "./curve.js";
-import { amount, h, unitText, words } from "./dom.js";
+import { amount, asWords, h, unitText, words } from "./dom.js";
 import { LIVE, badge, count, outcomeText, rowBadge } from "./words.js";
 
 const MOST_LISTED = 5;
@@ -59,11 +59,14 @@ async function excessOf(job) {
 
 /** Show which sizes were chosen, what they cost, and which row each serves. */
 export async function sizesView(element, job) {
-  const [record, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), excessOf(job)]);
-  const batch = job.parent;
-  const told = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "family" ? words(text) : name === "status" ? rowBadge(text) : null);
+  const [record, request, variants, assignment, unserved, drawn] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/request`), file(job, "variants.csv"), file(job, "assignment.csv"), file(job, "unserved.csv"), excessOf(job)]);
+  const batch = job.parent ?? request.of;
+  const told = (text, name) => (name === "line" && batch ? h("a", { href: `/jobs/${batch}/rows/${text}` }, text) : name === "family" ? words(text) : name === "status" ? rowBadge(text) : name === "reason" && text.startsWith("No ") ? short(asWords(text)) : null);
   const one = new Set(cellsOf(variants).slice(1).map((cells) => cells[1])).size < 2; // family
-  const lines = (text) => ["row", ...(one ? ["family"] : [])].reduce(without, cellsOf(text)); // a row is known by its line here
+  const lines = (text) => {
+    const [names, ...rest] = ["row", ...(one ? ["family"] : [])].reduce(without, cellsOf(text)); // a row is known by its line here
+    return [names.map((name) => (name === "variant" ? "size" : name)), ...rest];
+  };
   const [, ...left] = cellsOf(unserved), unit = unitText(record.unit);
   element.replaceChildren(
     h("section", { class: "card stack certificate proven" }, h("h2", {}, `${count(record.variants, "size")} for ${count(cellsOf(assignment).length - 1, "row")}`),

@@ -1,10 +1,10 @@
 // The list of studies: found by words and states, watched by one stream.
 
 import { faultCard, get, listen, maySubmit, post, sentence } from "./api.js";
-import { h, when, words } from "./dom.js";
+import { asWords, h, when, words } from "./dom.js";
 import { KINDS, LIVE, badge, outcomeText, share } from "./words.js";
 
-const FILTERS = [["All", []], ["Running", LIVE], ["Done", ["done"]], ["Not ended well", ["failed", "cancelled", "stopped"]]];
+const FILTERS = [["All", []], ["Running", LIVE], ["Done", ["done"]], ["Ended early", ["failed", "cancelled", "stopped"]]];
 const PATIENCE = 250, MOST_WATCHED = 50;
 const place = document.getElementById("studies");
 const address = new URLSearchParams(location.search);
@@ -163,7 +163,7 @@ function offer(example) {
   } }, "Run it");
   const name = words(example.name);
   return h("li", { class: "card stack" }, h("h2", {}, name[0].toUpperCase() + name.slice(1)), h("p", { class: "note" }, state.titles[example.family] ?? ""),
-    h("p", { class: "said" }, example.description), h("p", { class: "row" }, run, h("a", { class: "button", href: `/new?example=${example.name}` }, "Look at it first")), fault);
+    h("p", { class: "said" }, asWords(example.description)), h("p", { class: "row" }, run, h("a", { class: "button", href: `/new?example=${example.name}` }, "Look at it first")), fault);
 }
 
 document.addEventListener("visibilitychange", () => { if (!document.hidden) load(); });

@@ -1,8 +1,8 @@
 // A search that is under way: its stage, and the designs it knows already.
 
-import { amount, duration, h } from "./dom.js";
+import { amount, duration, h, withFigures } from "./dom.js";
 import { plotOf } from "./plot.js";
-import { STAGE_ORDER, stageText } from "./words.js";
+import { STAGE_ORDER, STEPS, stageText } from "./words.js";
 
 /** Show a job while it waits and is worked at. */
 export function watchView(element, job) {
@@ -19,8 +19,8 @@ export function watchView(element, job) {
     const parts = [
       shown.started ? `${duration(Math.max(0, Date.now() / 1000 - shown.started))} so far` : "waits for a worker",
       told.combinations ? `${amount(told.combinations)} combinations` : "",
-      told.incumbents ? `${told.incumbents} designs known` : "",
-      told.message ?? "",
+      told.incumbents ? `${amount(told.incumbents)} designs known` : "",
+      withFigures(told.message ?? ""),
     ];
     facts.textContent = parts.filter(Boolean).join(" · ");
   }
@@ -35,7 +35,7 @@ export function watchView(element, job) {
       else bar.removeAttribute("value");
       const at = STAGE_ORDER.indexOf(told?.stage);
       steps.hidden = at < 0;
-      steps.replaceChildren(...STAGE_ORDER.map((name, k) => h("li", { class: k < at ? "past" : k === at ? "now" : "" }, name)));
+      steps.replaceChildren(...STAGE_ORDER.map((name, k) => h("li", { class: k < at ? "past" : k === at ? "now" : "" }, STEPS[name])));
       count();
       if (told?.points?.length) plot.replaceChildren(plotOf(told.columns.map(column), told.points.map((values) => ({ values })), { label: "Designs known so far" }));
     },

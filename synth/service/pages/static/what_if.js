@@ -2,6 +2,7 @@
 
 import { ask, get, listen, post, sentence } from "./api.js";
 import { duration, h } from "./dom.js";
+import { asTyped } from "./as_typed.js";
 import { seek } from "./nothing_view.js";
 import { filling, knobsOf, patchOf, shown, valuesOf } from "./what_if_knobs.js";
 import { Slider } from "./what_if_slider.js";
@@ -22,8 +23,7 @@ const MOST = 4; // sliders
  * @param {{job: object, record: object, state: string, onState: (text: string) => void, onJob: (job: object) => void}} page
  */
 export async function whatIf(slot, handle, page) {
-  const { job } = page;
-  const request = await get(`/jobs/${job.id}/request`);
+  const { request } = page;
   const options = Object.entries(request.options ?? {}).map(([name, value]) => `${name}:${value}`).join(",");
   const [family, checked] = await Promise.all([get(`/families/${request.family}${options ? `?options=${encodeURIComponent(options)}` : ""}`), post("/check", request).catch(() => ({ read: {} }))]);
   const knobs = knobsOf(request, family.rows, checked.read, page.record);
@@ -125,7 +125,7 @@ class Strip {
     this.page.onState("");
     if (this.shown) {
       this.shown = null;
-      this.page.onJob(this.page.job);
+      this.page.onJob(this.page.job, "");
       this.handle.compareWith(null);
       this.handle.update(this.page.record);
     }
@@ -168,6 +168,7 @@ class Strip {
     const own = (this.number += 1);
     const begun = performance.now();
     const what = this.moved().map(([knob, value]) => `${knob.label} ${shown(knob, value)}`).join(", ");
+    const patch = patchOf(this.moved());
     this.cancel();
     this.slot.classList.add("busy");
     this.say(`Searching anew with ${what} …`);
@@ -176,7 +177,7 @@ class Strip {
       if (own !== this.number) return this.give(job.id);
       const ended = await this.follow(job, (stage) => own === this.number && this.say(`Searching anew with ${what}: ${stage.toLowerCase()} …`));
       if (own !== this.number) return undefined;
-      const record = ended.state === "done" || ended.summary?.designs ? await get(`/jobs/${ended.id}/files/${RECORD}`) : null;
+      const record = ended.state === "done" || ended.summary?.designs ? asTyped(await get(`/jobs/${ended.id}/files/${RECORD}`), { ...this.request.requirements, ...patch.requirements }) : null;
       if (own !== this.number) return undefined;
       const show = () => {
         if (own === this.number) this.show(ended, record, what);
@@ -214,7 +215,7 @@ class Strip {
     if (!record) return this.failed(job.error ? sentence(job.error.message) : "The search has ended without an answer.");
     this.slot.classList.remove("busy");
     this.shown = job;
-    this.page.onJob(job);
+    this.page.onJob(job, what);
     this.handle.compareWith(this.page.record);
     this.handle.update(record);
     this.buttons();

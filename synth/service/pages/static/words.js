@@ -1,6 +1,6 @@
 // How jobs stand, in words.
 
-import { h, words } from "./dom.js";
+import { asWords, h, words } from "./dom.js";
 
 export const LIVE = ["open", "running"];
 export const KINDS = {
@@ -8,16 +8,17 @@ export const KINDS = {
   verify: "Verification", report: "Report", batch: "Batch", size_range: "Size range",
 };
 const STAGES = {
-  bounds: "Bounding what is possible", coarse: "Looking for first designs", extremes: "Finding the ends of the front", front: "Filling the front",
+  bounds: "Bounding what is possible", coarse: "Looking for first designs", extremes: "Finding the ends of the front", front: "Filling the front", first: "Looking for the design that comes nearest to the best",
   report: "Working out the designs", explanation: "Looking for what stands in the way", "ways out": "Looking for ways out",
 };
-export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "report"];
+export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "first", "report"];
+export const STEPS = { bounds: "bounds", coarse: "first designs", extremes: "ends of the front", front: "between them", first: "the best compromise", report: "results" };
 
 const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
 export { count };
 
 /** Return what a job is doing. */
-export const stageText = (progress) => (progress?.stage ? STAGES[progress.stage] ?? words(progress.stage) : "Starting");
+export const stageText = (progress) => (progress?.stage ? STAGES[progress.stage] ?? asWords(progress.stage) : "Starting");
 
 /** Return how much of a job is done, from 0 to 1; null where nobody knows. */
 export function share(job) {

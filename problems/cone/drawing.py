@@ -1,0 +1,160 @@
+"""Drawing of a cone clutch: section through both shells and the lining, engaged, and a detail of the friction face.
+
+Walls are measured across the friction face, and the outer cone is turned to the outside diameter that is computed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from problems.drawing_parts import SHAFT_OUT, Sizes, envelope, shaft_end
+from synth.drawing import (
+    XY,
+    Angle,
+    Area,
+    Balloon,
+    Detail,
+    Dimension,
+    Drawable,
+    Drawing,
+    Hatch,
+    Item,
+    Slant,
+    Vertex,
+    View,
+    diameter,
+)
+
+INNER, LINING, OUTER = 1, 2, 3
+
+
+class _Face:
+    """The friction face from its narrow end at x = 0, and surfaces beside it [mm]."""
+
+    def __init__(self, size: Sizes) -> None:
+        self.angle = size.number("cone_half_angle")
+        self.long = size("generator_length")
+        self.wide = self.long * math.cos(self.angle)
+        self.narrow_radius = size("narrow_end_diameter") / 2
+
+    def at(self, x: float, apart: float = 0.0) -> XY:
+        """Return the point above x of the surface that is ``apart`` from the face, positive outwards."""
+        return x, self.narrow_radius + x * math.tan(self.angle) + apart / math.cos(self.angle)
+
+    def across(self, x: float, apart: float) -> XY:
+        """Return the point that is ``apart`` from that of the face above x, across the face."""
+        x0, y0 = self.at(x)
+        return x0 - apart * math.sin(self.angle), y0 + apart * math.cos(self.angle)
+
+    def layer(self, low: float, high: float) -> tuple[Vertex, ...]:
+        """Return what lies between two such surfaces, cut off square at both ends."""
+        return self.at(0.0, low), self.at(self.wide, low), self.at(self.wide, high), self.at(0.0, high)
+
+
+def cone_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+    """Return the drawing of a cone clutch.
+
+    Parameters
+    ----------
+    spec : mapping
+        What the hook is told.
+    design : Design
+        The design.
+    complete : bool
+        Whether mass and length are those of the whole clutch, so that the shaft is known.
+    """
+    size = Sizes(spec, design)
+    face = _Face(size)
+    wall, lining = size("shell_thickness"), size("friction_pair.lining_thickness")
+    across = size("outer_diameter") / 2
+    shapes: list[Drawable] = [
+        Area(face.layer(-wall, 0.0), INNER),
+        Area(face.layer(0.0, lining), LINING),
+        Area(_turned_outside(face, lining, wall, across), OUTER),
+    ]
+    start = (face.wide - size("length")) / 2
+    shapes += envelope(start, start + size("length"), 0.0, across)
+    middle = face.wide / 2
+    dimensions = [
+        Dimension((start, across), (start + size("length"), across), "length", "top"),
+        diameter(start + size("length"), across, "outer_diameter"),
+        diameter(face.wide, face.at(face.wide)[1], "wide_end_diameter"),
+        diameter(middle, face.at(middle)[1], "mean_diameter", side="left"),
+        diameter(0.0, face.narrow_radius, "narrow_end_diameter", side="left"),
+    ]
+    omitted = ["spring, release gear and bearings"]
+    if complete:
+        shaft = size("shaft_diameter") / 2
+        end = start + size("length")
+        shapes += shaft_end(start, end, shaft, broken=2 * shaft * SHAFT_OUT)
+        dimensions.append(diameter(start, shaft, "shaft_diameter", side="left"))
+        omitted.insert(0, "webs and bosses that carry the cones: the model knows their masses and the room they take")
+    else:
+        omitted.insert(0, "webs, hubs and shaft: mass is that of the shells and the lining")
+    if str(design.parts["cone_layout"]["force_closed"]) not in ("0", "0.0"):
+        omitted.append("the second cone, which closes the force inside: the model counts it as a factor of the mass")
+    view = View(
+        "Section",
+        tuple(shapes),
+        tuple(dimensions),
+        (
+            Balloon(_mirrored(face.at(middle, -wall / 2)), INNER, "bottom"),
+            Balloon(_mirrored(face.at(face.wide * 0.2, lining / 2)), LINING, "bottom"),
+            Balloon(_mirrored(face.at(face.wide * 0.75, lining + wall * 0.45)), OUTER, "bottom"),
+        ),
+        (_detail(face, wall, lining, across),),
+        revolved=True,
+    )
+    return Drawing(
+        "cones, engaged",
+        (view,),
+        (
+            Item(INNER, "Inner cone, shell", 1, "steel", hatch=Hatch.RIGHT),
+            Item(LINING, "Lining", 1, size.part("friction_pair"), "drawn on the outer cone", Hatch.CROSS),
+            Item(OUTER, "Outer cone, shell", 1, "steel", hatch=Hatch.LEFT),
+        ),
+        omitted=tuple(omitted),
+        remarks=(
+            "Double-dot-dash lines are neighbours and envelopes: the length that the layout takes, which is a typical "
+            "value; where the cones stand in it is assumed.",
+            "Masses are computed with the friction face for the area of both shells, not from these sections.",
+        ),
+    )
+
+
+def _turned_outside(face: _Face, lining: float, wall: float, across: float) -> tuple[Vertex, ...]:
+    """Return the section of the outer cone, turned to the outside diameter where its wall would reach beyond."""
+    bottom = face.at(0.0, lining), face.at(face.wide, lining)
+    outside = lining + wall
+    top = face.at(0.0, outside)
+    corner = (across - top[1]) / math.tan(face.angle)
+    if corner <= 0:
+        return (*bottom, (face.wide, across), (0.0, across))
+    if corner >= face.wide:
+        return face.layer(lining, outside)
+    return (*bottom, (face.wide, across), (corner, across), top)
+
+
+def _detail(face: _Face, wall: float, lining: float, across: float) -> Detail:
+    """Return the detail of the friction face, with what is measured along and across it."""
+    low = face.at(0.0, -wall)
+    edge = 0.06 * face.long
+    window = (-edge, low[1] - edge, face.wide + edge, across + edge)
+    first, last = low, face.at(face.wide, -wall)
+    return Detail(
+        "X",
+        window,
+        (
+            Slant(first, last, "generator_length", apart=-24.0),
+            Angle(first, (face.wide, first[1]), last, "cone_half_angle", radius=28.0),
+            Slant(face.at(face.wide), face.across(face.wide, -wall), "shell_thickness", apart=12.0),
+            Slant(face.at(0.0), face.across(0.0, lining), "friction_pair.lining_thickness", apart=10.0),
+        ),
+        least=min(lining, face.long / 28),
+    )
+
+
+def _mirrored(point: XY) -> XY:
+    return point[0], -point[1]

@@ -1,0 +1,74 @@
+"""What drawings of several families have: sizes in millimetres by name, rings, shaft ends and bosses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Any
+
+from synth.drawing import Area, Drawable, Line, LineKind, rectangle
+
+MM = 1e3  # from SI
+SHAFT_OUT = 0.25  # of its diameter: how far a shaft is drawn beyond what sits on it
+
+
+class Sizes:
+    """Sizes of a design in millimetres, by the names that dimensions use.
+
+    Parameters
+    ----------
+    spec : mapping
+        What the hook is told: requirements in SI.
+    design : Design
+        The design.
+    """
+
+    def __init__(self, spec: Mapping[str, Any], design: Any) -> None:
+        self.spec, self.design = spec, design
+
+    def __call__(self, name: str) -> float:
+        """Return a length [mm]: of a value, a step, a requirement, or a column of a part (``slot.column``)."""
+        return MM * self.number(name)
+
+    def number(self, name: str) -> float:
+        """Return a quantity in SI."""
+        slot, _, column = name.partition(".")
+        if column:
+            return float(self.design.parts[slot][column])
+        for numbers in (self.design.values, self.spec):
+            if numbers.get(name) is not None:
+                return float(numbers[name])
+        return float(self.design.steps[name])
+
+    def count(self, name: str) -> int:
+        """Return a number of things."""
+        return round(self.number(name))
+
+    def part(self, slot: str) -> str:
+        """Return the designation of the row that fills a slot; empty without such a slot."""
+        return str(self.design.parts[slot]) if slot in self.design.parts else ""
+
+
+def ring(x0: float, x1: float, inner: float, outer: float, item: int) -> Area:
+    """Return the section of a ring between two places along the axis and two radii [mm]."""
+    return Area(rectangle(x0, x1, inner, outer), item)
+
+
+def shaft_end(x0: float, x1: float, radius: float, *, broken: float) -> tuple[Drawable, ...]:
+    """Return the end of a shaft as a neighbour: it ends at x0 and goes on beyond x1 [mm]; ``radius`` is half of it.
+
+    ``broken`` is how far it is drawn beyond x1.
+    """
+    out = x1 + broken if x1 > x0 else x1 - broken
+    edge = LineKind.PHANTOM
+    return Line((x0, radius), (out, radius), edge), Line((x0, 0.0), (x0, radius), edge)
+
+
+def envelope(x0: float, x1: float, inner: float, outer: float) -> tuple[Drawable, ...]:
+    """Return room that something takes whose shape the model does not know: a rectangle of phantom lines [mm].
+
+    What reaches to the axis has no line there.
+    """
+    corners = [(x1, inner), (x1, outer), (x0, outer), (x0, inner)]
+    corners += [(x1, inner)] if inner > 0 else []
+    return tuple(Line(p, q, LineKind.PHANTOM) for p, q in pairwise(corners))

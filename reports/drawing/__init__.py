@@ -1,0 +1,1 @@
+"""Drawings on paper: one layout, written as SVG and as DXF."""

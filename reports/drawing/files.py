@@ -1,0 +1,38 @@
+"""Drawings as files: SVG and DXF of one layout."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reports.about import About
+from reports.drawing.dxf import drawing_dxf
+from reports.drawing.page import paper_sheet
+from reports.drawing.svg import drawing_svg
+from synth.drawing import Drawing
+
+
+def svg_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str:
+    """Return a drawing as an SVG file.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    title : str
+        Of the family.
+    program : str
+        What computed the design, with its version.
+    about : About or mapping, optional
+        What the title block tells.
+    """
+    return drawing_svg(paper_sheet(drawing, title, program, About.of(about)), drawing)
+
+
+def dxf_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str:
+    """Return a drawing as a DXF file; parameters as for :func:`svg_of`.
+
+    Raises
+    ------
+    InputError
+        The extra is not installed.
+    """
+    return drawing_dxf(paper_sheet(drawing, title, program, About.of(about)), drawing)

@@ -1,0 +1,214 @@
+"""The sheet of a drawing: its size, the scale, and the places of views and details.
+
+Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand to the left of title block and parts list or
+above them, whichever lets them be larger; details are as large as their room allows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from reports.about import About
+from reports.drawing.paper import PaperSheet, PlacedView, Stroke
+from reports.drawing.sheet_blocks import (
+    BLOCK,
+    NOTE,
+    WIDE,
+    Written,
+    list_height,
+    note_lines,
+    notes,
+    parts_list,
+    title_block,
+)
+from reports.drawing.view_places import placed_detail, placed_view
+from synth.drawing import Box2, Detail, Drawing, LineKind, View
+
+SHEETS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0)}
+FILING, MARGIN = 20.0, 10.0  # left, and around (ISO 5457)
+SCALES = tuple(sorted((n * 10.0**e for e in (-2, -1, 0, 1) for n in (1, 2, 5)), reverse=True))
+STANDARD = tuple(s for s in SCALES if s <= 50)
+LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
+ROOM = 6.0  # around a view
+PLAIN = 2.5  # mm on paper of the thinnest part of a detail
+
+
+@dataclass(frozen=True)
+class _Block:
+    """A view or a detail that is to be placed: how it looks at a place."""
+
+    make: Callable[[float, float], PlacedView]
+    region: Box2  # with the origin of the part at (0, 0)
+    aligned: bool  # whether it stands in one row with others by its axis
+
+    @property
+    def wide(self) -> float:
+        return self.region[2] - self.region[0] + 2 * ROOM
+
+    @property
+    def up(self) -> float:
+        return (self.region[3] if self.aligned else (self.region[3] - self.region[1]) / 2) + ROOM
+
+    @property
+    def down(self) -> float:
+        return (-self.region[1] if self.aligned else (self.region[3] - self.region[1]) / 2) + ROOM
+
+
+def paper_sheet(drawing: Drawing, title: str, program: str, about: About | None = None) -> PaperSheet:
+    """Return a drawing on a sheet: the smallest that shows it large enough.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    title : str
+        Of the family.
+    program : str
+        What made it, with its version.
+    about : About, optional
+        What the title block tells.
+    """
+    about = about or About()
+    for name in SHEETS:
+        found = _on_sheet(drawing, title, program, about, name)
+        if found is not None:
+            return found
+    raise ValueError("the drawing fits no sheet")
+
+
+def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: str) -> PaperSheet | None:
+    size = SHEETS[name]
+    frame = (FILING, MARGIN, size[0] - MARGIN, size[1] - MARGIN)
+    left = frame[2] - frame[0] - WIDE
+    if left < 60:
+        return None  # the title block takes the whole width
+    lines = note_lines(drawing, left - 4)
+    low, right = NOTE * len(lines) + 4, BLOCK + list_height(drawing.items)
+    if max(low, right) > frame[3] - frame[1] - 60:
+        return None
+    largest = max(max(b[2] - b[0], b[3] - b[1]) for b in (view.box for view in drawing.views))
+    for scale in STANDARD:
+        if scale * largest < LARGE_ENOUGH[name] and not scale == STANDARD[0]:
+            return None
+        views = _placed(drawing, scale, frame, low, right)
+        if views is not None:
+            break
+    else:
+        return None
+    written = [
+        parts_list(drawing.items, frame[2], frame[1] + BLOCK),
+        title_block(drawing, title, program, about, scale, name, frame[2], frame[1]),
+        notes(lines, frame[0] + 3, frame[1]),
+    ]
+    border = Stroke(
+        ((frame[0], frame[1]), (frame[2], frame[1]), (frame[2], frame[3]), (frame[0], frame[3])),
+        LineKind.OUTLINE,
+        wide=0.7,
+        closed=True,
+    )
+    everything = Written(
+        (border, *(s for w in written for s in w.strokes)),
+        tuple(t for w in written for t in w.texts),
+        tuple(r for w in written for r in w.rings),
+    )
+    boxes = (
+        (frame[2] - WIDE, frame[1], frame[2], frame[1] + right),
+        (frame[0], frame[1], frame[2] - WIDE, frame[1] + low),
+    )
+    return PaperSheet(
+        name, size, scale, f"{title}: {drawing.title}", frame, everything.strokes, everything.rings, everything.texts,
+        tuple(views), boxes,
+    )  # fmt: skip
+
+
+def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: float) -> list[PlacedView] | None:
+    """Return all views and details in their places at a scale; None where there is no room."""
+    named = len(drawing.views) > 1
+    views = [_view_block(view, scale, named) for view in drawing.views]
+    details = [(view, detail) for view in drawing.views for detail in view.details]
+    x0, y0, x1, y1 = frame
+    beside = (x0, y0 + low, x1 - WIDE, y1), (x1 - WIDE, y0 + right, x1, y1)
+    band = (x0, y0 + max(low, right), x1, y1)
+    least = 2 * scale if scale < 20 else scale
+    for enlarged in (s for s in STANDARD if s >= least):
+        magnified = [_detail_block(view, detail, _wanted(detail, enlarged, scale)) for view, detail in details]
+        for first in range(len(views), 0, -1):
+            places = [(beside[0], views[:first]), (beside[1], [*views[first:], *magnified])]
+            found = _filled(places)
+            if found is not None:
+                return found
+        found = _filled([(band, [*views, *magnified])])
+        if found is not None:
+            return found
+        # Details may stand under each other at the left where the views do not need all of it.
+        found = _filled([(beside[0], [*views, *magnified])])
+        if found is not None:
+            return found
+    return None
+
+
+def _wanted(detail: Detail, enlarged: float, scale: float) -> float:
+    """Return the scale of a detail: no larger than what makes its thinnest part plain."""
+    if detail.least is None:
+        return enlarged
+    plain = [s for s in STANDARD if s * detail.least >= PLAIN and s > scale]
+    return min(enlarged, min(plain, default=enlarged))
+
+
+def _view_block(view: View, scale: float, named: bool) -> _Block:
+    def make(x: float, y: float) -> PlacedView:
+        return placed_view(view, scale, (x, y), named=named)
+
+    return _Block(make, make(0, 0).region, aligned=True)
+
+
+def _detail_block(view: View, detail: Detail, scale: float) -> _Block:
+    def make(x: float, y: float) -> PlacedView:
+        return placed_detail(view, detail, scale, (x, y))
+
+    return _Block(make, make(0, 0).region, aligned=False)
+
+
+def _filled(places: Sequence[tuple[Box2, Sequence[_Block]]]) -> list[PlacedView] | None:
+    """Return blocks in their rooms; None where one does not fit."""
+    found: list[PlacedView] = []
+    for room, blocks in places:
+        if not blocks:
+            continue
+        rows = _rows(blocks, room[2] - room[0])
+        if rows is None:
+            return None
+        high = sum(max(b.up for b in row) + max(b.down for b in row) for row in rows)
+        spare = room[3] - room[1] - high
+        if spare < 0:
+            return None
+        found += _set(rows, room, spare)
+    return found
+
+
+def _rows(blocks: Sequence[_Block], wide: float) -> list[list[_Block]] | None:
+    """Return blocks in rows that are no wider than the room, in their order."""
+    rows: list[list[_Block]] = [[]]
+    for block in blocks:
+        if block.wide > wide:
+            return None
+        if rows[-1] and sum(b.wide for b in rows[-1]) + block.wide > wide:
+            rows.append([])
+        rows[-1].append(block)
+    return rows
+
+
+def _set(rows: Sequence[Sequence[_Block]], room: Box2, spare: float) -> Iterator[PlacedView]:
+    """Return rows one below the other, what is left of the room shared among them."""
+    top = room[3]
+    for row in rows:
+        up, down = max(b.up for b in row), max(b.down for b in row)
+        share = spare / (len(rows) + 1)
+        line = top - share - up
+        left_over = (room[2] - room[0] - sum(b.wide for b in row)) / (len(row) + 1)
+        x = room[0] + left_over
+        for block in row:
+            middle = 0.0 if block.aligned else (block.region[1] + block.region[3]) / 2
+            yield block.make(x + ROOM - block.region[0], line - middle)
+            x += block.wide + left_over
+        top = line - down

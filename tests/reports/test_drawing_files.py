@@ -1,0 +1,138 @@
+"""Drawings as files: DXF that other programs read, SVG in reports, and what is told where there is none."""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import replace
+
+import pytest
+
+import synth
+from reports.drawing.dxf import dxf_document
+from reports.drawing.files import dxf_of, svg_of
+from reports.drawing.page import paper_sheet
+from synth.analysis.drawing import drawing_of
+from synth.analysis.reporting import explored, report
+from synth.drawing import (
+    Angle,
+    Area,
+    Balloon,
+    Circle,
+    Detail,
+    Dimension,
+    Drawing,
+    Item,
+    Line,
+    LineKind,
+    Radius,
+    Slant,
+    View,
+    diameter,
+    disc,
+    rectangle,
+)
+from synth.errors import InputError
+
+pytestmark = pytest.mark.slow
+
+ezdxf = pytest.importorskip("ezdxf")
+
+
+@pytest.fixture(scope="module")
+def front():
+    return synth.synthesize(
+        "multi_plate_clutch",
+        {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"},
+        parts={"friction_pair": ["paper_wet"], "inner_plate": ["core 2.5"], "outer_plate": ["core 1.8", "core 2"]},
+        fix={"ramp_time": "2 s"},
+        points=2,
+    )
+
+
+def everything() -> Drawing:
+    """Return a drawing with one of all that there is."""
+    ring = Area(rectangle(0, 20, 15, 40), 1)
+    section = View(
+        "Section", (ring, Line((-4, 0), (-4, 30), LineKind.PHANTOM)),
+        (Dimension((0, 40), (20, 40), "length", "top"), diameter(20, 40, "outer"),
+         Slant((0, 15), (20, 40), "slope", apart=40.0), Angle((20, 0), (30, 0), (30, 10), "chi", radius=30.0)),
+        (Balloon((10, -30), 1, "bottom"),),
+        (Detail("X", (0, 35, 5, 41), (Dimension((0, 40), (0.04, 40), "thin", "top"),), least=0.5),),
+        revolved=True,
+    )  # fmt: skip
+    front = View(
+        "Front view",
+        (Area(disc((0, 0), 30), 2, holes=(disc((0, 0), 10),), depth=4.0), Circle((0, 0), 20, LineKind.CENTRE)),
+        (Radius((0, 0), 20, "r"), Radius((0, 0), 10, "d", angle=200, diameter=True, times=2)),
+        (Balloon((0, -25), 2, "bottom"),),
+    )
+    return Drawing("all", (section, front), (Item(1, "Ring"), Item(2, "Disc")), ("nothing",))
+
+
+def test_dxf_is_sound_and_measures_what_is_drawn():
+    drawing = everything()
+    document = dxf_document(paper_sheet(drawing, "Clutch", "program"), drawing)
+    audit = document.audit()
+    assert (audit.errors, audit.fixes) == ([], [])
+    measured = sorted(e.get_measurement() for e in document.modelspace().query("DIMENSION"))
+    wanted = [d.measure * (180 / 3.141592653589793 if isinstance(d, Angle) else 1) for d in drawing.measured]
+    assert measured == pytest.approx(sorted(wanted), rel=1e-9)
+
+
+def test_dxf_has_layers_line_types_and_viewports():
+    drawing = everything()
+    sheet = paper_sheet(drawing, "Clutch", "program")
+    document = ezdxf.read(io.StringIO(dxf_of(drawing, "Clutch", "program")))
+    assert document.units == 4
+    weights = {layer.dxf.name: layer.dxf.lineweight for layer in document.layers}
+    assert (weights["OUTLINE"], weights["CENTRE"], weights["DIMENSION"]) == (50, 25, 25)
+    assert document.layers.get("CENTRE").dxf.linetype == "CENTRE"
+    ports = [v for v in document.layout("Sheet").query("VIEWPORT") if v.dxf.id != 1]
+    assert len(ports) == len(drawing.views) + 2 * 1  # a detail has one for its window and one for its dimensions
+    scales = {round(v.dxf.height / v.dxf.view_height, 6) for v in ports}
+    assert scales == {round(v.scale, 6) for v in sheet.views}
+    for port in ports:  # each view shows the dimensions of no other
+        shown = {x.dxf.name for x in document.layers if x.dxf.name.startswith("DIMENSION")} - set(port.frozen_layers)
+        assert len(shown) <= 1
+
+
+def test_the_same_design_gives_the_same_files(front, tmp_path):
+    for word in ("a", "b"):
+        report(front, tmp_path / word, formats=["svg", "dxf"])
+    for name in ("design_01_drawing.svg", "design_01_drawing.dxf"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_dimensions_say_their_quantity_in_svg(front):
+    design = front.designs[0]
+    drawing = drawing_of(synth.load("multi_plate_clutch"), design)
+    text = svg_of(drawing, design.frame.title, "program", {"project": "Hoist 7", "author": "Á. Őri <b>"})
+    told = dict(re.findall(r'data-quantity="([^"]+)" data-measure="([^"]+)"', text))
+    assert float(told["length"]) == pytest.approx(design.values["length"] * 1e3, rel=1e-12)
+    assert float(told["drum_wall"]) == pytest.approx(6.0)
+    assert "Hoist 7" in text
+    assert "Á. Őri &lt;b&gt;" in text
+
+
+def test_sheets_and_the_explorer_show_the_drawing(front, tmp_path):
+    report(front, tmp_path, formats=["html", "svg", "explorer"])
+    sheet = (tmp_path / "design_01_sheet.html").read_text()
+    assert "Not part of the model, not drawn:" in sheet
+    assert "design_01_drawing.svg" in (tmp_path / "explorer.html").read_text()
+    assert explored(front)["designs"][0]["drawing"].startswith("<svg")
+
+
+def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
+    design = front.designs[0]
+    old = replace(design, steps=type(design.steps)({k: v for k, v in design.steps.items() if k != "release_gap"}))
+    _, names, notes = report(replace(front, designs=(old,)), tmp_path, formats=["html", "svg"])
+    assert names == ["report.html", "design_01_sheet.html"]
+    assert [note for note in notes if note.startswith("no drawing of design #1: design: release_gap: is missing")]
+
+
+def test_the_extra_is_named_where_it_is_missing(front, tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "ezdxf", None)
+    with pytest.raises(InputError, match=r"^--dxf needs the extra dxf: pip install 'clutchsynth\[dxf\]'$"):
+        report(front, tmp_path, formats=["dxf"])
+    assert list(tmp_path.iterdir()) == []
