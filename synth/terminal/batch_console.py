@@ -164,7 +164,7 @@ def print_summary(
     """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
     say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
-    _print_rows(rows, total)
+    _print_rows(rows, counts)
     if stopped:
         say(f"stopped: {stopped}; what was found is saved, the same command goes on")
     tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
@@ -179,12 +179,18 @@ def shown_rows(store: Store, job: str, counts: Mapping[str, int]) -> list[RowOut
     return list(islice((row for row in row_outcomes(store, job) if row.status in WITHOUT), FIRST))
 
 
-def _print_rows(rows: Sequence[RowOutcome], total: int) -> None:
+def _print_rows(rows: Sequence[RowOutcome], counts: Mapping[str, int]) -> None:
     """Print a line per row: its name, how it stands, and the leading design or the reason why there is none."""
     if not rows:
         return
     console = output()
-    console.print("\nthe first of those without a design" if len(rows) < total else "")
+    without = sum(counts.get(status, 0) for status in WITHOUT)
+    if sum(counts.values()) <= MOST_ROWS:
+        console.print()
+    elif without > len(rows):
+        console.print(f"\nthe first {len(rows)} of {thousands(without)} without a design; rows.csv has them all")
+    else:
+        console.print("\nwithout a design")
     named = next(iter(rows[0].carried), "")
     objectives = list(dict.fromkeys(heading for row in rows for heading in row.objectives))
     shared = in_common([row.made for row in rows if row.made])

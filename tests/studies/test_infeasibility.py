@@ -124,7 +124,7 @@ def test_a_refusal_is_explained_with_amounts() -> None:
     assert guard.sense == "at_least"
     assert (guard.value, guard.needed) == pytest.approx((0.010, 0.030))
     assert guard.missed_by == pytest.approx(2 / 3)
-    assert guard.lifted_by == {"room": "30.01 mm", "least": "9.999 mm"}
+    assert guard.lifted_by == {"room": "30.0001 mm", "least": "9.99999 mm"}
     assert why.conflict == ()
     assert "room is 10 mm where more than 30 mm is needed (missed by 66.7 %)" in why.message
     rows = explained("refused for every row")
@@ -154,7 +154,7 @@ def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) ->
     spec, why = question("refused on its edge"), explained("refused on its edge")
     told = json.loads(why.save(tmp_path)[1].read_text(encoding="utf-8"))
     assert told["refused"][0]["missed_by"] == 0
-    assert told["refused"][0]["lifted_by"] == {"room": "30.01 mm", "least": "29.99 mm"}
+    assert told["refused"][0]["lifted_by"] == {"room": "30.0001 mm", "least": "29.9999 mm"}
     assert [way["patch"] for way in told["ways"]] == [way.patch for way in why.ways]
     assert is_feasible(patched(spec, told["ways"][0]["patch"]))
 
