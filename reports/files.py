@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from reports.about import About
 from reports.comparison_report import comparison_report
+from reports.drawing.bodies import glb_of, left_out, round_areas, step_of
 from reports.drawing.files import dxf_of, svg_of
 from reports.explorer.comparison import comparison_record
 from reports.explorer.page import explorer_page
@@ -27,8 +28,9 @@ from synth.errors import InputError
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 
-FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf")
-MAKERS = {"svg": svg_of, "dxf": dxf_of}  # of drawings
+FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf", "step", "glb")
+BODIES = {"step": step_of, "glb": glb_of}  # of what is round in drawings
+MAKERS: Mapping[str, Callable[..., str | bytes]] = {"svg": svg_of, "dxf": dxf_of, **BODIES}  # of drawings
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,8 @@ class ReportRequest:
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``,
+        ``step``, ``glb``.
     length : {"summary", "normal", "full"}
         Of the sheets.
     about : About
@@ -185,7 +188,11 @@ class _Files:
 
     def _drawing_files(self, rank: int, name: str) -> dict[str, str]:
         """Return the names of the drawings of a design that are asked for, by what they are."""
-        words = [word for word in MAKERS if word in self.request.formats and rank in self.request.drawings]
+        drawing = self.request.drawings.get(rank)
+        if drawing is None:
+            return {}
+        none = () if round_areas(drawing) else BODIES
+        words = [word for word in MAKERS if word in self.request.formats and word not in none]
         return {word: f"{name}_drawing.{word}" for word in words}
 
     def _explorer(self, front: ParetoFront, sheets: Mapping[int, str], names: Mapping[int, str]) -> str:
@@ -230,6 +237,17 @@ class _Files:
             )
         for word, file in self._drawing_files(design.rank or 0, name).items():
             self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
+        if drawing is not None and any(word in BODIES for word in request.formats):
+            self._tell_left_out(drawing)
+
+    def _tell_left_out(self, drawing: Drawing) -> None:
+        """Tell which parts of a drawing are not among its bodies."""
+        names = ", ".join(item.name for item in left_out(drawing))
+        if not round_areas(drawing):
+            names = f"all parts ({names})"
+        note = f"STEP and glTF are without {names}: only parts that are round about the axis are bodies"
+        if names and note not in self.notes:
+            self.notes.append(note)
 
 
 def chosen_by(front: ParetoFront, words: Sequence[str]) -> list[Design]:

@@ -9,8 +9,10 @@ from problems import practice
 from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, TYPICAL
 from problems.wrap_spring import blocks, body, curves, formulas
+from problems.wrap_spring import drawing as wrap_spring
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -267,6 +269,11 @@ class ActuatedWrapSpringClutch(DesignProblem):
                 text="Control collar around the spring",
                 source="geometry",
             )
+            for name, value, symbol, text in (
+                ("spring_diameter", spring.diameter, "D_sp", "Outside of the closed coils, d_h + 2 a"),
+                ("collar_bore", spring.diameter + 4 * clearance, "d_col", "Inside of the control collar, D_sp + 4 c"),
+            ):
+                d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
         if rules is not None:
             body.limit_spring(d, rules=rules, wire=wire, coils=coils)
             self._declare_tang(d, rules=rules, wire=wire, coils=coils, actuator=actuator)
@@ -301,6 +308,15 @@ class ActuatedWrapSpringClutch(DesignProblem):
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through hubs, spring and collar, engaged, and a detail of the coils."""
+        return wrap_spring.clearance_drawing(
+            spec,
+            design,
+            complete=self.option("mass_scope") == "complete",
+            seed=self.option("model") == "seed",
+        )
 
     def _name_fit(
         self,

@@ -696,6 +696,16 @@ def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_c
     hubs = formulas.hub_mass(duty.hub_density, coils.hub_diameter, duty.bore_diameter, length)
     d.step("spring_mass", "kg", spring, symbol="m_sp", text="Spring", source="geometry")
     d.step("hub_mass", "kg", hubs, symbol="m_hub", text="Both hubs under the spring", source="geometry")
+    pitch = wire.width + duty.coil_gap
+    for name, value, symbol, text in (
+        ("coil_pitch", pitch, "p_c", "From coil to coil, b + g_c"),
+        ("grip_length", coils.per_hub * pitch, "L_n", "Length of the coils on one hub, n p_c"),
+        ("gap_length", duty.gap_coils * pitch, "L_gap", "Length of the coils over the gap, n_gap p_c"),
+    ):
+        d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
+    if fixed_coils is not None:
+        text = "Length of the coils anchored on the second hub, n_fix p_c"
+        d.step("fixed_length", "mm", fixed_coils * pitch, symbol="L_fix", text=text, source="geometry")
     return Size(
         mass=spring + hubs,
         length=length,

@@ -89,6 +89,11 @@ def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring
     name_shaft_end(d, duty.bore_diameter)
     bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, wants.hub_factor)
     d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Both bosses beyond the spring", source="geometry")
+    for name, value, symbol, text in (
+        ("boss_diameter", wants.hub_factor * duty.bore_diameter, "d_boss", "Outside of a boss"),
+        ("boss_length", shaft_formulas.BOSS_LENGTH * duty.bore_diameter, "L_boss", "Length of a boss"),
+    ):
+        d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
     d.advise(
         "thin_shaft",
         duty.bore_diameter < THIN * wants.bore(duty),

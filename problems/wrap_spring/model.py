@@ -11,8 +11,10 @@ from problems import practice, wear
 from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from problems.wrap_spring import blocks, body, curves, formulas
+from problems.wrap_spring import drawing as wrap_spring
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -313,6 +315,15 @@ class WrapSpringClutch(DesignProblem):
         if design is None:
             return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
         return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through hubs and spring, and a detail of the coils."""
+        return wrap_spring.interference_drawing(
+            spec,
+            design,
+            complete=self.option("mass_scope") == "complete",
+            seed=self.option("model") == "seed",
+        )
 
     def _refuse_drag(self, d: Declaration, *, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
         """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""

@@ -54,7 +54,8 @@ def report(
     full : int
         Designs that the front report tells in full.
     formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``.
+        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``,
+        ``step``, ``glb``.
     about : mapping, optional
         Project, customer, number, author, date, ...
     length : {"summary", "normal", "full"}
@@ -160,7 +161,7 @@ class ReportOptions:
     @property
     def draws(self) -> bool:
         """Whether files of drawings are asked for."""
-        return bool({"svg", "dxf"} & set(self.formats))
+        return bool({"svg", "dxf", "step", "glb"} & set(self.formats))
 
     def asked(self) -> dict[str, Any]:
         """Return it as reports take it."""

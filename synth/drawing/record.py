@@ -67,7 +67,7 @@ class View:
     dimensions, balloons, details : tuple
     revolved : bool
         Whether the view is a section through the axis y = 0, of which shapes show the upper half: it is drawn on the
-        other side as well, with its centre line.
+        other side as well, with its centre line. Areas that are ``half`` stand where they are written alone.
     """
 
     name: str
@@ -82,14 +82,14 @@ class View:
         """All shapes; of a section through the axis those of the other half and the centre line as well."""
         if not self.revolved:
             return self.shapes
-        other = tuple(mirrored(shape) for shape in self.shapes)
+        other = tuple(mirrored(shape) for shape in self.shapes if not (isinstance(shape, Area) and shape.half))
         left, _, right, _ = box_of([p for shape in self.shapes for p in points_of(shape)])
         return (*self.shapes, *other, Line((left, 0.0), (right, 0.0), LineKind.CENTRE))
 
     @cached_property
     def behind(self) -> tuple[tuple[float, float], ...]:
         """Where edges are seen behind a section through the axis: place along the axis and radius [mm]."""
-        return tuple(edges_behind(self.areas)) if self.revolved else ()
+        return tuple(edges_behind([area for area in self.areas if not area.half])) if self.revolved else ()
 
     @cached_property
     def box(self) -> Box2:
@@ -98,7 +98,7 @@ class View:
 
     @property
     def areas(self) -> tuple[Area, ...]:
-        """The areas, of a section through the axis those of its upper half."""
+        """The areas, of a section through the axis those of its upper half and halves of coils."""
         return tuple(shape for shape in self.shapes if isinstance(shape, Area))
 
 

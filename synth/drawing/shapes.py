@@ -44,6 +44,9 @@ class Area:
         Boundaries of openings.
     depth : float, optional
         Of a front view: how far the part reaches along the axis [mm]. None: the area is revolved about y = 0.
+    half : bool
+        Whether it goes half around the axis only, so that a section has it on the side where it is written and not on
+        the other: coils of a helix.
     """
 
     outline: tuple[Vertex, ...]
@@ -51,6 +54,7 @@ class Area:
     cut: bool = True
     holes: tuple[tuple[Vertex, ...], ...] = ()
     depth: float | None = None
+    half: bool = False
 
     @property
     def volume(self) -> float:
@@ -58,7 +62,9 @@ class Area:
         told = [moments(self.outline), *(moments(hole) for hole in self.holes)]
         column = 1 if self.depth is None else 0
         net = abs(told[0][column]) - sum(abs(m[column]) for m in told[1:])
-        return net * (2 * math.pi if self.depth is None else self.depth)
+        if self.depth is not None:
+            return net * self.depth
+        return net * (math.pi if self.half else 2 * math.pi)
 
 
 @dataclass(frozen=True)

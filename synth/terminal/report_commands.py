@@ -37,6 +37,9 @@ def report(
     as_xlsx: Annotated[bool, typer.Option("--xlsx", help="Live workbooks and designs.xlsx (extra excel).")] = False,
     as_svg: Annotated[bool, typer.Option("--drawing", help="Drawings of the chosen designs, as SVG.")] = False,
     as_dxf: Annotated[bool, typer.Option("--dxf", help="The same drawings for CAD, as DXF (extra dxf).")] = False,
+    as_step: Annotated[
+        bool, typer.Option("--step", help="Round parts of the drawings as bodies, STEP and glTF (extra step).")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Sheets for programs as well.")] = False,
     about: Annotated[
         Path | None, typer.Option(help="YAML: project, customer, number, author, date, ...", metavar="FILE")
@@ -55,6 +58,8 @@ def report(
         ("xlsx", as_xlsx),
         ("svg", as_svg),
         ("dxf", as_dxf),
+        ("step", as_step),
+        ("glb", as_step),
         ("json", as_json),
     )
     asked: dict[str, Any] = {

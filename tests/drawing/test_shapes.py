@@ -66,3 +66,14 @@ def test_what_is_measured_is_what_is_drawn():
     assert Angle((0, 0), (1, -1), (1, 1), "a").measure == pytest.approx(math.pi / 2)
     view = View("section", (Area(rectangle(0, 20, 15, 40), 1),), revolved=True)
     assert view.box == (0, -40, 20, 40)
+
+
+def test_halves_of_coils_stand_on_one_side_and_weigh_half_a_ring():
+    tube = Area(rectangle(0, 20, 15, 40), 1)
+    upper = Area(rectangle(0, 2, 40, 43), 2, half=True)
+    lower = Area(rectangle(2, 4, -43, -40), 2, half=True)
+    view = View("section", (tube, upper, lower), revolved=True)
+    assert [a for a in view.drawn if isinstance(a, Area) and a.item == 2] == [upper, lower]
+    assert view.behind == ((0, 15), (20, 15))
+    assert upper.volume == pytest.approx(Area(rectangle(0, 2, 40, 43), 2).volume / 2)
+    assert lower.volume == pytest.approx(upper.volume)
