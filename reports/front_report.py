@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reports.about import About
@@ -98,6 +98,13 @@ def front_report(request: FrontReportRequest) -> Document:
     return _Report(request).document()
 
 
+def first_design(request: FrontReportRequest) -> list[Block]:
+    """Return of a report of a front what it tells of its designs, the first in full, and of the task."""
+    told = _Report(replace(request, full=1))
+    several = told.ranked() if len(request.front.designs) > 1 else []
+    return [*several, *(block for design in told.full for block in told.design(design)), *told.task()]
+
+
 class _Report:
     def __init__(self, request: FrontReportRequest) -> None:
         self.request, self.front, self.calculation = request, request.front, request.calculation
@@ -110,10 +117,10 @@ class _Report:
         blocks: list[Block] = [State(level, head, tuple(front_details(self.front)))]
         if not self.front.designs:
             blocks += self._nothing()
-        blocks += self._ranked() if self.front.designs else []
+        blocks += self.ranked() if self.front.designs else []
         for design in self.full:
-            blocks += self._design(design)
-        blocks += [*self._runners_up(), *self._task(), *self._search(), *self._left_out(), *self._certificate()]
+            blocks += self.design(design)
+        blocks += [*self._runners_up(), *self.task(), *self._search(), *self._left_out(), *self._certificate()]
         blocks += [*self._files(), *self._again()]
         return Document(
             kind="Design report",
@@ -169,7 +176,7 @@ class _Report:
         )
         return blocks
 
-    def _ranked(self) -> list[Block]:
+    def ranked(self) -> list[Block]:
         svg = front_svg(self.front, [d.rank or 0 for d in self.full])
         blocks: list[Block] = [Heading("The designs", anchor="designs")]
         if svg:
@@ -226,7 +233,7 @@ class _Report:
 
     # -- one design ----------------------------------------------------------------------------
 
-    def _design(self, design: Design) -> list[Block]:
+    def design(self, design: Design) -> list[Block]:
         rank = design.rank or 0
         blocks: list[Block] = [Heading(f"Design #{rank}", anchor=f"full-{rank}")]
         reason = why(self.front, design)
@@ -371,7 +378,7 @@ class _Report:
     def _of_kind(self, *kinds: str) -> list[NamedQuantity]:
         return [q for q in self.quantities.values() if q.kind in kinds]
 
-    def _task(self) -> list[Block]:
+    def task(self) -> list[Block]:
         values = self.frame.requirement_values
         typed = [q for q in self._of_kind("requirement") if q.name in self.frame.requirements]
         usual = [q for q in self._of_kind("requirement") if q.name not in self.frame.requirements]

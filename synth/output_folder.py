@@ -91,7 +91,9 @@ EXPLANATION = ResultKind(
     "explain", ("explanation.json",), ("explanation.csv", "explanation.json"), ("ways", "conflict")
 )
 STUDY = ResultKind("whatif", ("whatif.csv",), ("whatif.csv", "breaks.csv", "whatif.svg", "fronts.svg"))
-BATCH = ResultKind("batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json"))
+BATCH = ResultKind(
+    "batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json", "report.html", "report.pdf", "batch.xlsx")
+)
 SIZE_RANGE = ResultKind(
     "size-range",
     ("size_range.json",),

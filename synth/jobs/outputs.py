@@ -32,6 +32,7 @@ ROW_COLUMNS = (
     "explanation",
     "remarks",
 )
+SAID = ("objectives", "searched", "choices", "parts")  # of a design in words
 SHORT = 12  # digits of a key that tell rows apart
 
 
@@ -204,10 +205,10 @@ def explanation_of(row: Answered) -> str:
     return str(content.get("error") or content.get("explanation") or stopped)
 
 
-def best_design(layout: Mapping[str, Any], cells: Sequence[str]) -> str:
-    """Return a design in words: objectives, sizes, choices and parts."""
+def best_design(layout: Mapping[str, Any], cells: Sequence[str], said: Sequence[str] = SAID) -> str:
+    """Return a design in words: objectives, sizes, choices and parts, or some of them."""
     names = [name for group in GROUPS for name in layout[group]]
-    shown = [name for group in ("objectives", "searched", "choices", "parts") for name in layout[group]]
+    shown = [name for group in said for name in layout[group]]
     return ", ".join(
         _said(name, cell) for name, cell in zip(names, cells[len(RANKING) :], strict=True) if name in shown and cell
     )

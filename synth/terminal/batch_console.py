@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from synth.jobs.row_questions import Fault
+from synth.results.batch_record import IN_WORDS
 from synth.terminal.console import console_on, output, plain_table
 from synth.terminal.session import say, tell_written
 
@@ -132,28 +133,17 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
-WORDS = {
-    "optimal": "with proven designs",
-    "feasible": "with designs that are not proven",
-    "infeasible": "without a feasible design",
-    "bad_input": "with bad input",
-    "refused": "refused by the search",
-    "failed": "failed",
-    "not_solved": "not solved yet",
-}
-
-
 def print_summary(counts: Mapping[str, int], place: Path, folder: Path, stopped: str) -> None:
     """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
-    say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {IN_WORDS[s]}" for s, n in _sorted(counts)))
     if stopped:
         say(f"stopped: {stopped}; what was found is saved, the same command goes on")
     tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
 
 
 def _sorted(counts: Mapping[str, int]) -> list[tuple[str, int]]:
-    return [(status, counts[status]) for status in WORDS if counts.get(status)]
+    return [(status, counts[status]) for status in IN_WORDS if counts.get(status)]
 
 
 def print_jobs(jobs: Sequence[tuple[Job, Account]]) -> None:
@@ -181,7 +171,9 @@ def print_job(job: Job, account: Account, units: tuple[int, int], events: Sequen
         print(f"settings: {settings}")
     if job.rows:
         counts = {**account.status, "bad_input": account.bad, "not_solved": account.rows - account.done}
-        print(f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+        print(
+            f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {IN_WORDS[s]}" for s, n in _sorted(counts))
+        )
     print(f"units: {units[0]} open, {units[1]} at work")
     for moment, kind, text in events:
         print(f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(moment))}  {kind}{f': {text}' if text else ''}")
