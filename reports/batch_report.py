@@ -231,15 +231,15 @@ def _size_range(batch: BatchRecord) -> list[Block]:
     told: Mapping[str, Any] = found["told"]
     count, unit = int(told.get("variants") or 0), str(told.get("unit") or "-")
     excess = told.get("total_excess")
-    sentences: list[Cell] = [
-        f"{_thousands(count)} variant{'' if count == 1 else 's'} serve all rows that have designs."
-    ]
+    serve = "variant serves" if count == 1 else "variants serve"
+    sentences: list[Cell] = [f"{_thousands(count)} {serve} all rows that have designs."]
     if isinstance(excess, (int, float)):
         amount = plain_number(float(excess)) + ("" if unit == "-" else f" {unit}")
         over = words(str(told.get("objective", "")))
         sentences.append(f"Over each row's own best they exceed the {over} by {amount} in all rows together.")
     proven = "proven" if told.get("fewest_proven") else "not proven to be the fewest"
-    sentences.append(f"At least {told.get('fewest')} are needed ({proven}).")
+    least = int(told.get("fewest") or 0)
+    sentences.append(f"At least {least} {'is' if least == 1 else 'are'} needed ({proven}).")
     names = [name for name in found["columns"] if any(row.get(name) for row in found["rows"])][:RANGE_COLUMNS]
     columns = [Column(_heading(name), number=_is_number(found["rows"], name)) for name in names]
     rows = [TableRow(tuple(_told_cell(str(row.get(name, ""))) for name in names)) for row in found["rows"]]

@@ -12,7 +12,7 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.files import csv_writer, read_json
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
-from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
+from synth.output_folder import BATCH, BATCH_REPORTS, STOPPED, check_kind, claimed, holds, replaced, settle
 from synth.results.provenance import installed_versions
 
 TABLES = ("designs.csv", "rows.csv")
@@ -86,6 +86,8 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
                 "files": {name: _hash_of(new.staged(name)) for name in TABLES},
             }
             new.write("batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
+            if holds(target, BATCH):
+                new.drop(BATCH_REPORTS)
             if target != beside:
                 new.drop(f"{beside.name}/{name}" for name in BATCH.owned)
     return counts, target
