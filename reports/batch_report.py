@@ -53,6 +53,7 @@ SHOWN_CELLS = 5  # columns of the table that was brought, beside each other
 TOLD = 200  # rows without a design that are told one by one
 TOLD_CAUSES = 30
 LONGEST = 600  # letters of a cell or a reason
+LONGEST_IN_LINE = 240  # where many rows stand below each other
 LONGEST_NAME = 80  # of a row
 ELSEWHERE = "report.html or rows.csv"
 
@@ -214,8 +215,8 @@ def _all_rows(batch: BatchRecord) -> list[Block]:
             *row.objectives,
             *((row.family,) if families else ()),
             *(_short(row.cells[k], LONGEST_NAME) for k in asked),
-            _short(row.best),
-            _short("; ".join(text for text in (short_reason(row), row.remarks) if text)),
+            _short(row.best, LONGEST_IN_LINE),
+            _short("; ".join(text for text in (short_reason(row), row.remarks) if text), LONGEST_IN_LINE),
         )
         for row in batch.rows
     ]

@@ -37,7 +37,7 @@ from synth.plain_text import escaped, plain_number
 
 SHORT = 14  # rows of a table that stays on one page
 AT_A_TIME = 200  # of many rows, as rows.js shows them as well
-WIDE = 2.0  # width of a column from which its texts take several lines
+WIDE = 2.0  # width of a column of many rows from which its texts take one line, however long: rows stay low
 
 
 @cache

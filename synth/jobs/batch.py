@@ -106,7 +106,8 @@ class BatchResult:
         from synth.jobs.batch_report import BatchReportOptions, report_result
 
         how = BatchReportOptions.read(row=row, formats=formats, about=about, fonts=fonts)
-        return report_result(self, self.folder if folder is None else Path(folder), how)[0]
+        target = self.folder if folder is None else Path(folder)
+        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own)[0]
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:

@@ -38,7 +38,6 @@ from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
 if TYPE_CHECKING:
-    from synth.jobs.batch import BatchResult
     from synth.jobs.models import Job
 
 FORMATS = ("html", "pdf", "xlsx")
@@ -114,12 +113,15 @@ def report_batch(
 
 
 def report_result(
-    result: BatchResult, folder: Path, how: BatchReportOptions
+    source: Path, folder: Path, how: BatchReportOptions, database: Any, job: str, tables: Any = None, own: Any = None
 ) -> tuple[Path, list[str], list[str], bool]:
-    """Write the report of a batch that was asked from Python; returns and raises as :func:`report_batch`."""
-    with opened_batch(result.folder, result.database) as store:
-        job = job_of_folder(store, result.folder, result.job)
-        return _written(store, job, result.folder, folder, how, _tables_of(job, result.catalogs), result.own)
+    """Write the report of a batch that was asked from Python; ``tables`` and ``own`` are those that it was given.
+
+    Else, returns and raises as :func:`report_batch`.
+    """
+    with opened_batch(source, database) as store:
+        found = job_of_folder(store, source, job)
+        return _written(store, found, source, folder, how, _tables_of(found, tables), own)
 
 
 def batch_report_files(
@@ -142,7 +144,7 @@ def batch_report_files(
     make = report_named("batch_files")
     if make is None:
         raise InputError("report", None, "the package reports, which clutchsynth is installed with")
-    record, notes = _Reader(store, job, tables, own).record(how.row, beside)
+    record, notes = _BatchReader(store, job, tables, own).record(how.row, beside)
     files, told = make({"batch": record, **how.asked()})
     return dict(files), [*notes, *told], any(row.designs for row in record.rows)
 
@@ -170,7 +172,7 @@ def _tables_of(job: Job, given: Any) -> Any:
         return error
 
 
-class _Reader:
+class _BatchReader:
     """Reads a batch, row by row.
 
     Parameters
@@ -357,9 +359,9 @@ def chosen_row(record: BatchRecord, named: str) -> BatchRow | None:
         lines = ", ".join(str(row.line) for row in fitting[:TOLD_LINES])
         more = ", ..." if len(fitting) > TOLD_LINES else ""
         raise InputError("row", named, f"a line of the table: this fits lines {lines}{more}", ("row",))
-    names = " or ".join(f"a {record.headings[k]}" for k in record.carried[:2])
+    names = " or ".join(record.headings[k] for k in record.carried[:2])
     lines = f"a line from {record.rows[0].line} to {record.rows[-1].line}" if record.rows else "a batch with rows"
-    raise InputError("row", named, f"{lines}{f', or {names}' if names else ''} of the table", ("row",))
+    raise InputError("row", named, lines + (f", or a cell of {names}" if names else ""), ("row",))
 
 
 def _causes(answered: Answered, reason: str) -> tuple[str, ...]:

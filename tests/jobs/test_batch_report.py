@@ -118,9 +118,7 @@ def test_a_row_that_is_not_there_is_refused_and_nothing_is_written(
 ) -> None:
     done = clutchsynth("report", result.folder, "-o", tmp_path / "new", "--row", named)
     assert done.returncode == 2
-    assert done.stderr.strip() == (
-        f"clutchsynth: row: got '{named}'; expected a line from 2 to 5, or a name of the table"
-    )
+    assert done.stderr.strip() == (f"clutchsynth: row: got '{named}'; expected a line from 2 to 5, or a cell of name")
     assert not (tmp_path / "new").exists()
 
 
