@@ -371,7 +371,7 @@ def _causes(answered: Answered, reason: str) -> tuple[str, ...]:
     missed = MISSED.search(reason)
     if missed is not None:
         # A limit that a row adds has its number in its name.
-        names = (name.split(" ", 1) for name in missed[1].split(", "))
+        names = (name.split(" ", 1) for name in missed[1].split(", ") if name[:1].isalpha())
         return tuple(dict.fromkeys(name[0] + (" (own limit)" if len(name) > 1 else "") for name in names))
     return ()
 
