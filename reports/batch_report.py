@@ -5,6 +5,7 @@ from __future__ import annotations
 import statistics
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 from reports.about import About
@@ -321,27 +322,40 @@ def _row_state(told: RowInFull) -> State:
 
 
 def _failures(batch: BatchRecord) -> list[Block]:
-    failed = [row for status in FAILURES for row in batch.rows if row.status == status]
-    if not failed:
+    shares = _shares({status: batch.counts[status] for status in FAILURES if batch.counts.get(status)}, TOLD)
+    if not shares:
         return []
     groups: list[tuple[str, tuple[TableRow, ...]]] = []
-    for status in FAILURES:
-        rows = [row for row in failed[:TOLD] if row.status == status]
-        if rows:
-            told = tuple(
-                TableRow((str(row.line), row_name(batch, row), _short(row.reason) or "no reason is kept"))
-                for row in rows
-            )
-            label = STATES[status][:1].upper() + STATES[status][1:]
-            groups.append((f"{label}: {_rows(batch.counts[status])}", told))
+    for status, share in shares.items():
+        rows = list(islice((row for row in batch.rows if row.status == status), share))
+        told = tuple(
+            TableRow((str(row.line), row_name(batch, row), _short(row.reason) or "no reason is kept")) for row in rows
+        )
+        first = "" if share == batch.counts[status] else f", the first {share}"
+        label = STATES[status][:1].upper() + STATES[status][1:]
+        groups.append((f"{label}: {_rows(batch.counts[status])}{first}", told))
     blocks: list[Block] = [
         Heading("Rows without a design, and why", anchor="failures"),
         TableBlock("Lines of the table that was brought", FAILURE_COLUMNS, tuple(groups)),
     ]
-    more = len(failed) - TOLD
+    more = sum(batch.counts[status] for status in shares) - sum(shares.values())
     if more > 0:
         blocks.append(Paragraph(f"{_thousands(more)} more: see {ELSEWHERE}."))
     return blocks
+
+
+def _shares(counts: Mapping[str, int], most: int) -> dict[str, int]:
+    """Return how many of each are told: all of what is rare, and of the rest alike.
+
+    Examples
+    --------
+    >>> _shares({"failed": 3, "bad_input": 2000, "infeasible": 90}, 200)
+    {'failed': 3, 'bad_input': 107, 'infeasible': 90}
+    """
+    found: dict[str, int] = {}
+    for place, status in enumerate(sorted(counts, key=lambda status: counts[status])):
+        found[status] = min(counts[status], (most - sum(found.values())) // (len(counts) - place))
+    return {status: found[status] for status in counts}
 
 
 def _asked(batch: BatchRecord) -> list[Block]:

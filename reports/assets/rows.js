@@ -4,7 +4,7 @@
   const place = document.getElementById("many-rows");
   const source = document.getElementById("all-rows");
   if (!place || !source) return;
-  const { columns, rows, kind, most } = JSON.parse(source.textContent);
+  const { whole: isWhole, rows, kind, most } = JSON.parse(source.textContent);
   const find = (selector) => place.querySelector(selector);
   const [tools, state, text, counted] = [".tools", "select", "input", ".counted"].map(find);
   const [before, after, body] = [".before", ".after", "tbody"].map(find);
@@ -12,9 +12,9 @@
   const kinds = heads.map((head) => head.className);
   const order = new Intl.Collator("en", { numeric: true });
   const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u00a0");
-  const shown = (value) => {
+  const shown = (value, column) => {
     if (value === null) return "";
-    if (typeof value !== "number") return value;
+    if (typeof value !== "number" || isWhole[column]) return String(value);
     const decimals = value === 0 ? 0 : Math.max(3 - Math.floor(Math.log10(Math.abs(value))), 0);
     const [integer, rest = ""] = value.toFixed(Math.min(decimals, 100)).split(".");
     const digits = rest.replace(/0+$/, "");
@@ -43,7 +43,7 @@
     const made = document.createDocumentFragment();
     chosen.slice(first, last).forEach((k) => {
       const line = document.createElement("tr");
-      rows[k].forEach((value, n) => { make("td", shown(value), line).className = kinds[n]; });
+      rows[k].forEach((value, n) => { make("td", shown(value, n), line).className = kinds[n]; });
       made.append(line);
     });
     body.replaceChildren(made);

@@ -167,9 +167,9 @@ def _table(block: TableBlock) -> str:
 
 def _rows(block: RowsBlock) -> str:
     """Return many rows: the first of them as they are without a script, and all as data for it."""
-    columns = [{"title": c.title, "number": c.number} for c in block.columns]
+    whole = [bool(block.rows) and all(isinstance(row[k], int) for row in block.rows) for k in range(len(block.columns))]
     rows = [[_number_in_json(cell) for cell in row] for row in block.rows]
-    told = {"columns": columns, "rows": rows, "kind": block.kind, "most": AT_A_TIME}
+    told = {"whole": whole, "rows": rows, "kind": block.kind, "most": AT_A_TIME}
     data = json.dumps(told, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     kinds = ["n" if c.number else "long" if c.width >= WIDE else "" for c in block.columns]
     heads = "".join(
@@ -196,7 +196,7 @@ def _rows(block: RowsBlock) -> str:
 
 
 def _many(cell: str | float | None) -> str:
-    return escape(cell) if isinstance(cell, str) else plain_number(cell)
+    return escape(cell) if isinstance(cell, str) else str(cell) if isinstance(cell, int) else plain_number(cell)
 
 
 def _number_in_json(cell: str | float | None) -> str | float | None:
