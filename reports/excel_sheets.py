@@ -78,13 +78,17 @@ class Book:
     asked : str
         What it is made for, as people typed it: for the sentence that tells that the extra is not there.
     title : str
+    row_by_row : bool
+        Whether rows are written from the first to the last, each cell once, and not kept: for many of them. Sheets too
+        are written one after the other, and rows do not grow with their texts.
     """
 
-    def __init__(self, asked: str, title: str) -> None:
+    def __init__(self, asked: str, title: str, row_by_row: bool = False) -> None:
         xlsxwriter = needed("xlsxwriter", asked, "excel")
-        self._buffer = io.BytesIO()
+        self._buffer, self._row_by_row = io.BytesIO(), row_by_row
         # Nothing that is written as text is looked at: it is no formula, no address and no number.
-        options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+        kept = {"constant_memory": True} if row_by_row else {"in_memory": True}
+        options = {**kept, "strings_to_formulas": False, "strings_to_urls": False}
         self._book = xlsxwriter.Workbook(self._buffer, {**options, "strings_to_numbers": False})
         self._book.set_properties({"title": cell_text(title)[:255], "comments": "clutchsynth", "created": CREATED})
         self._book.set_calc_mode("auto")
@@ -138,7 +142,7 @@ class Book:
 
     def bytes(self) -> bytes:
         """Return the file."""
-        for sheet in self._sheets:
+        for sheet in self._sheets if not self._row_by_row else ():
             sheet.give_room()
         self._book.close()
         return self._buffer.getvalue()

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from reports.about import About
+from reports.batch_report import batch_report
+from reports.batch_workbook import batch_workbook
 from reports.comparison_report import comparison_report
 from reports.drawing.bodies import glb_of, left_out, round_areas, step_of
 from reports.drawing.files import dxf_of, svg_of
@@ -26,6 +28,7 @@ from reports.workbook_front import front_workbook
 from synth.drawing import Drawing
 from synth.errors import InputError
 from synth.results import Design, ParetoFront
+from synth.results.batch_record import BatchRecord
 from synth.results.calculation import Calculation
 
 FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf", "step", "glb")
@@ -124,6 +127,23 @@ def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], 
         beside = {family: file for family, file in links.items() if "explorer" not in file}
         record = comparison_record(content, fronts, asked["calculations"], about=about, links=beside)
         files["explorer.html"] = explorer_page(record)
+    return files, notes
+
+
+def batch_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return the files of the report of a batch, and what else is to be told.
+
+    Parameters
+    ----------
+    asked : mapping
+        ``batch``, a :class:`~synth.results.batch_record.BatchRecord`; ``formats``, some of ``html``, ``pdf`` and
+        ``xlsx``; ``about``, ``about_folder``, ``fonts``.
+    """
+    batch: BatchRecord = asked["batch"]
+    about = About.of(asked.get("about"), asked.get("about_folder"))
+    files, notes = documents({"report": batch_report(batch, about)}, asked["formats"], asked["fonts"])
+    if "xlsx" in asked["formats"]:
+        files["batch.xlsx"] = batch_workbook(batch, about)
     return files, notes
 
 

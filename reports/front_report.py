@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reports.about import About
@@ -99,6 +99,13 @@ def front_report(request: FrontReportRequest) -> Document:
     return _Report(request).document()
 
 
+def first_design(request: FrontReportRequest) -> list[Block]:
+    """Return of a report of a front what it tells of its designs, the first in full, and of the task."""
+    told = _Report(replace(request, full=1))
+    several = told.ranked() if len(request.front.designs) > 1 else []
+    return [*several, *(block for design in told.full for block in told.design(design)), *told.task()]
+
+
 class _Report:
     def __init__(self, request: FrontReportRequest) -> None:
         self.request, self.front, self.calculation = request, request.front, request.calculation
@@ -111,10 +118,10 @@ class _Report:
         blocks: list[Block] = [State(level, head, tuple(front_details(self.front)))]
         if not self.front.designs:
             blocks += self._nothing()
-        blocks += self._ranked() if self.front.designs else []
+        blocks += self.ranked() if self.front.designs else []
         for design in self.full:
-            blocks += self._design(design)
-        blocks += [*self._runners_up(), *self._task(), *self._search(), *self._left_out(), *self._certificate()]
+            blocks += self.design(design)
+        blocks += [*self._runners_up(), *self.task(), *self._search(), *self._left_out(), *self._certificate()]
         blocks += [*self._files(), *self._again()]
         return Document(
             kind="Design report",
@@ -170,7 +177,7 @@ class _Report:
         )
         return blocks
 
-    def _ranked(self) -> list[Block]:
+    def ranked(self) -> list[Block]:
         svg = front_svg(self.front, [d.rank or 0 for d in self.full])
         blocks: list[Block] = [Heading("The designs", anchor="designs")]
         if svg:
@@ -227,7 +234,7 @@ class _Report:
 
     # -- one design ----------------------------------------------------------------------------
 
-    def _design(self, design: Design) -> list[Block]:
+    def design(self, design: Design) -> list[Block]:
         rank = design.rank or 0
         blocks: list[Block] = [Heading(f"Design #{rank}", anchor=f"full-{rank}")]
         reason = why(self.front, design)
@@ -372,7 +379,7 @@ class _Report:
     def _of_kind(self, *kinds: str) -> list[NamedQuantity]:
         return [q for q in self.quantities.values() if q.kind in kinds]
 
-    def _task(self) -> list[Block]:
+    def task(self) -> list[Block]:
         values = self.frame.requirement_values
         typed = [q for q in self._of_kind("requirement") if q.name in self.frame.requirements]
         usual = [q for q in self._of_kind("requirement") if q.name not in self.frame.requirements]

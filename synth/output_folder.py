@@ -91,7 +91,9 @@ EXPLANATION = ResultKind(
     "explain", ("explanation.json",), ("explanation.csv", "explanation.json"), ("ways", "conflict")
 )
 STUDY = ResultKind("whatif", ("whatif.csv",), ("whatif.csv", "breaks.csv", "whatif.svg", "fronts.svg"))
-BATCH = ResultKind("batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json"))
+# What `report` makes of a batch: it goes when the batch is written anew, as it says how far that was.
+BATCH_REPORTS = ("report.html", "report.pdf", "batch.xlsx")
+BATCH = ResultKind("batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json", *BATCH_REPORTS))
 SIZE_RANGE = ResultKind(
     "size-range",
     ("size_range.json",),

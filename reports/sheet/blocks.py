@@ -103,6 +103,35 @@ class TableBlock:
 
 
 @dataclass(frozen=True)
+class RowsBlock:
+    """A table of many rows to look through: a screen sorts it and filters it, paper tells where it is.
+
+    Parameters
+    ----------
+    caption : str
+    columns : tuple of Column
+    rows : sequence of tuple
+        Texts and numbers; None where there is no number.
+    kind : int
+        The column of a few words by which rows are chosen.
+    elsewhere : str
+        The files that have the rows as well.
+    """
+
+    caption: str
+    columns: tuple[Column, ...]
+    rows: Sequence[tuple[str | float | None, ...]]
+    kind: int
+    elsewhere: str
+
+    @property
+    def on_paper(self) -> str:
+        """What is said in place of the rows where nobody can look through them."""
+        count = f"{len(self.rows):,}".replace(",", " ")
+        return f"{count} row{'' if len(self.rows) == 1 else 's'}: see {self.elsewhere}."
+
+
+@dataclass(frozen=True)
 class StepBlock:
     """One formula: meaning, name and source; what it equals, the last of which is the result; notes.
 
@@ -143,7 +172,7 @@ class Listing:
     text: str
 
 
-Block: TypeAlias = Heading | Paragraph | State | TableBlock | StepBlock | Bullets | Figure | Listing
+Block: TypeAlias = Heading | Paragraph | State | TableBlock | RowsBlock | StepBlock | Bullets | Figure | Listing
 
 
 @dataclass(frozen=True)

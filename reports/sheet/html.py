@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
+import math
 from functools import cache
 from html import escape
 from importlib.resources import files
+from itertools import islice
 
 from reports.formula.layout import Layout
 from reports.formula.mathml import mathml
@@ -23,14 +26,18 @@ from reports.sheet.blocks import (
     Link,
     Listing,
     Paragraph,
+    RowsBlock,
     State,
     StepBlock,
     Strong,
     TableBlock,
     TableRow,
 )
+from synth.plain_text import escaped, plain_number
 
 SHORT = 14  # rows of a table that stays on one page
+AT_A_TIME = 200  # of many rows, as rows.js shows them as well
+WIDE = 2.0  # width of a column of many rows from which its texts take one line, however long: rows stay low
 
 
 @cache
@@ -42,9 +49,10 @@ def asset(name: str) -> str:
 def html(document: Document) -> str:
     """Return a document as an HTML file.
 
-    Where it holds data of all designs a script of ours shows any of them; all else is there without it.
+    Where it holds data of all designs, or many rows, a script of ours shows any of them; all else is there without it.
     """
     script = asset("report.js") if document.data else ""
+    script += asset("rows.js") if any(isinstance(block, RowsBlock) for block in document.blocks) else ""
     body = "\n".join(block_html(block) for block in document.blocks)
     facts = "".join(f"<dt>{escape(label)}</dt><dd>{escape(text)}</dd>" for label, text in document.facts)
     logo = f'<img src="{escape(document.logo)}" alt="">' if document.logo else ""
@@ -78,11 +86,15 @@ def _data(data: str) -> str:
     """Return the data of all designs, and the place where one is shown; no text in it can end the element."""
     if not data:
         return ""
-    safe = data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
     return (
         f'<section id="any-design" hidden aria-live="polite"></section>\n'
-        f'<script type="application/json" id="all-designs">{safe}</script>\n'
+        f'<script type="application/json" id="all-designs">{_inert(data)}</script>\n'
     )
+
+
+def _inert(data: str) -> str:
+    """Return JSON that can end no element."""
+    return escaped(data).replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _policy(script: str) -> str:
@@ -123,6 +135,8 @@ def block_html(block: Block) -> str:
         return f'<div class="state {block.level}" role="status"><p class="head">{escape(block.head)}</p>{told}</div>'
     if isinstance(block, TableBlock):
         return _table(block)
+    if isinstance(block, RowsBlock):
+        return _rows(block)
     if isinstance(block, StepBlock):
         return _step(block)
     if isinstance(block, Bullets):
@@ -149,6 +163,47 @@ def _table(block: TableBlock) -> str:
         f"{escape(block.caption)}</caption><colgroup>{widths}</colgroup><thead><tr>{heads}</tr></thead>"
         f"{''.join(bodies)}</table></div>"
     )
+
+
+def _rows(block: RowsBlock) -> str:
+    """Return many rows: the first of them as they are without a script, and all as data for it."""
+    whole = [bool(block.rows) and all(isinstance(row[k], int) for row in block.rows) for k in range(len(block.columns))]
+    rows = [[_number_in_json(cell) for cell in row] for row in block.rows]
+    told = {"whole": whole, "rows": rows, "kind": block.kind, "most": AT_A_TIME}
+    data = json.dumps(told, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    kinds = ["n" if c.number else "long" if c.width >= WIDE else "" for c in block.columns]
+    heads = "".join(
+        f'<th scope="col"{_marked(kind)}>{escape(c.title)}</th>' for c, kind in zip(block.columns, kinds, strict=True)
+    )
+    body = "".join(
+        f"<tr>{''.join(f'<td{_marked(k)}>{_many(cell)}</td>' for k, cell in zip(kinds, row, strict=True))}</tr>"
+        for row in islice(block.rows, AT_A_TIME)
+    )
+    more = len(block.rows) - AT_A_TIME
+    hint = f"The first {AT_A_TIME} rows; a browser with scripts shows the others." if more > 0 else ""
+    return (
+        f'<div class="browse screen" id="many-rows"><div class="tools" role="group" aria-label="Choose rows" hidden>'
+        f'<label>State <select></select></label><label>Text <input type="search" autocomplete="off"></label>'
+        f'<span role="status" class="counted"></span><span class="turn">'
+        f'<button type="button" class="before">Rows before</button>'
+        f'<button type="button" class="after">Rows after</button></span></div>'
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(block.caption)}"><table>'
+        f"<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table></div>"
+        f'<p class="small hint">{hint}</p>'
+        f'<script type="application/json" id="all-rows">{_inert(data)}</script></div>'
+        f'<p class="paper">{escape(block.on_paper)}</p>'
+    )
+
+
+def _many(cell: str | float | None) -> str:
+    return escape(cell) if isinstance(cell, str) else str(cell) if isinstance(cell, int) else plain_number(cell)
+
+
+def _number_in_json(cell: str | float | None) -> str | float | None:
+    """Return a number in five digits, and nothing for what JSON does not know."""
+    if cell is None or isinstance(cell, (str, int)):
+        return cell
+    return float(f"{cell:.5g}") if math.isfinite(cell) else None
 
 
 def _row(row: TableRow, columns: tuple[Column, ...]) -> str:

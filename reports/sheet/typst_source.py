@@ -40,6 +40,7 @@ from reports.sheet.blocks import (
     Link,
     Listing,
     Paragraph,
+    RowsBlock,
     State,
     StepBlock,
     Strong,
@@ -277,6 +278,8 @@ class _Writer:
             return f"state({', '.join([one_text(block.level), *map(_text, (block.head, *block.details))])})"
         if isinstance(block, TableBlock):
             return self._table(block)
+        if isinstance(block, RowsBlock):
+            return f"para(false, false, {_text(block.on_paper)})"
         if isinstance(block, StepBlock):
             return self._step(block)
         if isinstance(block, Bullets):

@@ -69,7 +69,7 @@ def evaluate(
         values = {n: design.values[n] for n, k in design.frame.kinds.items() if k in ("variable", "count")}
         si = {**values, **design.choices}
         parts = {slot: str(row) for slot, row in design.parts.items()}
-        return _evaluate(p, requirements, si, parts, catalogs, limits, objectives, in_si=True)
+        return evaluate_in_si(p, requirements, si, parts, catalogs=catalogs, limits=limits, objectives=objectives)
     if design is not None:
         if not isinstance(design, Mapping):
             raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'", ("design",))
@@ -77,6 +77,26 @@ def evaluate(
     values = as_mapping(values, "values", "{'mass': '20 kg'}")
     parts = as_mapping(parts, "parts", "{'slot': 'designation'}")
     return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=False)
+
+
+def evaluate_in_si(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    values: Mapping[str, Any],
+    parts: Mapping[str, str],
+    *,
+    catalogs: Any = None,
+    limits: Mapping[str, Any] | None = None,
+    objectives: Any = None,
+) -> Design:
+    """Analyse a design of which sizes, counts and choices are kept in SI; all else as for :func:`evaluate`.
+
+    Raises
+    ------
+    InputError
+        As for :func:`evaluate`.
+    """
+    return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=True)
 
 
 def _evaluate(

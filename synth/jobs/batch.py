@@ -7,7 +7,7 @@ import shutil
 import tempfile
 import time
 import weakref
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +18,7 @@ from sqlalchemy import URL
 from synth.csv_style import ENGLISH, GERMAN, CsvStyle, list_with_points
 from synth.errors import InputError, SeveralErrors, whole_number
 from synth.input_limits import INPUT_LIMITS
+from synth.jobs.batch_folder import DATABASE
 from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.job_queue import Claim
@@ -45,8 +46,6 @@ if TYPE_CHECKING:
 
     from synth.model.problem import DesignProblem
 
-DATABASE = "jobs.sqlite"  # beside the results, unless another one is named
-
 
 @dataclass(frozen=True)
 class BatchResult:
@@ -70,6 +69,45 @@ class BatchResult:
         """Return rows.csv: what became of each row, in the order of the table."""
         settle(self.folder)
         return _frame_of(self.folder / "rows.csv", keep_default_na=False)
+
+    def report(
+        self,
+        folder: str | Path | None = None,
+        *,
+        row: str | int | None = None,
+        formats: Sequence[str] = ("html",),
+        about: Any = None,
+        fonts: Sequence[str | Path] = (),
+    ) -> Path:
+        """Write report.html: rows by state, all of them to filter and sort, failures with reasons, one row in full.
+
+        Parameters
+        ----------
+        folder : path, optional
+            By default that of the batch.
+        row : str or int, optional
+            The row in full: its line, or what stands in a column that is carried along. By default the first with
+            designs.
+        formats : list of str
+            Some of ``html``, ``pdf``, ``xlsx``.
+        about, fonts
+            As for ``ParetoFront.report``.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        InputError
+            Something asked is wrong, or an extra is not installed; then nothing is written.
+        """
+        from synth.jobs.batch_report import BatchReportOptions, report_result
+
+        how = BatchReportOptions.read(row=row, formats=formats, about=about, fonts=fonts)
+        target = self.folder if folder is None else Path(folder)
+        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own)[0]
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:

@@ -70,7 +70,7 @@ def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 def files(payload: Mapping[str, Any], tell: Tell) -> dict[str, int | None]:
     """Return the names of the files of a job that can be had here, with their sizes where these are known."""
     if payload["kind"] == BATCH:
-        return dict.fromkeys(batch.FILES)
+        return dict.fromkeys(batch.files_to_have())
     return files_to_have(payload["kind"], payload["records"])
 
 

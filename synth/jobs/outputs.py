@@ -14,7 +14,7 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.files import csv_writer, read_json
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
-from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
+from synth.output_folder import BATCH, BATCH_REPORTS, STOPPED, check_kind, claimed, holds, replaced, settle
 from synth.plain_text import words
 from synth.results.provenance import installed_versions
 
@@ -38,6 +38,7 @@ ROW_COLUMNS = (
 )
 MISSED = re.compile(r"design found misses ([^:]+):")  # in the explanation of a row
 TOLD = 3  # limits of a row that are named
+SAID = ("objectives", "searched", "choices", "parts")  # of a design in words
 SHORT = 12  # digits of a key that tell rows apart
 
 
@@ -91,6 +92,8 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
                 "files": {name: _hash_of(new.staged(name)) for name in TABLES},
             }
             new.write("batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
+            if holds(target, BATCH):
+                new.drop(BATCH_REPORTS)
             if target != beside:
                 new.drop(f"{beside.name}/{name}" for name in BATCH.owned)
     return counts, target
@@ -264,11 +267,10 @@ def _grouped(layout: Mapping[str, Any], cells: Sequence[str]) -> dict[str, dict[
     return {group: {name: next(values) for name in layout[group]} for group in GROUPS}
 
 
-def best_design(layout: Mapping[str, Any], cells: Sequence[str]) -> str:
-    """Return a design in words: objectives, sizes, choices and parts."""
+def best_design(layout: Mapping[str, Any], cells: Sequence[str], said: Sequence[str] = SAID) -> str:
+    """Return a design in words: objectives, sizes, choices and parts, or some of them."""
     found = _grouped(layout, cells)
-    shown = ("objectives", "searched", "choices", "parts")
-    return ", ".join(_said(name, cell) for group in shown for name, cell in found[group].items() if cell)
+    return ", ".join(_said(name, cell) for group in said for name, cell in found[group].items() if cell)
 
 
 def _said(heading: str, cell: str) -> str:

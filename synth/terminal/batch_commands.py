@@ -289,7 +289,7 @@ def _let_workers_go_on(store: Store, found: Job) -> None:
 
 def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
     """Return the databases that are meant: the one named, or those in folders."""
-    from synth.jobs.batch import DATABASE
+    from synth.jobs.batch_folder import DATABASE
     from synth.jobs.database import file_url
     from synth.jobs.store import Store
 
@@ -305,7 +305,7 @@ def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
 
 def _find(job: str, database: str | None) -> tuple[Store, Job]:
     """Return the job that is meant by a folder (its latest), or by the beginning of an id."""
-    from synth.jobs.batch import DATABASE
+    from synth.jobs.batch_folder import DATABASE
 
     if database is None and (Path(job) / DATABASE).is_file():
         (store,) = _stores(None, [Path(job)])

@@ -16,6 +16,7 @@ from synth.errors import shortened
 from synth.jobs.outputs import RowOutcome, row_outcomes
 from synth.jobs.row_questions import Fault
 from synth.plain_text import alike, words
+from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
 from synth.terminal.console import console_on, in_common, made_of, output, plain_table, print_wrapped
 from synth.terminal.session import say, tell, tell_written
 from synth.units import split_header, unit_text
@@ -135,27 +136,7 @@ def _duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
-WORDS = {
-    "optimal": "with proven designs",
-    "feasible": "with designs that are not proven",
-    "infeasible": "without a feasible design",
-    "bad_input": "with bad input",
-    "refused": "refused by the search",
-    "failed": "failed",
-    "not_solved": "not solved yet",
-}
-
-
-STATES = {
-    "optimal": "proven",
-    "feasible": "not proven",
-    "infeasible": "not feasible",
-    "bad_input": "bad input",
-    "refused": "refused",
-    "failed": "failed",
-    "not_solved": "not solved",
-}
-WITHOUT = frozenset(STATES) - {"optimal", "feasible"}  # a design
+WITHOUT = frozenset(STATES) - frozenset(WITH_DESIGNS)
 
 
 def print_summary(
@@ -163,7 +144,7 @@ def print_summary(
 ) -> None:
     """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
-    say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    say(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {IN_WORDS[s]}" for s, n in _sorted(counts)))
     _print_rows(rows, counts)
     if stopped:
         say(f"stopped: {stopped}; what was found is saved, the same command goes on")
@@ -220,7 +201,7 @@ def _number(cell: str | None) -> float | None:
 
 
 def _sorted(counts: Mapping[str, int]) -> list[tuple[str, int]]:
-    return [(status, counts[status]) for status in WORDS if counts.get(status)]
+    return [(status, counts[status]) for status in IN_WORDS if counts.get(status)]
 
 
 def print_jobs(jobs: Sequence[tuple[Job, Account]]) -> None:
@@ -248,7 +229,9 @@ def print_job(job: Job, account: Account, units: tuple[int, int], events: Sequen
         print(f"settings: {settings}")
     if job.rows:
         counts = {**account.status, "bad_input": account.bad, "not_solved": account.rows - account.done}
-        print(f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+        print(
+            f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {IN_WORDS[s]}" for s, n in _sorted(counts))
+        )
     print(f"units: {units[0]} open, {units[1]} at work")
     for moment, kind, text in events:
         print(f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(moment))}  {kind}{f': {text}' if text else ''}")

@@ -35,7 +35,8 @@ def print_near_equals(found: NearEquals, console: Console) -> None:
     columns = [alike([finite_from_si(d.values[n], frame.units[n], None) for d in (own, *found.designs)]) for n in names]
     table.add_row("#0", *(f"{cells[0]}{' ' * CHANGE}" for cells in columns), "the chosen design")
     for k, (design, change, rank) in enumerate(zip(found.designs, found.changes, found.ranks, strict=True), start=1):
-        values = [f"{c[k]} {f'({round(100 * change[n], 2) + 0.0:+.2f} %)':>{CHANGE - 1}}" for n, c in zip(names, columns, strict=True)]
+        moved = [f"({round(100 * change[n], 2) + 0.0:+.2f} %)" for n in names]  # and not -0.00
+        values = [f"{cells[k]} {by:>{CHANGE - 1}}" for cells, by in zip(columns, moved, strict=True)]
         other = in_words(", ".join(found.differences[k - 1]), design.names)
         table.add_row(f"#{k}", *values, other if rank is None else f"design {rank} of the front: {other}")
     console.print(table)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from synth.errors import InputError
+from synth.terminal.batch_commands import Database
 from synth.terminal.options import Quiet
 from synth.terminal.session import INFEASIBLE, check_output, tell_readings, tell_written
 
 FULL = 5  # designs that a report tells in full unless it is told otherwise
 FILES = (".yaml", ".yml", ".json")
+SUMMARY, JOBS = "batch.json", "jobs.sqlite"  # by which the folder of a batch is known
+OPTION = {"svg": "drawing"}  # of formats that are called otherwise
 
 
 def register(app: typer.Typer) -> None:
@@ -21,7 +25,9 @@ def register(app: typer.Typer) -> None:
 
 
 def report(
-    source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
+    source: Annotated[
+        Path, typer.Argument(help="A folder that run or batch has written, or a DESIGN.yaml.", metavar="SOURCE")
+    ],
     folder: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Folder for the files, by default that of the source.", metavar="DIR"),
@@ -31,6 +37,13 @@ def report(
     ] = None,
     full: Annotated[
         int | None, typer.Option(help="Designs that report.html tells in full, 5 by default.", min=0)
+    ] = None,
+    row: Annotated[
+        str | None,
+        typer.Option(
+            help="Of a batch the row that is told in full: its line or name; by default the first with designs.",
+            metavar="NAME|LINE",
+        ),
     ] = None,
     explorer: Annotated[bool, typer.Option("--explorer", help="The front to explore, as explorer.html.")] = False,
     as_pdf: Annotated[bool, typer.Option("--pdf", help="PDF as well (extra pdf).")] = False,
@@ -49,9 +62,10 @@ def report(
         list[Path] | None,
         typer.Option("--font-path", help="A font, or a folder of fonts, for PDF; repeat it.", metavar="PATH"),
     ] = None,
+    database: Database = None,
     quiet: Quiet = False,
 ) -> None:
-    """Write what can be handed on: the report of a front, calculation sheets, drawings, PDF, live workbooks."""
+    """Write what can be handed on: the report of a front or a batch, calculation sheets, drawings, PDF, workbooks."""
     wanted = (
         ("explorer", explorer),
         ("pdf", as_pdf),
@@ -72,7 +86,22 @@ def report(
         raise InputError("--font-path", str(fonts[0]), "--pdf as well: only PDF takes fonts")
     if folder is not None:
         check_output(folder)
-    if source.suffix in FILES and source.is_file() and source.name != "front.json":
+    if source.name == SUMMARY and source.is_file():
+        source = source.parent
+    flags = (
+        ("--design", design),
+        ("--full", full),
+        *((f"--{OPTION.get(word, word)}", on or None) for word, on in wanted),
+    )
+    if _is_batch(source):
+        _refuse(flags, "without it: a batch has report.html, --pdf and --xlsx", ("--pdf", "--xlsx"))
+        if length != "normal":
+            raise InputError("--length", length, "the folder of a front with it: a batch has no sheets")
+        target = folder or source
+        place, names, notes, feasible = _of_batch(source, target, row, asked, database)
+    elif row is not None:
+        raise InputError("--row", row, "the folder of a batch with it")
+    elif source.suffix in FILES and source.is_file() and source.name != "front.json":
         for flag, value in (("--design", design), ("--full", full), ("--explorer", explorer or None)):
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
@@ -97,6 +126,37 @@ def _about(file: Path | None) -> dict[str, Any]:
     from synth.question.spec import read_content
 
     return {"about": read_content(file, "about"), "about_folder": file.parent}
+
+
+def _is_batch(source: Path) -> bool:
+    """Tell whether a folder is that of a batch, without importing what batches need where it is not."""
+    from synth.output_folder import settle
+    from synth.results.front_record import FRONT_FILE
+    from synth.results.loading import COMPARISON
+
+    if not source.is_dir():
+        return False
+    settle(source)
+    if any((source / name).is_file() for name in (FRONT_FILE, COMPARISON)):
+        return False
+    return any((source / name).is_file() for name in (SUMMARY, JOBS))
+
+
+def _refuse(flags: Sequence[tuple[str, Any]], right: str, but: Sequence[str]) -> None:
+    """Refuse flags that what is reported does not take."""
+    for flag, value in flags:
+        if value is not None and flag not in but:
+            raise InputError(flag, None if value is True else value, right)
+
+
+def _of_batch(
+    source: Path, target: Path, row: str | None, asked: dict[str, Any], database: str | None
+) -> tuple[Path, list[str], list[str], bool]:
+    """Write the report of a batch; return place, files, notes, and whether some row has designs."""
+    from synth.jobs.batch_report import BatchReportOptions, report_batch
+
+    how = BatchReportOptions.read(row=row, **{key: value for key, value in asked.items() if key != "length"})
+    return report_batch(source, target, how, database)
 
 
 def _of_front(

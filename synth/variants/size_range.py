@@ -17,8 +17,8 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError, whole_number
 from synth.files import csv_text, frame_csv
 from synth.input_limits import INPUT_LIMITS
-from synth.jobs.batch import DATABASE, BatchResult
-from synth.jobs.database import file_url
+from synth.jobs.batch import BatchResult
+from synth.jobs.batch_folder import job_of_folder, opened_batch
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.store import Store
 from synth.model.model import Model
@@ -158,8 +158,8 @@ def size_range(
         database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
     else:
         catalogs = own = None
-    with _opened(source, database) as store:
-        found = _job(store, source, job)
+    with opened_batch(source, database) as store:
+        found = job_of_folder(store, source, job)
         batch = _Batch(store, found, objective, catalogs, own, VARIANTS)
     batch.prepare(per_row)
     chosen_from = batch.thinned(candidates)
@@ -204,28 +204,6 @@ def check_size_range(variants: Any, candidates: Any, gap: Any, time_limit: Any) 
         raise InputError("gap", gap, "a fraction from 0 to below 1, for example 0.001")
     if not isinstance(time_limit, (int, float)) or isinstance(time_limit, bool) or not 0 < time_limit < math.inf:
         raise InputError("time_limit", time_limit, "a positive number of seconds")
-
-
-def _opened(source: Any, database: Any) -> Store:
-    if database is not None:
-        return Store(database, create=False)
-    file = Path(source) / DATABASE
-    if not file.is_file():
-        raise InputError("DIR", str(source), f"the folder of a batch, with {DATABASE} in it (or its database)")
-    return Store(file_url(file.resolve()), create=False)
-
-
-def _job(store: Store, source: Any, job: str | None) -> Job:
-    """Return the job that is meant: by its id, or the latest that was written to the folder."""
-    jobs = store.jobs()
-    if job is not None:
-        fitting = [found for found in jobs if found.id == job]
-    else:
-        folder = str(Path(source).resolve())
-        fitting = [found for found in jobs if found.folder == folder] or (jobs if len(jobs) == 1 else [])
-    if not fitting:
-        raise InputError("DIR", str(source), "the folder that a batch was written to")
-    return max(fitting, key=lambda found: found.updated)
 
 
 class _Batch:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.batch import DATABASE
+from synth.jobs.batch_folder import DATABASE
 from synth.jobs.database import engine_for, file_url
 from synth.jobs.store import Store
 from tests.jobs.test_kill import small_table

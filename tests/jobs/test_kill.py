@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.batch import DATABASE
+from synth.jobs.batch_folder import DATABASE
 from synth.jobs.database import file_url
 from synth.jobs.store import Store
 from tests.repetitions import repetitions

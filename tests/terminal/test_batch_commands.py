@@ -64,6 +64,19 @@ def test_of_many_rows_the_first_without_a_design_are_shown(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
+def test_a_batch_is_reported_with_a_row_of_ones_choice(done: tuple[Path, CompletedProcess[str]]) -> None:
+    folder, _ = done
+    said = clutchsynth("report", "out", "-o", "handed_on", "--row", "A2", "--pdf", "--xlsx", folder=folder)
+    assert (said.returncode, said.stderr) == (0, "")
+    assert said.stdout == "written to handed_on: report.html, report.pdf, batch.xlsx\n"
+    page = (folder / "handed_on" / "report.html").read_text(encoding="utf-8")
+    assert "2 of 6 rows have designs, 4 NOT" in page
+    assert "Line 3: A2" in page
+    assert "One design: proven to 0.1 %" in page
+    assert "<figure" in page  # its drawing
+
+
+@pytest.mark.slow
 def test_a_batch_says_what_it_reads_and_what_came_out(done: tuple[Path, CompletedProcess[str]]) -> None:
     folder, said = done
     assert said.returncode == 0

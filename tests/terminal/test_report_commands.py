@@ -40,7 +40,7 @@ def front_folder(tmp_path_factory):
 class Page(HTMLParser):
     """Collects what a page says and whether its elements close."""
 
-    VOID = frozenset({"meta", "img", "col", "br", "mspace", "circle", "line", "path", "rect"})
+    VOID = frozenset({"meta", "img", "col", "br", "mspace", "circle", "line", "path", "rect", "input"})
 
     def __init__(self, text):
         super().__init__()

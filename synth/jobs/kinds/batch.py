@@ -11,11 +11,13 @@ import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from synth.errors import Described, InputError, at
 from synth.jobs.batch import BatchJob
+from synth.jobs.batch_report import BatchReportOptions, batch_report_files
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.asked import (
     WHERE,
@@ -32,6 +34,7 @@ from synth.jobs.kinds.asked import (
 from synth.jobs.kinds.contract import TABLE, Posed, Record, Sources
 from synth.jobs.kinds.files import UnknownFileError
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.jobs.kinds.report import NEEDED
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_questions import Fault
 from synth.jobs.row_table import RowTable, read_table
@@ -47,6 +50,7 @@ KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "tim
 KEYS = (UPLOAD, ROWS, *KEPT)
 SUMMARY = "batch.json"
 FILES = ("designs.csv", "rows.csv", SUMMARY)
+REPORTS = {"report.html": "html", "report.pdf": "pdf", "batch.xlsx": "xlsx"}  # by the format that they are of
 STATED = "rows.json"  # what rows are kept as that stand in a request
 ROW = '{"load_torque": "600 N*m"}'
 
@@ -141,6 +145,12 @@ def plan(payload: Mapping[str, Any], tell: Tell) -> bool:
             job.close()
 
 
+def files_to_have() -> tuple[str, ...]:
+    """Return the names of the files of a batch for which no extra is lacking here."""
+    lacking = [word for word, (package, _) in NEEDED.items() if find_spec(package) is None]
+    return (*FILES, *(name for name, word in REPORTS.items() if word not in lacking))
+
+
 def files(payload: Mapping[str, Any], tell: Tell) -> Record:
     """Return one of the files of a batch, as far as its rows are answered.
 
@@ -150,9 +160,11 @@ def files(payload: Mapping[str, Any], tell: Tell) -> Record:
         There is no such file.
     """
     name = payload["name"]
+    sources: Sources = payload["sources"]
+    if name in REPORTS:
+        return Record.of(name, _report(payload["job"], name, sources))
     if name not in FILES:
         raise UnknownFileError(name)
-    sources: Sources = payload["sources"]
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder, Store(sources.database, create=False) as store:
         _, place = write_outputs(store, payload["job"], Path(folder))
         content = (place / name).read_bytes()
@@ -160,6 +172,23 @@ def files(payload: Mapping[str, Any], tell: Tell) -> Record:
             told = {key: value for key, value in json.loads(content).items() if key != "database"}
             content = (json.dumps(told, indent=1, ensure_ascii=False) + "\n").encode()
         return Record.of(name, content)
+
+
+def _report(name: str, file: str, sources: Sources) -> bytes | str:
+    """Return a file of the report of a batch; of one that is worked at it says how far that is.
+
+    Raises
+    ------
+    ExtraNeededError
+        It needs an extra that is not installed.
+    """
+    how = BatchReportOptions(formats=(REPORTS[file],))
+    with Store(sources.database, create=False) as store:
+        job = store.job(name)
+        if job is None:
+            raise UnknownFileError(file)
+        made, _, _ = batch_report_files(store, job, how, catalogs_of(job.content.get("catalogs"), sources))
+        return made[file]
 
 
 def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:

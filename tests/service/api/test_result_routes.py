@@ -196,3 +196,13 @@ def test_the_summary_of_a_batch_tells_no_place_of_this_machine(works: Service, c
     found = client.get(f"jobs/{table}/result")
     assert found.headers["etag"] == f'"{hashlib.sha256(found.content).hexdigest()}"'
     assert gzip.compress(found.content)
+
+
+def test_the_report_of_a_batch_is_a_file_of_it(works: Service, client: Client, table: str) -> None:
+    listed = [file["name"] for file in client.get(f"jobs/{table}/files").json()["files"]]
+    assert {"report.html", "report.pdf", "batch.xlsx"} < set(listed)
+    page = client.get(f"jobs/{table}/files/report.html")
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    assert "Rows by state" in page.text
+    assert works.file.name not in page.text
+    assert client.get(f"jobs/{table}/files/batch.xlsx").content.startswith(b"PK")

@@ -5,7 +5,7 @@ import { h } from "./dom.js";
 
 const MEANS = {
   "report.html": "Report", "report.pdf": "Report, PDF", "designs.csv": "Designs, CSV", "designs.xlsx": "Designs, Excel", "rows.csv": "Rows, CSV",
-  "front.svg": "Picture of the front", "bundle.zip": "Everything in one archive", "explorer.html": "Explorer, one file",
+  "batch.xlsx": "Rows, Excel",  "front.svg": "Picture of the front", "bundle.zip": "Everything in one archive", "explorer.html": "Explorer, one file",
 };
 
 /**

@@ -1,0 +1,99 @@
+// Many rows of a table: chosen by state and text, sorted by a column, some at a time.
+"use strict";
+(() => {
+  const place = document.getElementById("many-rows");
+  const source = document.getElementById("all-rows");
+  if (!place || !source) return;
+  const { whole: isWhole, rows, kind, most } = JSON.parse(source.textContent);
+  const find = (selector) => place.querySelector(selector);
+  const [tools, state, text, counted] = [".tools", "select", "input", ".counted"].map(find);
+  const [before, after, body] = [".before", ".after", "tbody"].map(find);
+  const heads = [...place.querySelectorAll("thead th")];
+  const kinds = heads.map((head) => head.className);
+  const order = new Intl.Collator("en", { numeric: true });
+  const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u00a0");
+  const shown = (value, column) => {
+    if (value === null) return "";
+    if (typeof value !== "number" || isWhole[column]) return String(value);
+    const decimals = value === 0 ? 0 : Math.max(3 - Math.floor(Math.log10(Math.abs(value))), 0);
+    const [integer, rest = ""] = value.toFixed(Math.min(decimals, 100)).split(".");
+    const digits = rest.replace(/0+$/, "");
+    return integer.replace(/\B(?=(\d{3})+$)/g, " ") + (digits ? `.${digits}` : "");
+  };
+  const make = (tag, words, parent) => {
+    const node = document.createElement(tag);
+    node.textContent = words;
+    parent.append(node);
+    return node;
+  };
+  // What is searched: all cells of a row, in small letters; made when somebody first types.
+  let searched = null;
+  let chosen = rows.map((_, k) => k);
+  let [column, down, first] = [-1, false, 0];
+
+  const compare = (a, b) => {
+    const [x, y] = [rows[a][column], rows[b][column]];
+    const [none, other] = [x === null || x === "", y === null || y === ""];
+    if (none || other) return none - other || a - b; // what is empty stands last, whatever the direction
+    const way = typeof x === "number" && typeof y === "number" ? x - y : order.compare(x, y);
+    return (down ? -way : way) || a - b;
+  };
+  const draw = () => {
+    const last = Math.min(first + most, chosen.length);
+    const made = document.createDocumentFragment();
+    chosen.slice(first, last).forEach((k) => {
+      const line = document.createElement("tr");
+      rows[k].forEach((value, n) => { make("td", shown(value, n), line).className = kinds[n]; });
+      made.append(line);
+    });
+    body.replaceChildren(made);
+    const range = chosen.length > most ? `${whole(first + 1)} to ${whole(last)} of ` : "";
+    const all = chosen.length < rows.length ? ` (of ${whole(rows.length)})` : "";
+    counted.textContent = `${range}${whole(chosen.length)} ${chosen.length === 1 ? "row" : "rows"}${all}`;
+    before.disabled = first === 0;
+    after.disabled = last >= chosen.length;
+    before.hidden = after.hidden = chosen.length <= most;
+  };
+  const choose = () => {
+    const words = text.value.toLowerCase().split(/\s+/).filter(Boolean);
+    if (words.length && !searched) searched = rows.map((row) => row.map(shown).join("\n").toLowerCase());
+    chosen = [];
+    rows.forEach((row, k) => {
+      if (state.value !== "" && row[kind] !== state.value) return;
+      if (words.every((word) => searched[k].includes(word))) chosen.push(k);
+    });
+    if (column >= 0) chosen.sort(compare);
+    first = 0;
+    draw();
+  };
+  const turn = (way) => {
+    first = Math.max(0, first + way * most);
+    draw();
+    find("table").scrollIntoView({ block: "start" });
+  };
+
+  const counts = new Map();
+  rows.forEach((row) => counts.set(row[kind], (counts.get(row[kind]) || 0) + 1));
+  make("option", `all (${whole(rows.length)})`, state).value = "";
+  [...counts].forEach(([word, count]) => { make("option", `${word} (${whole(count)})`, state).value = word; });
+  heads.forEach((head, k) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = head.textContent;
+    head.replaceChildren(button);
+    button.addEventListener("click", () => {
+      down = column === k && !down;
+      column = k;
+      heads.forEach((other) => other.removeAttribute("aria-sort"));
+      head.setAttribute("aria-sort", down ? "descending" : "ascending");
+      choose();
+    });
+  });
+  state.addEventListener("change", choose);
+  text.addEventListener("input", choose);
+  before.addEventListener("click", () => turn(-1));
+  after.addEventListener("click", () => turn(1));
+  find(".hint").remove();
+  tools.hidden = false;
+  draw();
+})();

@@ -1,0 +1,393 @@
+"""The report of a batch: rows by state, all of them to look through, one in full, failures with their reasons."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+from reports.about import About
+from reports.drawing.files import svg_of
+from reports.front_report import FrontReportRequest, first_design
+from reports.sheet.blocks import (
+    Block,
+    Bullets,
+    Cell,
+    Code,
+    Column,
+    Document,
+    Figure,
+    Heading,
+    Link,
+    Paragraph,
+    RowsBlock,
+    State,
+    TableBlock,
+    TableRow,
+    said,
+)
+from reports.sheet.design_sheet import DRAWN, DRAWN_ALT, front_state
+from synth.plain_text import percent, plain_number, printable, words
+from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
+
+AT_WORK = {
+    "open": "it waits to be worked at",
+    "running": "it is being worked at",
+    "cancelled": "it was cancelled",
+    "stopped": "it was stopped",
+    "failed": "it has failed",
+}
+NAMES = 2  # columns by which rows are called
+SHOWN_CELLS = 5  # columns of the table that was brought, beside each other
+TOLD = 200  # rows without a design that are told one by one
+TOLD_CAUSES = 30
+LONGEST = 600  # letters of a cell or a reason
+LONGEST_IN_LINE = 240  # where many rows stand below each other
+LONGEST_NAME = 80  # of a row
+ELSEWHERE = "report.html or rows.csv"
+
+
+def batch_report(batch: BatchRecord, about: About) -> Document:
+    """Return the report of a batch."""
+    blocks = [_state(batch), *_leads(batch), *_counted(batch), *_causes(batch), *_all_rows(batch)]
+    blocks += [*_size_range(batch), *_failures(batch), *_in_full(batch, about), *_asked(batch)]
+    return Document(
+        kind="Batch report",
+        title=about.title or f"{_short(batch.source, LONGEST_NAME)}: {_rows(len(batch.rows))}",
+        facts=about.facts(),
+        blocks=tuple(blocks),
+        program=_program(batch),
+        logo=about.logo,
+    )
+
+
+def batch_state(batch: BatchRecord) -> State:
+    """Return what must be known of a batch first."""
+    return _state(batch)
+
+
+def row_name(batch: BatchRecord, row: BatchRow) -> str:
+    """Return what a row is called in the table, as far as columns are carried along; its line otherwise."""
+    named = " · ".join(cell for k in batch.carried[:NAMES] if (cell := row.cells[k].strip()))
+    return _short(named, LONGEST_NAME) or f"line {row.line}"
+
+
+def short_reason(row: BatchRow) -> str:
+    """Return why a row has no design in a few words, where it is told at length elsewhere."""
+    if row.status == "infeasible" and row.causes:
+        return f"misses {', '.join(map(words, row.causes))}"
+    return row.reason
+
+
+def _short(text: str, most: int = LONGEST) -> str:
+    told = printable(" ".join(text.split()))
+    return told if len(told) <= most else f"{told[: most - 1].rstrip()}…"
+
+
+def _thousands(count: int) -> str:
+    return f"{count:,}".replace(",", " ")
+
+
+def _rows(count: int) -> str:
+    return f"{_thousands(count)} row{'' if count == 1 else 's'}"
+
+
+def _program(batch: BatchRecord) -> str:
+    return f"clutchsynth {batch.versions.get('clutchsynth', '')}".strip()
+
+
+def _state(batch: BatchRecord) -> State:
+    counts, rows = batch.counts, len(batch.rows)
+    told = (", ".join(f"{_thousands(count)} {IN_WORDS[status]}" for status, count in counts.items()) + ".",)
+    found = sum(counts.get(status, 0) for status in WITH_DESIGNS)
+    have = "has designs" if found == 1 else "have designs"
+    if not batch.finished:
+        done = f"NOT FINISHED: {_thousands(batch.answered)} of {_rows(rows)} are answered"
+        return State("open", f"{done}; {AT_WORK.get(batch.state, batch.state)}", told)
+    if not found:
+        return State("bad", f"NO DESIGN: none of {_rows(rows)} has one", told)
+    if counts.get("failed"):
+        return State("bad", f"{_rows(counts['failed'])} FAILED; {_thousands(found)} of {_rows(rows)} {have}", told)
+    if found < rows:
+        return State("open", f"{_thousands(found)} of {_rows(rows)} {have}, {_thousands(rows - found)} NOT", told)
+    if counts.get("feasible"):
+        return State("open", f"{'The row' if rows == 1 else 'All rows'} {have}, not all PROVEN", told)
+    gap = percent(float(batch.settings.get("gap") or 0))
+    return State("good", f"{'The row has' if rows == 1 else 'All rows have'} designs, proven to {gap}", told)
+
+
+def _leads(batch: BatchRecord) -> list[Block]:
+    """Return where the sections are that somebody looks for in a long file."""
+    told: list[Cell] = []
+    if batch.chosen is not None:
+        told.append(said("In full: ", Link(row_name(batch, batch.chosen.row), "#row")))
+    failed = sum(batch.counts.get(status, 0) for status in FAILURES)
+    if failed:
+        told.append(Link(f"{_rows(failed)} without a design, and why", "#failures"))
+    if batch.size_range:
+        told.append(Link("Size range", "#size-range"))
+    return [Bullets(tuple(told))] if told else []
+
+
+def _counted(batch: BatchRecord) -> list[Block]:
+    total = len(batch.rows)
+    rows = [
+        TableRow((STATES.get(status, status), _thousands(count), percent(count / total)))
+        for status, count in batch.counts.items()
+    ]
+    blocks: list[Block] = [
+        Heading("Rows by state", anchor="states"),
+        TableBlock.of("What became of the rows", COUNT_COLUMNS, rows),
+    ]
+    spread = []
+    for k, heading in enumerate(batch.objectives):
+        values = sorted(x for row in batch.rows if (x := row.objectives[k]) is not None)
+        if values:
+            told = (values[0], statistics.median(values), values[-1])
+            spread.append(
+                TableRow((_heading(heading), _thousands(len(values)), *(plain_number(value) for value in told)))
+            )
+    if spread:
+        blocks.append(TableBlock.of("The best design of each row", SPREAD_COLUMNS, spread))
+    return blocks
+
+
+def _causes(batch: BatchRecord) -> list[Block]:
+    """Return what stands in the way of rows, counted."""
+    found = Counter((row.status, cause) for row in batch.rows if row.status in FAILURES for cause in row.causes)
+    if not found:
+        return []
+    ordered = sorted(found.items(), key=lambda entry: (-entry[1], entry[0]))
+    table = [
+        TableRow((said(_way(status), " ", Code(_short(cause, LONGEST_NAME))), STATES[status], _thousands(count)))
+        for (status, cause), count in ordered[:TOLD_CAUSES]
+    ]
+    more = len(ordered) - TOLD_CAUSES
+    blocks: list[Block] = [
+        Heading("What stands in the way", anchor="causes"),
+        TableBlock.of("Limits that the nearest design misses, and columns with faults", CAUSE_COLUMNS, table),
+        Paragraph("A row counts wherever it is concerned.", small=True),
+    ]
+    return blocks + ([Paragraph(f"{_thousands(more)} more in fewer rows.", small=True)] if more > 0 else [])
+
+
+def _way(status: str) -> str:
+    return "limit" if status == "infeasible" else "column"
+
+
+def _heading(text: str) -> str:
+    name, bracket, unit = text.partition(" [")
+    return words(name) + (f" [{unit}" if bracket and unit != "-]" else "")
+
+
+def _all_rows(batch: BatchRecord) -> list[Block]:
+    names = list(batch.carried[:NAMES])
+    others = [*batch.carried[NAMES:], *(k for k in range(len(batch.headings)) if k not in batch.carried)]
+    asked = [k for k in others if batch.headings[k] != "family"][: SHOWN_CELLS - len(names)]
+    families = len({row.family for row in batch.rows}) > 1
+
+    def brought(places: Sequence[int]) -> list[Column]:
+        return [Column(_short(batch.headings[k], LONGEST_NAME)) for k in places]
+
+    columns = [Column("line", number=True, width=0.5), *brought(names)]
+    kind = len(columns)
+    columns += [Column("state"), Column("designs", number=True)]
+    columns += [Column(_heading(name), number=True) for name in batch.objectives]
+    columns += [*([Column("family")] if families else []), *brought(asked)]
+    columns += [Column("best design", width=2), Column("why none, remarks", width=2)]
+    rows: list[tuple[str | float | None, ...]] = [
+        (
+            row.line,
+            *(_short(row.cells[k], LONGEST_NAME) for k in names),
+            STATES.get(row.status, row.status),
+            row.designs,
+            *row.objectives,
+            *((row.family,) if families else ()),
+            *(_short(row.cells[k], LONGEST_NAME) for k in asked),
+            _short(row.best, LONGEST_IN_LINE),
+            _short("; ".join(text for text in (short_reason(row), row.remarks) if text), LONGEST_IN_LINE),
+        )
+        for row in batch.rows
+    ]
+    caption = "All rows, with the best design of each"
+    return [Heading("All rows", anchor="rows"), RowsBlock(caption, tuple(columns), rows, kind, ELSEWHERE)]
+
+
+def _size_range(batch: BatchRecord) -> list[Block]:
+    """Return the variants that serve all rows."""
+    found = batch.size_range
+    if not found:
+        return []
+    told: Mapping[str, Any] = found["told"]
+    count, unit = int(told.get("variants") or 0), str(told.get("unit") or "-")
+    excess = told.get("total_excess")
+    serve = "variant serves" if count == 1 else "variants serve"
+    sentences: list[Cell] = [f"{_thousands(count)} {serve} all rows that have designs."]
+    if isinstance(excess, (int, float)):
+        amount = plain_number(float(excess)) + ("" if unit == "-" else f" {unit}")
+        over = words(str(told.get("objective", "")))
+        sentences.append(f"Over each row's own best they exceed the {over} by {amount} in all rows together.")
+    proven = "proven" if told.get("fewest_proven") else "not proven to be the fewest"
+    least = int(told.get("fewest") or 0)
+    sentences.append(f"At least {least} {'is' if least == 1 else 'are'} needed ({proven}).")
+    names = [name for name in found["columns"] if any(row.get(name) for row in found["rows"])][:RANGE_COLUMNS]
+    columns = [Column(_heading(name), number=_is_number(found["rows"], name)) for name in names]
+    rows = [TableRow(tuple(_told_cell(str(row.get(name, ""))) for name in names)) for row in found["rows"]]
+    return [
+        Heading("Size range", anchor="size-range"),
+        Bullets(tuple(sentences)),
+        TableBlock.of("Variants", columns, rows),
+        Paragraph("All their sizes are in variants.csv; which row each serves, in assignment.csv.", small=True),
+    ]
+
+
+def _told_cell(cell: str) -> str:
+    number = _number(cell)
+    return _short(cell, LONGEST_NAME) if number is None else plain_number(number)
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell)
+    except ValueError:
+        return None
+
+
+def _is_number(rows: Sequence[Mapping[str, str]], name: str) -> bool:
+    return all(_number(cell) is not None for row in rows if (cell := str(row.get(name, ""))))
+
+
+# ---- one row --------------------------------------------------------------------------------------------------------
+
+
+def _in_full(batch: BatchRecord, about: About) -> list[Block]:
+    told = batch.chosen
+    if told is None:
+        return []
+    row = told.row
+    name = row_name(batch, row)
+    title = f"Line {row.line}" + ("" if name == f"line {row.line}" else f": {name}")
+    blocks: list[Block] = [Heading(title, anchor="row"), _row_state(told)]
+    cells = [
+        TableRow((_short(heading, LONGEST_NAME), _short(cell)))
+        for heading, cell in zip(batch.headings, row.cells, strict=True)
+        if cell.strip()
+    ]
+    blocks.append(TableBlock.of("The row as it was brought", CELL_COLUMNS, cells))
+    if row.remarks:
+        blocks.append(Paragraph(f"{row.remarks[:1].upper()}{_short(row.remarks)[1:]}.", small=True))
+    if told.front is None or told.calculation is None:
+        return blocks
+    if told.drawing is not None:
+        svg = svg_of(told.drawing, told.front.frame.title, _program(batch), about)
+        blocks.append(Figure(svg, DRAWN_ALT, DRAWN))
+    inner = first_design(FrontReportRequest(front=told.front, calculation=told.calculation, about=about))
+    return blocks + [_deeper(block) for block in inner]
+
+
+def _deeper(block: Block) -> Block:
+    """Return a block of a report inside a section of this one."""
+    if isinstance(block, Heading):
+        return Heading(block.text, block.level + 1, block.anchor)
+    return block
+
+
+def _row_state(told: RowInFull) -> State:
+    row = told.row
+    if told.front is not None:
+        level, head = front_state(told.front)
+        count = f"{row.designs} designs" if row.designs != 1 else "One design"
+        stopped = (f"Stopped: {told.front.interrupted}.",) if told.front.interrupted else ()
+        return State(level, f"{count}: {head[:1].lower()}{head[1:]}", stopped)
+    details = tuple(_short(text, 10 * LONGEST) for text in (row.reason, row.best, told.note) if text)
+    if row.designs:
+        return State("open", f"{row.designs} designs, not told in full", details)
+    level = "open" if row.status == "not_solved" else "bad"
+    return State(level, STATES.get(row.status, row.status).upper(), details)
+
+
+# ---- what has no design, and what was asked -------------------------------------------------------------------------
+
+
+def _failures(batch: BatchRecord) -> list[Block]:
+    shares = _shares({status: batch.counts[status] for status in FAILURES if batch.counts.get(status)}, TOLD)
+    if not shares:
+        return []
+    groups: list[tuple[str, tuple[TableRow, ...]]] = []
+    for status, share in shares.items():
+        rows = list(islice((row for row in batch.rows if row.status == status), share))
+        told = tuple(
+            TableRow((str(row.line), row_name(batch, row), _short(row.reason) or "no reason is kept")) for row in rows
+        )
+        first = "" if share == batch.counts[status] else f", the first {share}"
+        label = STATES[status][:1].upper() + STATES[status][1:]
+        groups.append((f"{label}: {_rows(batch.counts[status])}{first}", told))
+    blocks: list[Block] = [
+        Heading("Rows without a design, and why", anchor="failures"),
+        TableBlock("Lines of the table that was brought", FAILURE_COLUMNS, tuple(groups)),
+    ]
+    more = sum(batch.counts[status] for status in shares) - sum(shares.values())
+    if more > 0:
+        blocks.append(Paragraph(f"{_thousands(more)} more: see {ELSEWHERE}."))
+    return blocks
+
+
+def _shares(counts: Mapping[str, int], most: int) -> dict[str, int]:
+    """Return how many of each are told: all of what is rare, and of the rest alike.
+
+    Examples
+    --------
+    >>> _shares({"failed": 3, "bad_input": 2000, "infeasible": 90}, 200)
+    {'failed': 3, 'bad_input': 107, 'infeasible': 90}
+    """
+    found: dict[str, int] = {}
+    for place, status in enumerate(sorted(counts, key=lambda status: counts[status])):
+        found[status] = min(counts[status], (most - sum(found.values())) // (len(counts) - place))
+    return {status: found[status] for status in counts}
+
+
+def _asked(batch: BatchRecord) -> list[Block]:
+    settings = batch.settings
+    gap, sizes = percent(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
+    told: list[Cell] = []
+    if settings.get("objectives"):
+        asked = settings["objectives"]
+        names = [f"{name} ({sense})" for name, sense in asked.items()] if isinstance(asked, Mapping) else asked
+        told.append(f"Objectives: {', '.join(map(str, names))}")
+    else:
+        told.append("Objectives: those that each family has by default")
+    told.append(
+        f"At most {settings.get('points')} designs per row, gap {gap}, {sizes} sizes, seed {settings.get('seed')}"
+    )
+    if settings.get("time_limit"):
+        told.append(f"At most {plain_number(float(settings['time_limit']))} s per row: results depend on the machine")
+    versions = ", ".join(f"{name} {version}" for name, version in batch.versions.items())
+    digests: list[Cell] = [said(f"{name}: ", Code(_short(value, LONGEST_NAME))) for name, value in batch.hashes.items()]
+    return [
+        Heading("What was asked of all rows", anchor="asked"),
+        Bullets(tuple(told)),
+        Heading("To reproduce", anchor="again"),
+        Bullets(
+            (
+                said("The table ", Code(_short(batch.source, LONGEST_NAME)), " with ", Code("clutchsynth batch"), "."),
+                f"Reported with {versions}.",
+                *digests,
+            )
+        ),
+    ]
+
+
+RANGE_COLUMNS = 9
+COUNT_COLUMNS = (Column("state", width=3), Column("rows", number=True), Column("share", number=True))
+SPREAD_COLUMNS = (
+    Column("objective", width=3),
+    Column("rows", number=True),
+    Column("least", number=True),
+    Column("median", number=True),
+    Column("largest", number=True),
+)
+CAUSE_COLUMNS = (Column("what", width=3), Column("state", width=1.5), Column("rows", number=True))
+CELL_COLUMNS = (Column("column", width=1.5), Column("cell", width=3))
+FAILURE_COLUMNS = (Column("line", number=True, width=0.6), Column("row", width=1.4), Column("reason", width=5))
