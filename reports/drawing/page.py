@@ -33,7 +33,7 @@ STANDARD = tuple(s for s in SCALES if s <= 50)
 LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
 ROOM = 6.0  # around a view
 PLAIN = 2.5  # mm on paper of the thinnest part of a detail
-OWN_MOST = (90.0, 70.0, 55.0)  # mm: largest side of a view with a scale of its own, as there is room
+OWN_MOST, OWN_LEAST = 90.0, 28.0  # mm: largest side of a view with a scale of its own
 
 
 @dataclass(frozen=True)
@@ -135,9 +135,9 @@ def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: floa
     least = 2 * scale if scale < 20 else scale
     scales = [s for s in STANDARD if s >= least] if details else STANDARD[:1]
     # Beside single parts, whose scale is free, the other views stay together.
-    for together, enlarged, most in product((True, False) if own else (False,), scales, OWN_MOST if own else (0.0,)):
+    for together, enlarged, of_own in product((True, False) if own else (False,), scales, tuple(_own_scales(own))):
         magnified = [_detail_block(view, detail, _wanted(detail, enlarged, scale)) for view, detail in details]
-        magnified += [_view_block(view, min(enlarged, _own_scale(view, most)), named) for view in own]
+        magnified += [_view_block(view, its, named) for view, its in zip(own, of_own, strict=True)]
         blocks = [*views, *magnified]
         for first in range(len(views), len(views) - 1 if together else 0, -1):
             found = _filled([(beside[0], blocks[:first]), (beside[1], blocks[first:])])
@@ -168,9 +168,20 @@ def _extent(view: View) -> float:
     return max(x1 - x0, y1 - y0)
 
 
-def _own_scale(view: View, most: float) -> float:
-    """Return the largest scale at which a single part is no larger than ``most`` [mm]."""
-    return next((s for s in STANDARD if s * _extent(view) <= most), STANDARD[-1])
+def _own_scales(views: Sequence[View]) -> Iterator[tuple[float, ...]]:
+    """Yield scales of single parts, large ones first; what is largest on paper is the first to be made smaller."""
+    extents = [_extent(view) for view in views]
+    places = [next((k for k, s in enumerate(STANDARD) if s * x <= OWN_MOST), len(STANDARD) - 1) for x in extents]
+    while True:
+        yield tuple(STANDARD[k] for k in places)
+        smaller = [
+            (STANDARD[k] * x, j)
+            for j, (k, x) in enumerate(zip(places, extents, strict=True))
+            if k + 1 < len(STANDARD) and STANDARD[k + 1] * x >= OWN_LEAST
+        ]
+        if not smaller:
+            return
+        places[max(smaller)[1]] += 1
 
 
 def _view_block(view: View, scale: float, named: bool) -> _Block:
