@@ -10,7 +10,7 @@ from problems import practice
 from problems.centrifugal import balls as ball_blocks
 from problems.centrifugal import curves, ramp_drawing
 from problems.centrifugal import state as states
-from problems.centrifugal.drawing import return_spring
+from problems.centrifugal.spring_drawing import return_spring
 from problems.mechanics import ball_ramp, centrifugal
 from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem

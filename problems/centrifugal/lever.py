@@ -8,10 +8,10 @@ from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal.drawing import CLAMP
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import ROD
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
+from problems.centrifugal.spring_drawing import CLAMP
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4, S4
 from synth.declaration import Block, Declaration, Requirement, Variable

@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from problems.centrifugal.drawing import FLYWEIGHT, Flyweight, Spring, clutch_drawing, told_of_springs
+from problems.centrifugal.drawing import Flyweight, clutch_drawing
+from problems.centrifugal.places import FLYWEIGHT
+from problems.centrifugal.spring_drawing import Spring, told_of_springs
 from problems.drawing_parts import Sizes
 from synth.drawing import (
     XY,

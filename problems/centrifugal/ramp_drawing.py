@@ -6,7 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from problems.centrifugal.drawing import FLYWEIGHT, Flyweight, Spring, clutch_drawing, told_of_springs
+from problems.centrifugal.drawing import Flyweight, clutch_drawing
+from problems.centrifugal.places import FLYWEIGHT
+from problems.centrifugal.spring_drawing import Spring, told_of_springs
 from problems.drawing_parts import Sizes
 from synth.drawing import Angle, Area, Circle, Dimension, Drawable, Drawing, Line, LineKind, View, disc
 

@@ -11,10 +11,10 @@ from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal.drawing import CLAMP, return_spring
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import REVERSED
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
+from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4
 

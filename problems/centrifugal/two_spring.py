@@ -11,7 +11,7 @@ from problems import practice
 from problems.centrifugal import balls as ball_blocks
 from problems.centrifugal import curves, lever_drawing, ramp_drawing
 from problems.centrifugal import state as states
-from problems.centrifugal.drawing import CLAMP, return_spring
+from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal, two_spring
 from problems.sources import NOT_IN_S4, S4, TYPICAL
 from synth import DesignProblem
