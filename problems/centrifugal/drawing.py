@@ -26,7 +26,6 @@ from synth.drawing import (
     LineKind,
     Measured,
     Radius,
-    Slant,
     Vertex,
     View,
     Weight,
@@ -198,7 +197,7 @@ def _front_view(size: Sizes, flyweight: Flyweight, springs: Sequence[Spring], *,
         *(Radius((0, 0), radius, name, RADII_FROM - k * RADII_STEP, "right") for k, (radius, name) in enumerate(radii)),
     ]
     if across - wall[1] > 0:
-        dimensions.append(Slant((0, wall[1]), (0, across), wall[0], apart=8.0))
+        dimensions.append(Dimension((0, wall[1]), (0, across), wall[0], "right"))
     return View(FRONT, tuple(shapes), tuple(dimensions), tuple(_front_balloons(size, weights, placed)))
 
 
