@@ -37,6 +37,7 @@ from problems.centrifugal.springs import (
     declare_springs,
     limit_share_of_force,
     limit_spring_force,
+    name_spring_lengths,
 )
 
 __all__ = [
@@ -75,4 +76,5 @@ __all__ = [
     "limit_spring_circle",
     "limit_spring_force",
     "limit_weight_room",
+    "name_spring_lengths",
 ]

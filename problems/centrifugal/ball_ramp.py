@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves
+from problems.centrifugal import curves, ramp_drawing
 from problems.centrifugal import state as states
+from problems.centrifugal.spring_drawing import return_spring
 from problems.mechanics import ball_ramp, centrifugal
 from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
 from synth.declaration import Declaration
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -135,6 +137,9 @@ class CentrifugalBallRamp(DesignProblem):
             deflection=deflection + gap,
             text="The return springs stand their deflection at contact",
         )
+        blocks.name_spring_lengths(
+            d, springs=springs, rest=deflection, most=deflection + gap, symbol="L_rs", when="at contact"
+        )
         ball_blocks.declare_ball_pressure(d, duty=duty, balls=balls, end_radius=end)
         ball_blocks.limit_circle_room(d, wants=wants, rest_radius=rest, balls=balls, springs=[springs])
         blocks.declare_size(
@@ -194,3 +199,17 @@ class CentrifugalBallRamp(DesignProblem):
             ``speed`` of the driving side [rad/s].
         """
         return states.of_path(spec, curves.ball_ramp_path(spec, design), point["speed"])
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return front view, ramp and spring.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        """
+        return ramp_drawing.ramp_drawing(
+            spec, design, travel="plate_gap", pushed="pressure plate", springs=[return_spring("plate_gap")]
+        )

@@ -10,7 +10,7 @@ import numpy as np
 from problems import cost, wear
 from problems.friction.duty import Duty as FrictionDuty
 from problems.mechanics import centrifugal
-from problems.practice import UNSOURCED, Scope
+from problems.practice import UNSOURCED, Scope, name_boss
 from problems.sources import DRIVE
 from synth.declaration import Block, Requirement
 
@@ -219,6 +219,7 @@ def declare_body(
     text = "Friction discs beyond the first, with a plate for each"
     d.step("further_discs_mass", "kg", discs, symbol="m_fd", text=text, source="geometry")
     d.step("boss_mass", "kg", bosses, symbol="m_boss", text="A boss on either shaft", source="geometry")
+    name_boss(d, duty)
     d.derive("part_mass", "kg", part_mass, symbol="m_part", text=counted, source="geometry")
     d.derive(
         "mass",

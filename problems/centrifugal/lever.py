@@ -6,16 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
 from problems import practice
+from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import ROD
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
+from problems.centrifugal.spring_drawing import CLAMP
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4, S4
 from synth.declaration import Block, Declaration, Requirement, Variable
 
 if TYPE_CHECKING:
-    pass
+    from collections.abc import Mapping
+
+    from synth.drawing import Drawing
 
 
 # Ranges of the arms [mm]; refusals reason with them.
@@ -113,6 +117,14 @@ class CentrifugalLever(LeverClutch):
             deflection=lever.deflection + travel,
             text="The clamp springs stand the stop",
         )
+        blocks.name_spring_lengths(
+            d,
+            springs=springs,
+            rest=lever.deflection,
+            most=lever.deflection + travel,
+            symbol="L_cs",
+            when="at the stop",
+        )
         blocks.limit_weight_room(
             d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=rods.spring_arm
         )
@@ -143,6 +155,19 @@ class CentrifugalLever(LeverClutch):
             what="the clamp springs",
         )
         blocks.declare_objectives(d, scope=scope)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return front view, lever and spring.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        """
+        arms = lever_drawing.Leg("rod_arm", "contact_travel"), lever_drawing.Leg("spring_arm")
+        return lever_drawing.lever_drawing(spec, design, arms=arms, pushed="pressure plate", springs=(CLAMP,))
 
     def _declare_guards(self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(

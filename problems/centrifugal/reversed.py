@@ -9,15 +9,20 @@ import numpy as np
 
 from problems import centrifugal as blocks
 from problems import practice
+from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import REVERSED
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
+from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from synth.declaration import Declaration
+    from synth.drawing import Drawing
 
 # Range of the short leg [mm]; refusals reason with it.
 PLATE_ARM = (3.0, 150.0)
@@ -88,6 +93,13 @@ class CentrifugalReversed(LeverClutch):
             source=RECONSTRUCTED,
         )
         self._declare_springs(d, lever=lever, leg=leg, springs=springs, lift=lift)
+        for one, deflection, most, symbol, when in (
+            (springs, lever.deflection, lift, "L_cs", "at the stop"),
+            (leg.springs, leg.deflection, lever.contact_travel, "L_rs", "at contact"),
+        ):
+            blocks.name_spring_lengths(
+                d, springs=one, rest=deflection, most=deflection + most, symbol=symbol, when=when
+            )
         blocks.limit_weight_room(d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=leg.arm)
         lever_blocks.declare_size(
             d,
@@ -134,6 +146,22 @@ class CentrifugalReversed(LeverClutch):
             what="the return springs",
         )
         blocks.declare_objectives(d, scope=scope)
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return front view, lever and springs.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        """
+        arms = (lever_drawing.Leg("plate_arm", "contact_travel"),)
+        springs = (CLAMP, return_spring("contact_travel"))
+        return lever_drawing.lever_drawing(
+            spec, design, arms=arms, pushed="pressure plate, and of disc 1", springs=springs
+        )
 
     def _declare_leg(self, d: Declaration) -> Leg:
         return Leg(

@@ -80,6 +80,37 @@ def declare_springs(d: Declaration, *, slot: str, symbol: str, count_symbol: str
     return SpringSet(part, count)
 
 
+def name_spring_lengths(d: Declaration, *, springs: SpringSet, rest: Any, most: Any, symbol: str, when: str) -> None:
+    """Name the lengths of the springs of a set, at rest and at their largest deflection.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    springs : SpringSet
+        The set; the names of the lengths begin with its slot.
+    rest, most : symbol
+        Deflections from the free length [m].
+    symbol : str
+        What the symbols begin with.
+    when : str
+        When the deflection is the largest.
+    """
+    free, what = springs.part.free_length_L0, springs.part.slot.replace("_", " ")
+    for name, value, ending, text in (
+        ("rest_length", free - rest, "0", "at rest"),
+        ("least_length", free - most, "1", when),
+    ):
+        d.step(
+            f"{springs.part.slot}_{name}",
+            "mm",
+            value,
+            symbol=f"{symbol}{ending}",
+            text=f"Length of a {what} {text}",
+            source="geometry",
+        )
+
+
 def limit_spring_force(d: Declaration, *, name: str, springs: SpringSet, deflection: Any, text: str) -> None:
     """Declare the limit of the force on one spring at its largest deflection.
 

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves
+from problems.centrifugal import curves, lever_drawing, ramp_drawing
 from problems.centrifugal import state as states
+from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal, two_spring
 from problems.sources import NOT_IN_S4, S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Declaration
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -141,6 +143,13 @@ class CentrifugalTwoSpring(DesignProblem):
             force=way.stop_force,
             text="The clamp springs stand their deflection at the stop",
         )
+        for springs, rest_deflection, most, symbol, when in (
+            (way.returning, way.return_deflection, way.plate_travel, "L_rs", "at contact"),
+            (way.clamping, way.clamp_deflection, way.stop_travel - way.plate_travel, "L_cs", "at the stop"),
+        ):
+            blocks.name_spring_lengths(
+                d, springs=springs, rest=rest_deflection, most=rest_deflection + most, symbol=symbol, when=when
+            )
         if drive.balls is not None:
             ball_blocks.declare_ball_pressure(d, duty=duty, balls=drive.balls, end_radius=end)
         ball_blocks.limit_circle_room(
@@ -153,14 +162,13 @@ class CentrifugalTwoSpring(DesignProblem):
             text="Force on the stop of the tension disc at top_speed",
             source=ANALYSIS,
         )
-        springs = [way.returning, way.clamping]
         blocks.declare_size(
             d,
             duty=duty,
             lining=lining,
             rest_radius=rest,
             flyweights=blocks.Flyweights(drive.mass, end, drive.half_height, drive.width, drive.count),
-            springs=springs,
+            springs=[way.returning, way.clamping],
             # The tension disc goes the whole way to its stop, the plate a part of it.
             around=blocks.Surroundings(
                 scope, wear, way.stop_travel, None if drive.balls is None else drive.balls.part, TENSION_DISC
@@ -210,6 +218,22 @@ class CentrifugalTwoSpring(DesignProblem):
             ``speed`` of the driving side [rad/s].
         """
         return states.of_path(spec, curves.two_spring_path(self, spec, design), point["speed"])
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return front view, ramp or lever, and springs.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        """
+        pushed, springs = "tension disc", (return_spring("plate_travel"), CLAMP)
+        if self.option("mechanism") == "ball_ramp":
+            return ramp_drawing.ramp_drawing(spec, design, travel="stop_travel", pushed=pushed, springs=springs)
+        arms = (lever_drawing.Leg("axial_arm", "stop_travel"),)
+        return lever_drawing.lever_drawing(spec, design, arms=arms, pushed=pushed, springs=springs)
 
     def _declare_way(self, d: Declaration) -> Way:
         plate = d.variable(
@@ -365,9 +389,12 @@ class CentrifugalTwoSpring(DesignProblem):
             text="Transmission of the levers dr/dx, l_c/l_a",
             source=f"{S4}, practice 2",
         )
+        angle = way.stop_travel / arm
+        text = "Angle of the levers when the tension disc meets its stop"
+        d.step("lever_stop_angle", "rad", angle, symbol="phi_max", text=text, source="geometry")
         d.at_most(
             "lever_angle",
-            way.stop_travel / arm,
+            angle,
             weights.angle_limit,
             "rad",
             text="The levers turn so little that the model holds",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from reports.about import About
 from reports.drawing.paper import PaperSheet, PlacedView, Stroke
@@ -32,6 +33,7 @@ STANDARD = tuple(s for s in SCALES if s <= 50)
 LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
 ROOM = 6.0  # around a view
 PLAIN = 2.5  # mm on paper of the thinnest part of a detail
+OWN_MOST, OWN_LEAST = 90.0, 28.0  # mm: largest side of a view with a scale of its own
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: st
     low, right = NOTE * len(lines) + 4, BLOCK + list_height(drawing.items)
     if max(low, right) > frame[3] - frame[1] - 60:
         return None
-    largest = max(max(b[2] - b[0], b[3] - b[1]) for b in (view.box for view in drawing.views))
+    largest = max(_extent(view) for view in drawing.views if not view.own_scale)
     for scale in STANDARD:
         if scale * largest < LARGE_ENOUGH[name] and not scale == STANDARD[0]:
             return None
@@ -124,26 +126,32 @@ def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: st
 def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: float) -> list[PlacedView] | None:
     """Return all views and details in their places at a scale; None where there is no room."""
     named = len(drawing.views) > 1
-    views = [_view_block(view, scale, named) for view in drawing.views]
+    views = [_view_block(view, scale, named) for view in drawing.views if not view.own_scale]
+    own = [view for view in drawing.views if view.own_scale]
     details = [(view, detail) for view in drawing.views for detail in view.details]
     x0, y0, x1, y1 = frame
     beside = (x0, y0 + low, x1 - WIDE, y1), (x1 - WIDE, y0 + right, x1, y1)
     band = (x0, y0 + max(low, right), x1, y1)
     least = 2 * scale if scale < 20 else scale
-    for enlarged in (s for s in STANDARD if s >= least):
+    scales = [s for s in STANDARD if s >= least] if details else STANDARD[:1]
+    # Beside single parts, whose scale is free, the other views stay together.
+    for together, enlarged, of_own in product((True, False) if own else (False,), scales, tuple(_own_scales(own))):
         magnified = [_detail_block(view, detail, _wanted(detail, enlarged, scale)) for view, detail in details]
-        for first in range(len(views), 0, -1):
-            places = [(beside[0], views[:first]), (beside[1], [*views[first:], *magnified])]
-            found = _filled(places)
+        magnified += [_view_block(view, its, named) for view, its in zip(own, of_own, strict=True)]
+        blocks = [*views, *magnified]
+        for first in range(len(views), len(views) - 1 if together else 0, -1):
+            found = _filled([(beside[0], blocks[:first]), (beside[1], blocks[first:])])
             if found is not None:
                 return found
-        found = _filled([(band, [*views, *magnified])])
+        found = _filled([(band, blocks)])
         if found is not None:
             return found
-        # Details may stand under each other at the left where the views do not need all of it.
-        found = _filled([(beside[0], [*views, *magnified])])
-        if found is not None:
-            return found
+        # Details may stand under each other at the left where the views do not need all of it, some of several single
+        # parts at the right.
+        for first in range(len(blocks), len(views) if own else len(blocks) - 1, -1):
+            found = _filled([(beside[0], blocks[:first]), (beside[1], blocks[first:])])
+            if found is not None:
+                return found
     return None
 
 
@@ -155,11 +163,32 @@ def _wanted(detail: Detail, enlarged: float, scale: float) -> float:
     return min(enlarged, min(plain, default=enlarged))
 
 
+def _extent(view: View) -> float:
+    x0, y0, x1, y1 = view.box
+    return max(x1 - x0, y1 - y0)
+
+
+def _own_scales(views: Sequence[View]) -> Iterator[tuple[float, ...]]:
+    """Yield scales of single parts, large ones first; what is largest on paper is the first to be made smaller."""
+    extents = [_extent(view) for view in views]
+    places = [next((k for k, s in enumerate(STANDARD) if s * x <= OWN_MOST), len(STANDARD) - 1) for x in extents]
+    while True:
+        yield tuple(STANDARD[k] for k in places)
+        smaller = [
+            (STANDARD[k] * x, j)
+            for j, (k, x) in enumerate(zip(places, extents, strict=True))
+            if k + 1 < len(STANDARD) and STANDARD[k + 1] * x >= OWN_LEAST
+        ]
+        if not smaller:
+            return
+        places[max(smaller)[1]] += 1
+
+
 def _view_block(view: View, scale: float, named: bool) -> _Block:
     def make(x: float, y: float) -> PlacedView:
         return placed_view(view, scale, (x, y), named=named)
 
-    return _Block(make, make(0, 0).region, aligned=True)
+    return _Block(make, make(0, 0).region, aligned=not view.own_scale)
 
 
 def _detail_block(view: View, detail: Detail, scale: float) -> _Block:

@@ -24,7 +24,8 @@ def placed_view(view: View, scale: float, origin: XY, *, named: bool) -> PlacedV
     told = [*view.balloons, *view.details, *(d for d in view.dimensions if isinstance(d, Radius))]
     window = _on_paper(view.box, scale, origin)
     measures, called, region = _marked(view.dimensions, told, window, scale, origin)
-    heading = Text((_middle(window), region[3] + 3), view.name, NAME, "middle") if named else None
+    words = f"{view.name} ({scale_label(scale)})" if view.own_scale else view.name
+    heading = Text((_middle(window), region[3] + 3), words, NAME, "middle") if named else None
     return PlacedView(
         view=view,
         detail=None,

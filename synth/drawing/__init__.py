@@ -12,6 +12,7 @@ rest is a line of ``omitted``.
 - :class:`Dimension`, :func:`diameter`, :class:`Slant`, :class:`Angle` and :class:`Radius` measure between points and
   name the quantity: a measure that is not that of the design to 1e-9 is refused.
 - :class:`Detail` draws a piece again, larger, where parts are thinner than 1.2 mm on paper.
+- ``View(own_scale=True)`` is a single part, say a spring, at a scale of its own.
 - :class:`Weight` says which masses of the design the areas must give.
 
 Sheet, scale, places of dimensions and numbers, title block and parts list are matters of the layout.

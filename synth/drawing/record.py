@@ -68,6 +68,9 @@ class View:
     revolved : bool
         Whether the view is a section through the axis y = 0, of which shapes show the upper half: it is drawn on the
         other side as well, with its centre line. Areas that are ``half`` stand where they are written alone.
+    own_scale : bool
+        Whether it is a single part, say a spring, that is drawn as large as its room allows, with its scale in its
+        name; others have the scale of the sheet.
     """
 
     name: str
@@ -76,6 +79,7 @@ class View:
     balloons: tuple[Balloon, ...] = ()
     details: tuple[Detail, ...] = ()
     revolved: bool = False
+    own_scale: bool = False
 
     @cached_property
     def drawn(self) -> tuple[Drawable, ...]:
