@@ -32,6 +32,7 @@ STANDARD = tuple(s for s in SCALES if s <= 50)
 LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the largest side of the main view should be
 ROOM = 6.0  # around a view
 PLAIN = 2.5  # mm on paper of the thinnest part of a detail
+SEEN = 1.0  # mm on paper, less than that of it asks for a larger sheet
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: st
         if scale * largest < LARGE_ENOUGH[name] and not scale == STANDARD[0]:
             return None
         views = _placed(drawing, scale, frame, low, right)
-        if views is not None:
+        if views is not None and (LARGE_ENOUGH[name] == 0 or _details_seen(views)):
             break
     else:
         return None
@@ -145,6 +146,10 @@ def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: floa
         if found is not None:
             return found
     return None
+
+
+def _details_seen(views: Sequence[PlacedView]) -> bool:
+    return all(v.scale * v.detail.least >= SEEN for v in views if v.detail and v.detail.least is not None)
 
 
 def _wanted(detail: Detail, enlarged: float, scale: float) -> float:
