@@ -25,7 +25,7 @@ from synth.drawing import (
     rectangle,
 )
 
-ROTOR, POWDER, DRUM, BODY, COIL, SHIELD, SHAFT = 1, 2, 3, 4, 5, 6, 7
+ROTOR, POWDER, BODY, COIL, DRUM = 1, 2, 3, 4, 5
 
 
 class _Places:
@@ -85,24 +85,25 @@ def powder_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> D
     omitted.append("what carries the drum and drives it" if still else "slip rings and brushes, drive of the body")
     thick = 0.0
     if complete:
+        shield, shaft = (DRUM + 1, DRUM + 2) if still else (DRUM, DRUM + 1)
         thick, out = size("shield_thickness"), (size("shaft_length") - at.length) / 2
         end = at.length + out
         shapes += [
-            Area(rectangle(-thick, 0.0, 0.0, at.outside), SHIELD),
-            Area(rectangle(at.length, at.length + thick, 0.0, at.outside), SHIELD),
-            Area(rectangle(-out, end, 0.0, at.shaft), SHAFT, cut=False),
+            Area(rectangle(-thick, 0.0, 0.0, at.outside), shield),
+            Area(rectangle(at.length, at.length + thick, 0.0, at.outside), shield),
+            Area(rectangle(-out, end, 0.0, at.shaft), shaft, cut=False),
         ]
         items += [
-            Item(SHIELD, "Bearing shield", 2, "light metal", "a full disc, as its mass is computed", Hatch.LEFT),
-            Item(SHAFT, "Shaft", 1, "steel", "ends of equal length assumed"),
+            Item(shield, "Bearing shield", 2, "light metal", "a full disc, as its mass is computed", Hatch.LEFT),
+            Item(shaft, "Shaft", 1, "steel", "ends of equal length assumed"),
         ]
         balloons += [
-            Balloon((-thick / 2, -(at.shaft + 0.7 * (at.outside - at.shaft))), SHIELD, "bottom"),
-            Balloon((-(out + thick) / 2, -at.shaft / 2), SHAFT, "bottom"),
+            Balloon((-thick / 2, -(at.shaft + 0.7 * (at.outside - at.shaft))), shield, "bottom"),
+            Balloon((-(out + thick) / 2, -at.shaft / 2), shaft, "bottom"),
         ]
         weights += [
-            Weight((SHIELD,), ("shields_mass",), "shield_density"),
-            Weight((SHAFT,), ("shaft_mass",), "steel_density"),
+            Weight((shield,), ("shields_mass",), "shield_density"),
+            Weight((shaft,), ("shaft_mass",), "steel_density"),
         ]
         dimensions += [
             Dimension((-thick, at.outside), (at.length + thick, at.outside), "length", "top"),
@@ -170,7 +171,7 @@ def _parts(size: Sizes, at: _Places, *, still: bool) -> tuple[list[Drawable], li
     ]
     if still:
         shapes.append(ring(x0, x1, at.gap_outside, at.drum, DRUM))
-        items.insert(2, Item(DRUM, "Drum", 1, "steel", "drawn as long as the rotor", Hatch.LEFT))
+        items.append(Item(DRUM, "Drum", 1, "steel", "drawn as long as the rotor", Hatch.LEFT))
         balloons.append(
             Balloon((at.window[1] + 0.3 * size("pole_length"), -(at.gap_outside + at.drum) / 2), DRUM, "bottom")
         )
