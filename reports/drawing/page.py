@@ -1,7 +1,7 @@
 """The sheet of a drawing: its size, the scale, and the places of views and details.
 
-Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand to the left of title block and parts list or
-above them, whichever lets them be larger; details are as large as their room allows.
+Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand in one row, to the left of title block and
+parts list or above them, whichever lets them be larger; details are as large as their room allows.
 """
 
 from __future__ import annotations
@@ -133,11 +133,9 @@ def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: floa
     least = 2 * scale if scale < 20 else scale
     for enlarged in (s for s in STANDARD if s >= least):
         magnified = [_detail_block(view, detail, _wanted(detail, enlarged, scale)) for view, detail in details]
-        for first in range(len(views), 0, -1):
-            places = [(beside[0], views[:first]), (beside[1], [*views[first:], *magnified])]
-            found = _filled(places)
-            if found is not None:
-                return found
+        found = _filled([(beside[0], views), (beside[1], magnified)])
+        if found is not None:
+            return found
         found = _filled([(band, [*views, *magnified])])
         if found is not None:
             return found
@@ -192,12 +190,14 @@ def _filled(places: Sequence[tuple[Box2, Sequence[_Block]]]) -> list[PlacedView]
 
 
 def _rows(blocks: Sequence[_Block], wide: float) -> list[list[_Block]] | None:
-    """Return blocks in rows that are no wider than the room, in their order."""
+    """Return blocks in rows that are no wider than the room, in their order; views stand in one row."""
     rows: list[list[_Block]] = [[]]
     for block in blocks:
         if block.wide > wide:
             return None
         if rows[-1] and sum(b.wide for b in rows[-1]) + block.wide > wide:
+            if block.aligned:
+                return None
             rows.append([])
         rows[-1].append(block)
     return rows

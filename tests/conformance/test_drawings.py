@@ -124,8 +124,9 @@ def assert_readable(sheet):
     x0, y0, x1, y1 = sheet.frame
     texts = sheet.all_texts()
     boxes = [(place, text.text, text.corners) for place, text in texts]
-    for view in sheet.views:
-        boxes += [(view.view.name, "ring", ring_box(c.ring)) for c in view.callouts if c.ring]
+    for n, view in enumerate(sheet.views):
+        place = f"{n} {view.view.name}" + (f" {view.detail.letter}" if view.detail else "")
+        boxes += [(place, "ring", ring_box(c.ring)) for c in view.callouts if c.ring]
     for place, text, corners in boxes:
         assert all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in corners), (place, text)
     for k, (place, text, corners) in enumerate(boxes):
