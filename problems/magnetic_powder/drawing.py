@@ -18,6 +18,7 @@ from synth.drawing import (
     Drawing,
     Hatch,
     Item,
+    Measured,
     Slant,
     View,
     Weight,
@@ -61,7 +62,7 @@ def powder_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> D
     still = size("built_drum") > 0
     shapes, items, balloons = _parts(size, at, still=still)
     x0, between = at.rotor[0], at.shaft + 0.6 * (at.rim - at.shaft)
-    dimensions = [
+    dimensions: list[Measured] = [
         Dimension((0.0, at.outside), (at.length, at.outside), "pack_length" if complete else "length", "top"),
         Dimension((at.window[0], at.outside), (at.window[1], at.outside), "coil_length", "top"),
         Dimension((x0, at.outside), (at.window[0], at.outside), "pole_length", "top", times=2),
