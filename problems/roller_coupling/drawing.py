@@ -177,13 +177,13 @@ def _front(shape: _Shape) -> View:
         *((Line((-over, k), (over, k), LineKind.CENTRE) for k in (e, e + r, e - r)) if e > 0 else ()),
     ]
     last = shape.rollers()[2]
-    tip = (d, half)
+    tip = (half * x + d * y, half * y - d * x)
     long = math.hypot(*tip)
     dimensions: list[Measured] = [
         Dimension((-swept, e), (swept, e), "outer_diameter", "top", diameter=True),
         Dimension((-d, -half), (-d, half), "guide_half_length", "left", factor=2.0),
         Dimension((0.0, e), (0.0, e + r), "arm_radius", "left"),
-        Slant(tip, (tip[0] * across / long, tip[1] * across / long), "rim", apart=-8.0),
+        Slant(tip, (tip[0] * across / long, tip[1] * across / long), "rim", apart=-7.0),
         Radius(last, d, "roller.outer_diameter", 20.0, "right", diameter=True, times=4),
         Radius(last, shape.pin, "roller.bore", -30.0, "right", diameter=True, times=4),
     ]
