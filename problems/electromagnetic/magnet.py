@@ -338,6 +338,8 @@ def declare_magnet_coil(
     _name_shape(d, shape=shape, circuit=circuit, flux_density=flux_density)
     mass = pot_magnet.magnet_mass(duty.steel_density, shape, copper)
     d.step("copper_mass", "kg", copper, symbol="m_cu", text="Copper of the coil", source="geometry")
+    iron_mass = pot_magnet.magnet_mass(duty.steel_density, shape, 0.0)
+    d.step("magnet_iron_mass", "kg", iron_mass, symbol="m_fe", text="Pot and armature", source="geometry")
     d.step("magnet_mass", "kg", mass, symbol="m_mag", text="Pot, armature and coil", source="geometry")
     return MagnetSize(mass=mass, copper=copper)
 

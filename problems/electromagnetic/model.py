@@ -10,6 +10,7 @@ from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.electromagnetic import curves as magnet_curves
+from problems.electromagnetic import drawing as magnet_drawing
 from problems.electromagnetic import magnet as magnet_blocks
 from problems.friction import startup_curves
 from problems.mechanics import magnetics
@@ -21,6 +22,7 @@ from problems.multi_plate.requirements import MadePackOptions, PackBodyRequireme
 from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -124,6 +126,13 @@ class ElectromagneticClutch(DesignProblem):
             frames["force_over_gap"] = magnet_curves.force_over_gap(self, spec, design)
             frames["heat_balance"] = coil.heat_balance()
         return frames
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through pack, armature and pot, with details of a lining and of the gap."""
+        complete = self.option("mass_scope") == "complete"
+        if self.option("pack") == "disc":
+            return magnet_drawing.disc_magnet_drawing(spec, design, complete=complete)
+        return magnet_drawing.plate_magnet_drawing(spec, design, complete=complete)
 
     def _declare_multi_plate(self, d: Declaration, *, scope: practice.Scope) -> None:
         lubrication = plate_pack.declare_lubrication(d)
@@ -317,6 +326,12 @@ class ElectromagneticClutch(DesignProblem):
         built: magnet_blocks.MagnetSize,
         pack: friction.Size,
     ) -> None:
+        for name, value, symbol, text in (
+            ("pack_diameter", pack.diameter, "D_pk", "Outside of the pack"),
+            ("pack_room", pack.length, "L_room", "Length without the magnet"),
+            ("magnet_length", magnet.shape.length, "L_mag", "Engaged magnet: pot, gap and armature"),
+        ):
+            d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
         size = friction.Size(
             mass=pack.mass + built.mass,
             diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),

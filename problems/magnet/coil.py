@@ -329,6 +329,7 @@ def declare_winding(
     for name, unit, value, symbol, text in (
         ("copper_share", "-", copper_share, "k_cu", "Copper over the area of the window, k_wind a_w/d_o**2"),
         ("copper_section", "mm2", section, "A_cu", "Copper of all turns"),
+        ("coil_density", "kg/m3", magnetics.COPPER_DENSITY * copper_share, "rho_coil", "Copper over room of the coil"),
         ("cold_copper_loss", "W", cold, "P_20", "Copper loss at 20 degC, rho_e 2 pi r_c NI**2/(k_cu h_c l_m)"),
         ("runaway_loss", "W", runaway, "P_run", "Copper loss at 20 degC at which the coil heats up without end"),
         ("ambient_ratio", "-", ratio, "k_amb", "Resistance at ambient temperature over that at 20 degC"),

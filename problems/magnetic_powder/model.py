@@ -11,12 +11,14 @@ import numpy as np
 from problems import cost, practice
 from problems.magnet import coil as coil_blocks
 from problems.magnetic_powder import curves as powder_curves
+from problems.magnetic_powder import drawing as powder_drawing
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
 from problems.practice import UNSOURCED
 from problems.sources import S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -432,6 +434,10 @@ class MagneticPowderClutch(DesignProblem):
                 ],
             )
 
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section through rotor, gaps, body and coil; of a complete clutch shields and shaft as well."""
+        return powder_drawing.powder_drawing(spec, design, complete=self.option("mass_scope") == "complete")
+
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the shear stress that a torque needs; of a design torque over current and temperature, heat balance.
 
@@ -556,6 +562,7 @@ def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
             "w_rim",
             "Section of the rim of the rotor over its circumference, t (1 - t/(2 r_g))",
         ),
+        ("rim_radius", "mm", layout.gap_radius - layout.thickness, "r_rim", "Inside of the rim of the rotor"),
         ("yoke_ratio", "-", layout.yoke_ratio, "k_y", "Mean radius of the yoke over that of the powder gap"),
         ("air_flux_share", "-", layout.air_flux_share, "k_a", "Flux density in the air gap over that in the powder"),
         ("iron_path", "mm", layout.iron_path, "l_fe", "Mean length of the flux in iron"),
@@ -581,6 +588,11 @@ def _name_around(d: Declaration, *, scope: practice.Scope, wants: Wants, bore: B
     text = "What the shaft is longer than the body"
     d.constant("shaft_ends", "mm", 1000 * powder.SHAFT_ENDS, symbol="l_ends", text=text, source=UNSOURCED)
     if scope.complete:
+        long, thick = layout.length + powder.SHAFT_ENDS, powder.SHIELD_THICKNESS
+        d.step("shaft_length", "mm", long, symbol="L_shaft", text="Shaft with its ends", source=UNSOURCED)
+        d.step("shield_thickness", "mm", thick, symbol="t_sh", text="One shield along the shaft", source=UNSOURCED)
+        text = "Light metal of the shields"
+        d.step("shield_density", "kg/m3", powder.SHIELD_DENSITY, symbol="rho_sh", text=text, source=UNSOURCED)
         both = 1000 * 2 * powder.SHIELD_THICKNESS
         d.constant("shields_length", "mm", both, symbol="l_sh", text="Both shields along the shaft", source=UNSOURCED)
 

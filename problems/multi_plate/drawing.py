@@ -18,6 +18,7 @@ from synth.drawing import (
     Dimension,
     Drawable,
     Drawing,
+    Edge,
     Hatch,
     Item,
     View,
@@ -175,10 +176,10 @@ def _pack_alone(size: Sizes) -> Drawing:
         (*pack.shapes, *envelope(pack.start, pack.end, b, b + wall)),
         (
             Dimension((pack.start, b + wall), (pack.end, b + wall), "length", "top"),
-            *_pack_diameters(size, pack, at=pack.end),
+            *pack_diameters(size, pack.end),
             diameter(pack.end, b + wall, "outer_diameter"),
         ),
-        _pack_balloons(size, pack),
+        pack_balloons(size, pack),
         (pack_detail(size, pack, wall=wall),),
         revolved=True,
     )
@@ -189,7 +190,7 @@ def _pack_alone(size: Sizes) -> Drawing:
         omitted=(
             TEETH,
             "drum but for its wall, hub, shaft, end stops and actuator: mass and length are those of the plates",
-            *_aid(size),
+            *omitted_aid(size),
         ),
         remarks=(ENVELOPE,),
         weights=(
@@ -244,7 +245,7 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
         Item(HUB, "Hub: rim, web and boss", 1, "steel", "places of web and boss assumed", Hatch.RIGHT),
     ]
     balloons = [
-        *_pack_balloons(size, pack, 2),
+        *pack_balloons(size, pack, 2),
         Balloon(((pack.end + pack.last_outer[1]) / 2 + 0.2 * bottom, -(rim + 0.8 * (a - rim) + (b - a) * 0.3)), END),
         Balloon((bottom / 2, -(boss + b) / 2), DRUM, "left"),
         Balloon((web + bottom / 2, -(boss + rim) / 2 if rim > boss else -(boss - 0.2 * (boss - shaft))), HUB, "right"),
@@ -254,7 +255,7 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
         shapes,
         (
             *lengths,
-            *_pack_diameters(size, pack, at=pack.end),
+            *pack_diameters(size, pack.end),
             diameter(long, b + wall, "outer_diameter"),
             diameter(-out, shaft, "shaft_diameter", side="left"),
             diameter(-out, boss, "boss_diameter", side="left"),
@@ -263,7 +264,7 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
         (pack_detail(size, pack, wall=wall),),
         revolved=True,
     )
-    omitted = [TEETH, BORES, "bearings, seals and end stops", *_aid(size)]
+    omitted = [TEETH, BORES, "bearings, seals and end stops", *omitted_aid(size)]
     masses = ["drum_shell_mass", "drum_bottom_mass", "hub_rim_mass", "hub_web_mass", "boss_mass"]
     remarks = [
         "The pack is drawn released. Bosses are drawn outside of the length; the model knows their size, not their "
@@ -289,20 +290,22 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
     )
 
 
-def _aid(size: Sizes) -> tuple[str, ...]:
+def omitted_aid(size: Sizes) -> tuple[str, ...]:
     """Return what is not drawn of a release aid."""
     aid = size.design.frame.options.get("release_aid", "none")
     return () if aid == "none" else (f"release aid ({aid.replace('_', ' ')})",)
 
 
-def _pack_diameters(size: Sizes, pack: DrawnPack, at: float) -> tuple[Dimension, ...]:
-    """Return the diameters of the rings and of the mean spline radii."""
-    spline = [diameter(at, size(name), name, factor=2.0) for name in ("inner_spline_radius", "outer_spline_radius")]
-    rings = [diameter(at, size(name) / 2, name) for name in ("ring_inner_diameter", "ring_outer_diameter")]
-    return (*spline, *rings)
+def pack_diameters(size: Sizes, at: float, side: Edge = "right") -> tuple[Dimension, ...]:
+    """Return the diameters of the rings and of the mean spline radii, measured at a place along the axis [mm]."""
+    splines, rings = ("inner_spline_radius", "outer_spline_radius"), ("ring_inner_diameter", "ring_outer_diameter")
+    return (
+        *(diameter(at, size(name), name, side=side, factor=2.0) for name in splines),
+        *(diameter(at, size(name) / 2, name, side=side) for name in rings),
+    )
 
 
-def _pack_balloons(size: Sizes, pack: DrawnPack, end_plates: int = 0) -> tuple[Balloon, ...]:
+def pack_balloons(size: Sizes, pack: DrawnPack, end_plates: int = 0) -> tuple[Balloon, ...]:
     """Return the part numbers of the plates, below the section."""
     inside, outside = size("ring_inner_diameter") / 2, size("ring_outer_diameter") / 2
     lining = size(pack.names.lining)

@@ -18,6 +18,7 @@ from problems.mechanics.shaft import BOSS_LENGTH
 
 # ISO 76: a line contact loaded beyond this is dented by more than 0.0001 of the roller diameter [Pa].
 STATIC_CONTACT_LIMIT = 4.0e9
+ARM_THICKNESS = 1.2  # of an arm along its shaft over the diameter of its pins: usual proportion
 
 
 # -- clearances ------------------------------------------------------------------------------------
@@ -1027,7 +1028,7 @@ def arms_mass(density: Quantity, arm_radius: Quantity, bore: Quantity) -> Quanti
     >>> float(arms_mass(7850.0, 0.050, 0.020))
     2.11008
     """
-    return 2 * density * (2 * arm_radius + 2 * bore) * (2 * bore) * (1.2 * bore)
+    return 2 * density * (2 * arm_radius + 2 * bore) * (2 * bore) * (ARM_THICKNESS * bore)
 
 
 def coupling_length(
@@ -1066,7 +1067,7 @@ def coupling_length(
     155.0
     """
     between = np.maximum(float_width, roller_width) + 2 * pin_gap + counter * (float_width + pin_gap)
-    return between + 2 * (1.2 * bore + BOSS_LENGTH * shaft_diameter)
+    return between + 2 * (ARM_THICKNESS * bore + BOSS_LENGTH * shaft_diameter)
 
 
 def ligament_stress(factor: Quantity, normal_force: Quantity, rim: Quantity, width: Quantity) -> Quantity:

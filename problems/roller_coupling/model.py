@@ -14,9 +14,11 @@ from problems import cost, practice
 from problems.mechanics import contact as hertz
 from problems.roller_coupling import body as coupling_body
 from problems.roller_coupling import curves, formulas
+from problems.roller_coupling import drawing as coupling_drawing
 from problems.sources import DRIVE, EXTENDS_S3, S3, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -721,6 +723,12 @@ class RollerCoupling(DesignProblem):
         d.step("float_radius", "mm", float_radius, symbol="R_f", text="Outside of the float", source="geometry")
         text = "Both arms, bars of 2 r + 2 d by 2 d by 1.2 d over a bore d"
         d.step("arms_mass", "kg", arms, symbol="m_arm", text=text, source="geometry")
+        for name, value, symbol, text in (
+            ("arm_length", 2 * radius + 2 * roller.bore, "l_arm", "Bar of an arm along the line of its pins"),
+            ("arm_width", 2 * roller.bore, "b_arm", "Bar of an arm across that line"),
+            ("arm_thickness", formulas.ARM_THICKNESS * roller.bore, "t_arm", "Bar of an arm along its shaft"),
+        ):
+            d.step(name, "mm", value, symbol=symbol, text=text, source="usual proportions")
         part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
         bosses = 0.0
         if body_wants is not None:
@@ -736,6 +744,7 @@ class RollerCoupling(DesignProblem):
                 source="geometry",
             )
             bosses = 2 * body_wants.boss_mass(wants.steel_density)
+            practice.name_boss(d, body_wants)
             d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Bosses of both arms", source="geometry")
             self._declare_cost(
                 d,
@@ -1023,6 +1032,10 @@ class RollerCoupling(DesignProblem):
         )
 
     # -- curves and motion -------------------------------------------------------------------------
+
+    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+        """Return the section along one guide, and the float with rollers and pins from the front."""
+        return coupling_drawing.coupling_drawing(spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the force on a pin over the arm radius, of the torque alone or of a design, and of angled shafts."""

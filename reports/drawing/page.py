@@ -1,7 +1,7 @@
 """The sheet of a drawing: its size, the scale, and the places of views and details.
 
-Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand to the left of title block and parts list or
-above them, whichever lets them be larger; details are as large as their room allows.
+Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand in one row, to the left of title block and
+parts list or above them, whichever lets them be larger; details are as large as their room allows.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ LARGE_ENOUGH = {"A4": 80.0, "A3": 70.0, "A2": 0.0, "A1": 0.0}  # mm: what the la
 ROOM = 6.0  # around a view
 PLAIN = 2.5  # mm on paper of the thinnest part of a detail
 OWN_MOST, OWN_LEAST = 90.0, 28.0  # mm: largest side of a view with a scale of its own
+SEEN = 1.0  # mm on paper, less than that of it asks for a larger sheet
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: st
         if scale * largest < LARGE_ENOUGH[name] and not scale == STANDARD[0]:
             return None
         views = _placed(drawing, scale, frame, low, right)
-        if views is not None:
+        if views is not None and (LARGE_ENOUGH[name] == 0 or _details_seen(views)):
             break
     else:
         return None
@@ -135,7 +136,7 @@ def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: floa
     least = 2 * scale if scale < 20 else scale
     scales = [s for s in STANDARD if s >= least] if details else STANDARD[:1]
     # Beside single parts, whose scale is free, the other views stay together.
-    for together, enlarged, of_own in product((True, False) if own else (False,), scales, tuple(_own_scales(own))):
+    for together, enlarged, of_own in product((True, False) if own else (True,), scales, tuple(_own_scales(own))):
         magnified = [_detail_block(view, detail, _wanted(detail, enlarged, scale)) for view, detail in details]
         magnified += [_view_block(view, its, named) for view, its in zip(own, of_own, strict=True)]
         blocks = [*views, *magnified]
@@ -153,6 +154,10 @@ def _placed(drawing: Drawing, scale: float, frame: Box2, low: float, right: floa
             if found is not None:
                 return found
     return None
+
+
+def _details_seen(views: Sequence[PlacedView]) -> bool:
+    return all(v.scale * v.detail.least >= SEEN for v in views if v.detail and v.detail.least is not None)
 
 
 def _wanted(detail: Detail, enlarged: float, scale: float) -> float:
@@ -216,12 +221,14 @@ def _filled(places: Sequence[tuple[Box2, Sequence[_Block]]]) -> list[PlacedView]
 
 
 def _rows(blocks: Sequence[_Block], wide: float) -> list[list[_Block]] | None:
-    """Return blocks in rows that are no wider than the room, in their order."""
+    """Return blocks in rows that are no wider than the room, in their order; views stand in one row."""
     rows: list[list[_Block]] = [[]]
     for block in blocks:
         if block.wide > wide:
             return None
         if rows[-1] and sum(b.wide for b in rows[-1]) + block.wide > wide:
+            if block.aligned:
+                return None
             rows.append([])
         rows[-1].append(block)
     return rows

@@ -11,7 +11,7 @@ from reports.drawing.filling import Filling, filling
 from reports.drawing.lettering import size_of, width
 from reports.drawing.paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
 from reports.drawing.view_places import CENTRE_OVER
-from synth.drawing import XY, Area, Circle, Drawable, Drawing, Line, LineKind
+from synth.drawing import XY, Angle, Area, Circle, Drawable, Drawing, Line, LineKind, Slant
 from synth.drawing.shapes import arc_of, sides, thickness
 
 WIDE, NARROW = 0.5, 0.25  # mm (ISO 128-2)
@@ -163,7 +163,7 @@ class _Svg:
             self._stroke(stroke)
         for bow in measure.bows:
             self._angle_line(bow)
-        self._text(measure.text)
+        self._text(measure.text, over_hatching=isinstance(measure.measured, Slant | Angle))
         self.out.append("</g>")
 
     def _angle_line(self, bow: Bow) -> None:
@@ -207,7 +207,7 @@ class _Svg:
         fill = ' fill="#fff"' if ring.filled else ""
         self.out.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{ring.radius:g}"{fill}/>')
 
-    def _text(self, text: Text) -> None:
+    def _text(self, text: Text, *, over_hatching: bool = False) -> None:
         x, y = self._at(text.at)
         turn = f' transform="rotate({-text.turn:g} {x:.2f} {y:.2f})"' if text.turn else ""
         wide = width(text.text, text.height)
@@ -215,9 +215,10 @@ class _Svg:
         whole = f"<title>{escape(text.whole)}</title>" if text.whole else ""
         spaced = ' xml:space="preserve"' if text.text != text.text.strip() else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
+        edge = 'stroke="#fff" stroke-width="1.2" paint-order="stroke"' if over_hatching else 'stroke="none"'
         self.out.append(
             f'<text x="{x:.2f}" y="{y:.2f}" font-size="{size_of(text.height):.2f}"{anchor}{turn}{bold} '
-            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" stroke="none"{spaced}>'
+            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" {edge}{spaced}>'
             f"{escape(text.text)}{whole}</text>"
         )
 

@@ -7,7 +7,18 @@ from enum import StrEnum
 from functools import cached_property
 
 from synth.drawing.marks import Balloon, Detail, Measured
-from synth.drawing.shapes import Area, Box2, Drawable, Line, LineKind, box_of, edges_behind, mirrored, points_of
+from synth.drawing.shapes import (
+    Area,
+    Box2,
+    Drawable,
+    Line,
+    LineKind,
+    both_halves,
+    box_of,
+    edges_behind,
+    mirrored,
+    points_of,
+)
 
 
 class Hatch(StrEnum):
@@ -86,9 +97,13 @@ class View:
         """All shapes; of a section through the axis those of the other half and the centre line as well."""
         if not self.revolved:
             return self.shapes
-        other = tuple(mirrored(shape) for shape in self.shapes if not (isinstance(shape, Area) and shape.half))
+        whole: list[Drawable] = []
+        for shape in self.shapes:
+            joined = both_halves(shape)
+            alone = joined is not shape or (isinstance(shape, Area) and shape.half)
+            whole += [joined] if alone else [shape, mirrored(shape)]
         left, _, right, _ = box_of([p for shape in self.shapes for p in points_of(shape)])
-        return (*self.shapes, *other, Line((left, 0.0), (right, 0.0), LineKind.CENTRE))
+        return (*whole, Line((left, 0.0), (right, 0.0), LineKind.CENTRE))
 
     @cached_property
     def behind(self) -> tuple[tuple[float, float], ...]:

@@ -218,6 +218,31 @@ def mirrored(shape: Drawable) -> Drawable:
     return replace(shape, centre=centre, start=-shape.end, end=-shape.start)
 
 
+def both_halves(shape: Drawable) -> Drawable:
+    """Return an area with a side on y = 0 together with its other half, so that no edge is drawn there.
+
+    Other shapes are returned as they are.
+
+    >>> both_halves(Area(rectangle(0, 2, 0, 1), 1)).outline
+    ((2, 0), (2, 1), (0, 1), (0, 0), (0, -1), (2, -1))
+    """
+    if not isinstance(shape, Area):
+        return shape
+    corners = [corner(v) for v in shape.outline]
+    on_axis = [k for k, (x, y, bulge) in enumerate(corners) if y == bulge == 0 == corners[(k + 1) % len(corners)][1]]
+    if len(on_axis) != 1:
+        return shape
+    first = on_axis[0] + 1
+    upper = [*corners[first:], *corners[:first]]
+    bulges = [bulge for _, _, bulge in upper[:-1]]
+    lower = [(x, -y) for x, y, _ in upper[-2:0:-1]]
+    points = [*((x, y) for x, y, _ in upper), *lower]
+    outline = tuple(
+        (x, y, bulge) if bulge else (x, y) for (x, y), bulge in zip(points, [*bulges, *reversed(bulges)], strict=True)
+    )
+    return replace(shape, outline=outline, holes=(*shape.holes, *map(_turned, shape.holes)))
+
+
 def _turned(outline: tuple[Vertex, ...]) -> tuple[Vertex, ...]:
     return tuple((x, -y, -bulge) if bulge else (x, -y) for x, y, bulge in map(corner, outline))
 

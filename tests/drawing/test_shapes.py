@@ -7,7 +7,7 @@ import math
 import pytest
 
 from synth.drawing import Angle, Arc, Area, Circle, Dimension, Line, View, disc, rectangle
-from synth.drawing.shapes import arc_of, box_of, edges_behind, flattened, mirrored, moments, points_of, thickness
+from synth.drawing.shapes import arc_of, box_of, edges_behind, flattened, mirrored, moments, points_of, sides, thickness
 
 
 def test_a_ring_weighs_what_it_should():
@@ -43,6 +43,16 @@ def test_the_other_half_is_a_mirror_image():
         assert box_of(list(there)) == pytest.approx(box)
     turned = mirrored(Arc((0, 5), 2, 20, 70))
     assert (turned.start, turned.end, turned.centre) == (-70, -20, (0, -5))
+
+
+def test_what_reaches_to_the_axis_is_one_area_without_an_edge_there():
+    web = Area(((2.0, 0.0), (4.0, 0.0), (4.0, 20.0, 0.2), (2.0, 20.0)), 1)
+    ring = Area(rectangle(0.0, 6.0, 20.0, 25.0), 1)
+    whole, *others = View("section", (web, ring), revolved=True).drawn
+    assert [type(x) for x in others] == [Area, Area, Line]
+    assert moments(whole.outline) == pytest.approx((2 * moments(web.outline)[0], 0.0), abs=1e-9)
+    assert not [a for a, b, _ in sides(whole.outline) if a[1] == b[1] == 0]
+    assert View("section", (web, ring), revolved=True).areas == (web, ring)
 
 
 def test_thin_areas_are_known_whatever_their_slope():

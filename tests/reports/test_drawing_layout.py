@@ -12,7 +12,7 @@ from reports.drawing.lettering import fitted, width, wrapped
 from reports.drawing.page import paper_sheet
 from reports.drawing.paper import overlap
 from reports.drawing.svg import drawing_svg
-from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, rectangle
+from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, disc, rectangle
 
 HOSTILE = (
     "<script>alert(1)</script>",
@@ -88,3 +88,23 @@ def test_words_are_cut_where_they_are_too_long():
     assert height == 1.8
     assert width(words, height) <= 30
     assert all(width(line, 2.5) <= 20 for line in wrapped("w" * 60 + " and so on", 20, 2.5))
+
+
+@pytest.mark.parametrize("size", [20.0, 90.0, 400.0])
+def test_views_stand_in_one_row(size):
+    ring = Area(rectangle(0, size, size / 2, size), 1)
+    front = View("front", (Area(disc((0, 0), size), 1, depth=1.0),), balloons=(Balloon((0, 0), 1),))
+    section = View(
+        "section", (ring,), (diameter(size, size, "d"),), (Balloon((size / 2, 0.7 * size), 1),), revolved=True
+    )
+    found = paper_sheet(Drawing("both", (section, front), (Item(1, "Ring"),), ("nothing",)), "Clutch", "program")
+    assert found.views[0].origin[1] == found.views[1].origin[1]
+    assert found.views[0].region[2] <= found.views[1].region[0]
+
+
+def test_a_sheet_is_large_enough_for_its_details():
+    wide = tuple(Area(rectangle(400 * k, 400 * k + 390, 50, 80), 1) for k in range(2))
+    detail = Detail("X", (0, 70, 20, 82), least=0.4)
+    view = View("section", wide, (), (Balloon((10, 60), 1),), (detail,), revolved=True)
+    sheet = paper_sheet(Drawing("long", (view,), (Item(1, "Ring"),), ("nothing",) * 9), "Clutch", "program")
+    assert all(v.scale * 0.4 >= 1.0 for v in sheet.views if v.detail)
