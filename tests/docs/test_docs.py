@@ -314,6 +314,23 @@ def test_the_picture_of_the_readme_is_what_the_program_draws(tmp_path: Path) -> 
     assert all(a == pytest.approx(b, abs=1.0) for a, b in zip(*numbers, strict=True)), "make picture draws it anew"
 
 
+def test_every_family_is_in_the_gallery_of_drawings() -> None:
+    page = text_of("docs/drawings.md")
+    for point in entry_points(group="clutchsynth.problems"):
+        assert f"(pictures/drawing_{point.name}.svg)" in page, point.name
+        drawn = text_of(f"docs/pictures/drawing_{point.name}.svg")
+        assert f"<title>{synth.load(point.name).title}: " in drawn, "make gallery draws it anew"
+
+
+@pytest.mark.slow
+def test_a_drawing_of_the_gallery_is_what_the_program_draws(tmp_path: Path) -> None:
+    assert at_once("run", "examples/cone_drive.yaml", "-q", "-o", tmp_path / "out").returncode == 0
+    assert at_once("report", tmp_path / "out", "-o", tmp_path / "drawn", "--drawing", "-q").returncode == 0
+    drawn = (tmp_path / "drawn" / "design_01_drawing.svg").read_text()
+    shown = text_of("docs/pictures/drawing_cone_clutch.svg")
+    assert NUMBER.sub("0", drawn) == NUMBER.sub("0", shown), "make gallery draws it anew"
+
+
 def test_every_table_is_in_the_readme_of_the_catalogues() -> None:
     readme = text_of("catalogs/README.md")
     tables = [path.stem for path in (ROOT / "catalogs").glob("*.csv") if not path.stem.endswith(".schema")]
