@@ -70,7 +70,7 @@ def test_a_row_in_full_is_computed_again_as_the_batch_has_found_it(result: Batch
 
 @pytest.mark.parametrize(
     ("named", "head"),
-    [("3", "Line 3: <script>"), ("too much", "NO FEASIBLE DESIGN"), (5, "BAD INPUT"), ("name=wrong", "BAD INPUT")],
+    [("3", "Line 3: <script>"), ("too much", "NOT FEASIBLE"), (5, "BAD INPUT"), ("name=wrong", "BAD INPUT")],
 )
 def test_any_other_row_is_told_by_line_or_name(result: BatchResult, tmp_path: Path, named: Any, head: str) -> None:
     result.report(tmp_path, row=named)
