@@ -28,6 +28,7 @@ let mounted = 0;
  * What whoever mounts the explorer may say; all of it may be left out.
  * @typedef {object} Options
  * @property {(design: object) => Download[]} [downloads] what the panel offers beside DESIGN.yaml
+ * @property {(design: object) => Promise<string>} [picture] the drawing of a design, as SVG, that the record does not hold
  * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter, once: it stays the
  *   same element whatever is shown
  * @property {(slot: HTMLElement, handle: Handle) => void} [ways] fills the place for ways out where nothing is feasible

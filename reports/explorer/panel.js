@@ -99,8 +99,18 @@ export function panelView(x) {
   }
 
   function drawing(d) {
-    if (!d.drawing) return null;
-    const address = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(d.drawing)}`;
+    if (d.drawing) return drawn(d, d.drawing);
+    if (!x.options.picture) return null;
+    const place = h("section", { hidden: true });
+    x.options.picture(d).then(
+      (svg) => place.replaceWith(drawn(d, svg)),
+      () => place.remove(),
+    );
+    return place;
+  }
+
+  function drawn(d, svg) {
+    const address = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
     const picture = () => h("img", { class: "drawing", src: address, alt: `Drawing of design ${d.rank}` });
     const large = h("dialog", { class: "sheet", "aria-label": `Drawing of design ${d.rank}` });
     const open = () => {

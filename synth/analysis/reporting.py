@@ -102,8 +102,12 @@ def explore(
     return NotebookFrame(frame(explored(front, about=about, problem=problem, catalogs=catalogs), height))
 
 
-def explored(front: ParetoFront, *, about: Any = None, problem: Any = None, catalogs: Any = None) -> dict[str, Any]:
+def explored(
+    front: ParetoFront, *, about: Any = None, problem: Any = None, catalogs: Any = None, drawn: int = DRAWN
+) -> dict[str, Any]:
     """Return what the explorer shows of a front, as JSON holds it; arguments as for :func:`report`.
+
+    ``drawn``: designs, from the first by rank, whose drawings it holds.
 
     Raises
     ------
@@ -115,8 +119,8 @@ def explored(front: ParetoFront, *, about: Any = None, problem: Any = None, cata
         raise InputError("explore", None, NO_REPORTS)
     read = calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front)
     beside = _beside(Path(front.folder), front) if front.folder is not None else {}
-    drawn, _ = _drawings(front, front.designs[:DRAWN], problem, catalogs)
-    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=drawn)
+    pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
+    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=pictures)
     return found
 
 

@@ -139,11 +139,11 @@ def _derived(front: ParetoFront) -> dict[str, str]:
 
 
 def _explored(records: Mapping[str, bytes]) -> str:
-    """Return what the explorer shows of a front, or of a comparison."""
+    """Return what the explorer shows of a front, or of a comparison; a page asks for drawings one by one."""
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
         folder = Path(place, "front")
         unpack(records, folder)
-        record = explored_comparison(folder) if is_comparison(records) else explored(load_front(folder))
+        record = explored_comparison(folder) if is_comparison(records) else explored(load_front(folder), drawn=0)
         return json.dumps(record, ensure_ascii=False, allow_nan=False)
 
 

@@ -54,6 +54,9 @@ def test_every_file_of_the_list_is_rendered() -> None:
         assert size in (None, len(made.content))
         assert made.content.startswith(starts.get(Path(name).suffix, b"")), name
         assert made.media
+    explored = json.loads(render("synthesis", disc(), "explorer.json").content)
+    assert not any("drawing" in design for design in explored["designs"])  # a page asks for those that it shows
+    assert b'"drawing":' in render("synthesis", disc(), "explorer.html").content.replace(b" ", b"")
 
 
 def test_options_of_reports_are_heeded_and_checked() -> None:

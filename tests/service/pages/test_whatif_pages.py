@@ -80,6 +80,7 @@ def test_a_slider_asks_anew_and_the_front_as_asked_stays_as_outlines(sliders: Sl
         for _ in range(3):
             slider.press("ArrowLeft")  # one search is asked for after the last of them
         told = settled(page)
+        page.wait_for_selector("img.drawing")
         assert re.match(r"With load torque 540 N·m against the front as asked: mass at the knee .* → .* kg \(−", told)
         assert page.locator(".scatter .ghost").count() == 3
         assert page.evaluate("document.activeElement.type") == "range"

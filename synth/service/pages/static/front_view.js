@@ -9,6 +9,7 @@ import { whatIf } from "./what_if.js";
 import { count } from "./words.js";
 
 const RECORD = "explorer.json"; // what the explorer draws, as the server renders it
+const DRAWING = "_drawing.svg";
 const BESIDE = ["score", "status", "gap", "alternatives"];
 const MOST = 200, SHOWN = 14;
 
@@ -54,6 +55,8 @@ async function explored(element, job, explorer, heard) {
   const page = { job, record, request, state: location.hash.slice(1), onState: (text) => { told.moved = text; tell(); }, onJob: (other, what) => { shown = other; heard(shown, null, what); } };
   const endings = [...new Set(files.map((file) => /^design_\d+(.+)$/.exec(file.name)?.[1]).filter(Boolean))];
   const digits = files.map((file) => /^design_(\d+)/.exec(file.name)?.[1].length).find(Boolean) ?? 2;
+  const nameOf = (design, ending) => `design_${String(design.rank).padStart(digits, "0")}${ending}`;
+  const once = keeping();
   let shown = job, strip = null, ready = null;
   mount(slot, record, {
     heading: false,
@@ -61,9 +64,11 @@ async function explored(element, job, explorer, heard) {
     onState: (text) => { told.explorer = text; tell(); },
     onSelect: (design) => heard(shown, design?.rank ?? null),
     downloads: (design) => endings.map((ending) => {
-      const name = `design_${String(design.rank).padStart(digits, "0")}${ending}`;
+      const name = nameOf(design, ending);
       return { label: name, href: `${API}/jobs/${shown.id}/files/${name}`, download: name };
     }),
+    // A record with all drawings would be ten times as large, and a slider would wait for it.
+    ...(endings.includes(DRAWING) ? { picture: (design) => once(`/jobs/${shown.id}/files/${nameOf(design, DRAWING)}`) } : {}),
     ...(maySubmit() && job.kind === "synthesis" && record.designs.length ? {
       whatIf: (place, handle) => { ready = whatIf(place, handle, page).then((made) => { strip = made; }, () => place.setAttribute("hidden", "")); },
     } : {}),
@@ -74,6 +79,15 @@ async function explored(element, job, explorer, heard) {
   });
   await ready;
   return true;
+}
+
+/** Return a way to get each file once, however often it is shown; what failed is asked for again. */
+function keeping() {
+  const kept = new Map();
+  return (path) => {
+    if (!kept.has(path)) kept.set(path, get(path).catch((fault) => { kept.delete(path); throw fault; }));
+    return kept.get(path);
+  };
 }
 
 /** Load a style sheet; what is drawn before it is there has the wrong size. */
