@@ -1,4 +1,4 @@
-"""What drawings of several families have: sizes in millimetres by name, rings, shaft ends and bosses."""
+"""What drawings of several families have: sizes in millimetres by name, rings, shaft ends and envelopes."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from synth.drawing import Area, Drawable, Line, LineKind, rectangle
 
 MM = 1e3  # from SI
+NEIGHBOURS = "Double-dot-dash lines are neighbours and envelopes: room that the model reckons with, no shapes."
 SHAFT_OUT = 0.25  # of its diameter: how far a shaft is drawn beyond what sits on it
 
 

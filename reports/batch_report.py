@@ -29,7 +29,7 @@ from reports.sheet.blocks import (
     said,
 )
 from reports.sheet.design_sheet import DRAWN, DRAWN_ALT, front_state
-from synth.plain_text import percent, plain_number, printable, words
+from synth.plain_text import counted, percent, plain_number, printable, thousands, words
 from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
 
 AT_WORK = {
@@ -55,7 +55,7 @@ def batch_report(batch: BatchRecord, about: About) -> Document:
     blocks += [*_size_range(batch), *_failures(batch), *_in_full(batch, about), *_asked(batch)]
     return Document(
         kind="Batch report",
-        title=about.title or f"{_short(batch.source, LONGEST_NAME)}: {_rows(len(batch.rows))}",
+        title=about.title or f"{_short(batch.source, LONGEST_NAME)}: {counted(len(batch.rows), 'row')}",
         facts=about.facts(),
         blocks=tuple(blocks),
         program=_program(batch),
@@ -86,32 +86,25 @@ def _short(text: str, most: int = LONGEST) -> str:
     return told if len(told) <= most else f"{told[: most - 1].rstrip()}…"
 
 
-def _thousands(count: int) -> str:
-    return f"{count:,}".replace(",", " ")
-
-
-def _rows(count: int) -> str:
-    return f"{_thousands(count)} row{'' if count == 1 else 's'}"
-
-
 def _program(batch: BatchRecord) -> str:
     return f"clutchsynth {batch.versions.get('clutchsynth', '')}".strip()
 
 
 def _state(batch: BatchRecord) -> State:
     counts, rows = batch.counts, len(batch.rows)
-    told = (", ".join(f"{_thousands(count)} {IN_WORDS[status]}" for status, count in counts.items()) + ".",)
+    every = counted(rows, "row")
+    told = (", ".join(f"{thousands(count)} {IN_WORDS[status]}" for status, count in counts.items()) + ".",)
     found = sum(counts.get(status, 0) for status in WITH_DESIGNS)
     have = "has designs" if found == 1 else "have designs"
     if not batch.finished:
-        done = f"NOT FINISHED: {_thousands(batch.answered)} of {_rows(rows)} are answered"
+        done = f"NOT FINISHED: {thousands(batch.answered)} of {every} are answered"
         return State("open", f"{done}; {AT_WORK.get(batch.state, batch.state)}", told)
     if not found:
-        return State("bad", f"NO DESIGN: none of {_rows(rows)} has one", told)
+        return State("bad", f"NO DESIGN: none of {every} has one", told)
     if counts.get("failed"):
-        return State("bad", f"{_rows(counts['failed'])} FAILED; {_thousands(found)} of {_rows(rows)} {have}", told)
+        return State("bad", f"{counted(counts['failed'], 'row')} FAILED; {thousands(found)} of {every} {have}", told)
     if found < rows:
-        return State("open", f"{_thousands(found)} of {_rows(rows)} {have}, {_thousands(rows - found)} NOT", told)
+        return State("open", f"{thousands(found)} of {every} {have}, {thousands(rows - found)} NOT", told)
     if counts.get("feasible"):
         return State("open", f"{'The row' if rows == 1 else 'All rows'} {have}, not all PROVEN", told)
     gap = percent(float(batch.settings.get("gap") or 0))
@@ -125,7 +118,7 @@ def _leads(batch: BatchRecord) -> list[Block]:
         told.append(said("In full: ", Link(row_name(batch, batch.chosen.row), "#row")))
     failed = sum(batch.counts.get(status, 0) for status in FAILURES)
     if failed:
-        told.append(Link(f"{_rows(failed)} without a design, and why", "#failures"))
+        told.append(Link(f"{counted(failed, 'row')} without a design, and why", "#failures"))
     if batch.size_range:
         told.append(Link("Size range", "#size-range"))
     return [Bullets(tuple(told))] if told else []
@@ -134,7 +127,7 @@ def _leads(batch: BatchRecord) -> list[Block]:
 def _counted(batch: BatchRecord) -> list[Block]:
     total = len(batch.rows)
     rows = [
-        TableRow((STATES.get(status, status), _thousands(count), percent(count / total)))
+        TableRow((STATES.get(status, status), thousands(count), percent(count / total)))
         for status, count in batch.counts.items()
     ]
     blocks: list[Block] = [
@@ -147,7 +140,7 @@ def _counted(batch: BatchRecord) -> list[Block]:
         if values:
             told = (values[0], statistics.median(values), values[-1])
             spread.append(
-                TableRow((_heading(heading), _thousands(len(values)), *(plain_number(value) for value in told)))
+                TableRow((_heading(heading), thousands(len(values)), *(plain_number(value) for value in told)))
             )
     if spread:
         blocks.append(TableBlock.of("The best design of each row", SPREAD_COLUMNS, spread))
@@ -161,7 +154,7 @@ def _causes(batch: BatchRecord) -> list[Block]:
         return []
     ordered = sorted(found.items(), key=lambda entry: (-entry[1], entry[0]))
     table = [
-        TableRow((said(_way(status), " ", Code(_short(cause, LONGEST_NAME))), STATES[status], _thousands(count)))
+        TableRow((said(_way(status), " ", Code(_short(cause, LONGEST_NAME))), STATES[status], thousands(count)))
         for (status, cause), count in ordered[:TOLD_CAUSES]
     ]
     more = len(ordered) - TOLD_CAUSES
@@ -170,7 +163,7 @@ def _causes(batch: BatchRecord) -> list[Block]:
         TableBlock.of("Limits that the nearest design misses, and columns with faults", CAUSE_COLUMNS, table),
         Paragraph("A row counts wherever it is concerned.", small=True),
     ]
-    return blocks + ([Paragraph(f"{_thousands(more)} more in fewer rows.", small=True)] if more > 0 else [])
+    return blocks + ([Paragraph(f"{thousands(more)} more in fewer rows.", small=True)] if more > 0 else [])
 
 
 def _way(status: str) -> str:
@@ -224,7 +217,7 @@ def _size_range(batch: BatchRecord) -> list[Block]:
     count, unit = int(told.get("variants") or 0), str(told.get("unit") or "-")
     excess = told.get("total_excess")
     serve = "variant serves" if count == 1 else "variants serve"
-    sentences: list[Cell] = [f"{_thousands(count)} {serve} all rows that have designs."]
+    sentences: list[Cell] = [f"{thousands(count)} {serve} all rows that have designs."]
     if isinstance(excess, (int, float)):
         amount = plain_number(float(excess)) + ("" if unit == "-" else f" {unit}")
         over = words(str(told.get("objective", "")))
@@ -323,14 +316,14 @@ def _failures(batch: BatchRecord) -> list[Block]:
         )
         first = "" if share == batch.counts[status] else f", the first {share}"
         label = STATES[status][:1].upper() + STATES[status][1:]
-        groups.append((f"{label}: {_rows(batch.counts[status])}{first}", told))
+        groups.append((f"{label}: {counted(batch.counts[status], 'row')}{first}", told))
     blocks: list[Block] = [
         Heading("Rows without a design, and why", anchor="failures"),
         TableBlock("Lines of the table that was brought", FAILURE_COLUMNS, tuple(groups)),
     ]
     more = sum(batch.counts[status] for status in shares) - sum(shares.values())
     if more > 0:
-        blocks.append(Paragraph(f"{_thousands(more)} more: see {ELSEWHERE}."))
+        blocks.append(Paragraph(f"{thousands(more)} more: see {ELSEWHERE}."))
     return blocks
 
 

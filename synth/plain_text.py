@@ -50,6 +50,28 @@ def plain_number(value: float | None, digits: int = 4) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def thousands(number: int) -> str:
+    """Return a whole number with its thousands apart.
+
+    Examples
+    --------
+    >>> thousands(12000), thousands(999)
+    ('12 000', '999')
+    """
+    return f"{number:,}".replace(",", " ")
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things in words.
+
+    Examples
+    --------
+    >>> counted(1, "row"), counted(12000, "row")
+    ('1 row', '12 000 rows')
+    """
+    return f"{thousands(number)} {what}{'' if number == 1 else 's'}"
+
+
 def words(name: str) -> str:
     """Return the name of a quantity as words.
 

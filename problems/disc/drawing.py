@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
+from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, ring, shaft_end
 from synth.drawing import (
     Balloon,
     Detail,
@@ -26,7 +26,6 @@ from synth.drawing import (
 )
 
 CORE, LINING, PLATE, HUB = 1, 2, 3, 4
-NEIGHBOURS = "Double-dot-dash lines are neighbours and envelopes: room that the model reckons with, no shapes."
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from problems.disc import drawing as discs_drawn
-from problems.drawing_parts import SHAFT_OUT, Sizes, envelope, ring, shaft_end
+from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
 from problems.multi_plate.drawing import (
     BORES,
     DRUM,
     END,
-    ENVELOPE,
     HUB,
     INNER,
     LINING,
@@ -227,7 +226,7 @@ def plate_magnet_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool
         (view,),
         (*items, *magnet.items),
         omitted=(*omitted, *UNKNOWN, TEETH, *omitted_aid(size)),
-        remarks=(IN_LINE, ENVELOPE),
+        remarks=(IN_LINE, NEIGHBOURS),
         weights=tuple(weights),
     )
 
@@ -314,7 +313,7 @@ def disc_magnet_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool)
         ),
         remarks=(
             f"{IN_LINE} Pressure plates are drawn as wide as the friction ring, as their mass is computed.",
-            ENVELOPE,
+            NEIGHBOURS,
         ),
         weights=tuple(weights),
     )

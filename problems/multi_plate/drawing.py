@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes, envelope, ring, shaft_end
+from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
 from synth.drawing import (
     Area,
     Balloon,
@@ -29,7 +29,6 @@ from synth.drawing import (
 INNER, OUTER, LINING, END, DRUM, HUB, PISTON = 1, 2, 3, 4, 5, 6, 7
 TEETH = "teeth of the splines: plates are drawn to the mean radius of their spline, as the masses are computed"
 BORES = "shafts, keys and what holds the hubs along the shaft"
-ENVELOPE = "Double-dot-dash lines are neighbours and envelopes: room that the model reckons with, no shapes."
 
 
 @dataclass(frozen=True)
@@ -192,7 +191,7 @@ def _pack_alone(size: Sizes) -> Drawing:
             "drum but for its wall, hub, shaft, end stops and actuator: mass and length are those of the plates",
             *omitted_aid(size),
         ),
-        remarks=(ENVELOPE,),
+        remarks=(NEIGHBOURS,),
         weights=(
             Weight((INNER,), ("inner_plate_mass",), "steel_density"),
             Weight((OUTER,), ("outer_plate_mass",), "steel_density"),
@@ -269,7 +268,7 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
     remarks = [
         "The pack is drawn released. Bosses are drawn outside of the length; the model knows their size, not their "
         "place, nor that of the web.",
-        ENVELOPE,
+        NEIGHBOURS,
     ]
     if piston:
         omitted.insert(0, "ring piston, its seals and its return: the model knows its area and the room it needs along")

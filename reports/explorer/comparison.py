@@ -9,7 +9,7 @@ from typing import Any
 from reports.about import About
 from reports.explorer.record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 from reports.front_report import NOT_COVERED
-from reports.sheet.design_sheet import program_name
+from reports.sheet.design_sheet import as_sentence, program_name
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.calculation import Calculation
 
@@ -142,8 +142,7 @@ class _Compared:
         sentence = (told.partition(": ")[2] or told).replace(amounts, "") + "."
         details = [f"Stopped: {content['interrupted']}."] if content["interrupted"] else []
         if amounts:
-            told = amounts.strip(" ()")
-            details.append(f"{told[:1].upper()}{told[1:]}.")
+            details.append(as_sentence(amounts.strip(" ()")))
         return {
             "level": "bad" if not some else "good" if proven and not content["interrupted"] else "open",
             "word": word,

@@ -10,7 +10,7 @@ from reports.about import About
 from reports.drawing.files import svg_of
 from reports.front_report import NOT_COVERED
 from reports.reasons import BINDING, SIGN_OF, why
-from reports.sheet.design_sheet import front_details, front_state, over_range_in_words, program_name
+from reports.sheet.design_sheet import as_sentence, front_details, front_state, over_range_in_words, program_name
 from synth.drawing import Drawing
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
@@ -157,8 +157,7 @@ class RecordOf:
         amounts = c.amounts()
         sentence = (details[0].partition(": ")[2] or details[0]).replace(amounts, "")
         if amounts:
-            told = amounts.strip(" ()")
-            details.append(f"{told[:1].upper()}{told[1:]}.")
+            details.append(as_sentence(amounts.strip(" ()")))
         return {
             "level": level,
             "word": word,

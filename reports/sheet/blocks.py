@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from reports.formula.layout import Layout
+from synth.plain_text import counted
 
 
 @dataclass(frozen=True)
@@ -127,8 +128,7 @@ class RowsBlock:
     @property
     def on_paper(self) -> str:
         """What is said in place of the rows where nobody can look through them."""
-        count = f"{len(self.rows):,}".replace(",", " ")
-        return f"{count} row{'' if len(self.rows) == 1 else 's'}: see {self.elsewhere}."
+        return f"{counted(len(self.rows), 'row')}: see {self.elsewhere}."
 
 
 @dataclass(frozen=True)

@@ -389,13 +389,14 @@ def front_state(front: ParetoFront, feasible: str = "") -> tuple[str, str]:
 
 def front_details(front: ParetoFront) -> list[str]:
     """Return the certificate in words, and why a search was stopped."""
-    told = [_sentence(front.certificate.sentence())]
+    told = [as_sentence(front.certificate.sentence())]
     if front.interrupted:
         told.append(f"Stopped: {front.interrupted}.")
     return told
 
 
-def _sentence(text: str) -> str:
+def as_sentence(text: str) -> str:
+    """Return a text with a capital and a full stop."""
     return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 

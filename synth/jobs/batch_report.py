@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import read_bytes, read_json
 from synth.jobs.batch_folder import job_of_folder, job_written, opened_batch
-from synth.jobs.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, status_of
+from synth.jobs.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, missed_limits, status_of
 from synth.jobs.solve import GROUP, LIKE
 from synth.jobs.store import Answered, Store
 from synth.jobs.views import row_at
@@ -41,7 +40,6 @@ if TYPE_CHECKING:
     from synth.jobs.models import Job
 
 FORMATS = ("html", "pdf", "xlsx")
-MISSED = re.compile(r"nearest (?:makeable )?design found misses (.+?): ")
 RANGE, VARIANTS, ASSIGNED = "size_range.json", "variants.csv", "assignment.csv"
 TOLD_LINES = 6  # of rows that a name fits
 
@@ -368,12 +366,9 @@ def _causes(answered: Answered, reason: str) -> tuple[str, ...]:
     """Return what stands in the way of a row, in a few words that many rows share."""
     if answered.faults:
         return tuple(dict.fromkeys(str(fault["column"]) or "the row as a whole" for fault in answered.faults))
-    missed = MISSED.search(reason)
-    if missed is not None:
-        # A limit that a row adds has its number in its name.
-        names = (name.split(" ", 1) for name in missed[1].split(", ") if name[:1].isalpha())
-        return tuple(dict.fromkeys(name[0] + (" (own limit)" if len(name) > 1 else "") for name in names))
-    return ()
+    # A limit that a row adds has its number in its name.
+    names = (name.split(" ", 1) for name in missed_limits(reason) if name[:1].isalpha())
+    return tuple(dict.fromkeys(name[0] + (" (own limit)" if len(name) > 1 else "") for name in names))
 
 
 def _size_range(folder: Path, keys: set[str]) -> dict[str, Any] | None:

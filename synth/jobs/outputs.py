@@ -36,7 +36,7 @@ ROW_COLUMNS = (
     "explanation",
     "remarks",
 )
-MISSED = re.compile(r"design found misses ([^:]+):")  # in the explanation of a row
+MISSED = re.compile(r"nearest (?:makeable )?design found misses (.+?): ")  # in the explanation of a row
 TOLD = 3  # limits of a row that are named
 SAID = ("objectives", "searched", "choices", "parts")  # of a design in words
 SHORT = 12  # digits of a key that tell rows apart
@@ -247,16 +247,27 @@ def row_outcomes(store: Store, job: str) -> Iterator[RowOutcome]:
         )
 
 
+def missed_limits(explanation: str) -> list[str]:
+    """Return the limits that the nearest design of a row misses, as its explanation names them.
+
+    Examples
+    --------
+    >>> missed_limits("No combination is feasible. The nearest design found misses wear_life, mass: 9 kg where ...")
+    ['wear_life', 'mass']
+    """
+    found = MISSED.search(explanation)
+    return found[1].split(", ") if found else []
+
+
 def _reason(row: Answered) -> str:
     """Return in a few words why a row has no designs."""
     if row.faults:
         more = f" and {len(row.faults) - 1} more" if len(row.faults) > 1 else ""
         return str(row.faults[0]["sentence"]).partition(", ")[2].partition("; expected")[0] + more
     told = explanation_of(row)
-    missed = MISSED.search(told)
-    if missed is None:
+    names = missed_limits(told)
+    if not names:
         return told
-    names = missed[1].split(", ")
     more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
     return f"nearest design misses {', '.join(map(words, names[:TOLD]))}{more}"
 

@@ -29,7 +29,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
 from synth.nlp.batch import Tasks
 from synth.output_folder import NEAR_EQUALS, save_result
-from synth.plain_text import percent
+from synth.plain_text import percent, thousands
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -76,7 +76,7 @@ class NearEquals:
     def sentence(self) -> str:
         """Return how many there are, and how far that is certain."""
         share = percent(self.within)
-        number = f"{self.found:,}".replace(",", " ")
+        number = thousands(self.found)
         if self.complete:
             those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
             if not self.found:

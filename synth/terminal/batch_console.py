@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from synth.errors import shortened
 from synth.jobs.outputs import RowOutcome, row_outcomes
 from synth.jobs.row_questions import Fault
-from synth.plain_text import alike, words
+from synth.plain_text import alike, counted, thousands, words
 from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
 from synth.terminal.console import console_on, in_common, made_of, output, plain_table, print_wrapped
 from synth.terminal.session import say, tell, tell_written
@@ -112,22 +112,6 @@ def figures(state: Mapping[str, Any]) -> str:
         parts.append(f"{_duration(state['left'])} left")
     parts += [f"{thousands(state[key])} {key}" for key in ("infeasible", "bad", "failed") if state[key]]
     return ", ".join(parts)
-
-
-def counted(number: int, what: str) -> str:
-    """Return a number of things in words.
-
-    Examples
-    --------
-    >>> counted(1, "row"), counted(12000, "row")
-    ('1 row', '12 000 rows')
-    """
-    return f"{thousands(number)} {what}{'' if number == 1 else 's'}"
-
-
-def thousands(number: int) -> str:
-    """Return a whole number with its thousands apart."""
-    return f"{number:,}".replace(",", " ")
 
 
 def _duration(seconds: float) -> str:

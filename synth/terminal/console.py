@@ -22,7 +22,7 @@ from rich.text import Text
 
 from synth.files import csv_text
 from synth.margins import MARGINS
-from synth.plain_text import PlainStream, percent, plain_number, printable, words, wrapped
+from synth.plain_text import PlainStream, percent, plain_number, printable, thousands, words, wrapped
 from synth.results import Design, ParetoFront
 from synth.results.certificate import none_of
 from synth.results.least_infeasible import LeastInfeasible
@@ -569,7 +569,7 @@ def _brief(value: Any) -> str:
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "-"}[value]
     if isinstance(value, int):
-        return f"{value:,}".replace(",", " ")
+        return thousands(value)
     return plain_number(value, 3) if isinstance(value, float) else str(value)
 
 

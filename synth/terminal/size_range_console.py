@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import percent, plain_number
-from synth.terminal.batch_console import counted
+from synth.plain_text import counted, percent, plain_number
 from synth.terminal.console import output, plain_table
 
 if TYPE_CHECKING:
