@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves, ramp_drawing
+from problems.centrifugal import curves
 from problems.centrifugal import state as states
-from problems.centrifugal.spring_drawing import return_spring
 from problems.mechanics import ball_ramp, centrifugal
 from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
 from synth.declaration import Declaration
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 
 class CentrifugalBallRamp(DesignProblem):
@@ -210,6 +210,10 @@ class CentrifugalBallRamp(DesignProblem):
         design : Design
             The design.
         """
+        # Costly to import; searches do without.
+        from problems.centrifugal import ramp_drawing
+        from problems.centrifugal.spring_drawing import return_spring
+
         return ramp_drawing.ramp_drawing(
             spec, design, travel="plate_gap", pushed="pressure plate", springs=[return_spring("plate_gap")]
         )

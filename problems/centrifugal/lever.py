@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
 from problems import practice
-from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import ROD
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
-from problems.centrifugal.spring_drawing import CLAMP
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4, S4
 from synth.declaration import Block, Declaration, Requirement, Variable
@@ -166,6 +164,10 @@ class CentrifugalLever(LeverClutch):
         design : Design
             The design.
         """
+        # Costly to import; searches do without.
+        from problems.centrifugal import lever_drawing
+        from problems.centrifugal.spring_drawing import CLAMP
+
         arms = lever_drawing.Leg("rod_arm", "contact_travel"), lever_drawing.Leg("spring_arm")
         return lever_drawing.lever_drawing(spec, design, arms=arms, pushed="pressure plate", springs=(CLAMP,))
 

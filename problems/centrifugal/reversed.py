@@ -9,12 +9,10 @@ import numpy as np
 
 from problems import centrifugal as blocks
 from problems import practice
-from problems.centrifugal import lever_drawing
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import REVERSED
 from problems.centrifugal.levers import LOADED, RECONSTRUCTED
-from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4
 
@@ -157,6 +155,10 @@ class CentrifugalReversed(LeverClutch):
         design : Design
             The design.
         """
+        # Costly to import; searches do without.
+        from problems.centrifugal import lever_drawing
+        from problems.centrifugal.spring_drawing import CLAMP, return_spring
+
         arms = (lever_drawing.Leg("plate_arm", "contact_travel"),)
         springs = (CLAMP, return_spring("contact_travel"))
         return lever_drawing.lever_drawing(

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal as blocks
 from problems import practice
 from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves, lever_drawing, ramp_drawing
+from problems.centrifugal import curves
 from problems.centrifugal import state as states
-from problems.centrifugal.spring_drawing import CLAMP, return_spring
 from problems.mechanics import centrifugal, two_spring
 from problems.sources import NOT_IN_S4, S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Declaration
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 ANALYSIS = f"{S4}, analysis 2, corrected"
 MECHANISMS = ("ball_ramp", "lever")
@@ -229,6 +229,10 @@ class CentrifugalTwoSpring(DesignProblem):
         design : Design
             The design.
         """
+        # Costly to import; searches do without.
+        from problems.centrifugal import lever_drawing, ramp_drawing
+        from problems.centrifugal.spring_drawing import CLAMP, return_spring
+
         pushed, springs = "tension disc", (return_spring("plate_travel"), CLAMP)
         if self.option("mechanism") == "ball_ramp":
             return ramp_drawing.ramp_drawing(spec, design, travel="stop_travel", pushed=pushed, springs=springs)

@@ -10,7 +10,6 @@ import numpy as np
 
 from problems import cost, friction, practice, wear
 from problems.cone import body as cone_body
-from problems.cone import drawing as cone_drawing
 from problems.cone import formulas as cone
 from problems.cone.body import Cone
 from problems.friction import startup_curves
@@ -18,10 +17,11 @@ from problems.mechanics import heat, plates
 from problems.sources import S1, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
 # The friction work is shared by the inner and the outer cone.
@@ -228,6 +228,8 @@ class ConeClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the engaged cones."""
+        from problems.cone import drawing as cone_drawing  # costly to import; searches do without
+
         return cone_drawing.cone_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:

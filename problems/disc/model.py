@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from problems import cost, friction, practice, wear
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
-from problems.disc import drawing as disc_drawing
 from problems.disc import facing_sets
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
@@ -16,10 +15,11 @@ from problems.mechanics import ring as ring_formulas
 from problems.sources import S1
 from synth import DesignProblem
 from synth.declaration import Declaration
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 
 class DiscClutch(DesignProblem):
@@ -140,6 +140,8 @@ class DiscClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the released discs, with their hubs where the whole clutch is counted."""
+        from problems.disc import drawing as disc_drawing  # costly to import; searches do without
+
         return disc_drawing.disc_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:

@@ -10,7 +10,6 @@ from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.electromagnetic import curves as magnet_curves
-from problems.electromagnetic import drawing as magnet_drawing
 from problems.electromagnetic import magnet as magnet_blocks
 from problems.friction import startup_curves
 from problems.mechanics import magnetics
@@ -22,10 +21,11 @@ from problems.multi_plate.requirements import MadePackOptions, PackBodyRequireme
 from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 
 MAGNET_PARTS = 3  # pot, armature and coil
@@ -129,6 +129,8 @@ class ElectromagneticClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through pack, armature and pot, with details of a lining and of the gap."""
+        from problems.electromagnetic import drawing as magnet_drawing  # costly to import; searches do without
+
         complete = self.option("mass_scope") == "complete"
         if self.option("pack") == "disc":
             return magnet_drawing.disc_magnet_drawing(spec, design, complete=complete)

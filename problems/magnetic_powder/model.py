@@ -11,17 +11,17 @@ import numpy as np
 from problems import cost, practice
 from problems.magnet import coil as coil_blocks
 from problems.magnetic_powder import curves as powder_curves
-from problems.magnetic_powder import drawing as powder_drawing
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
 from problems.practice import UNSOURCED
 from problems.sources import S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 PARTS = 7  # rotor, drum or slip rings, body, coil, two shields and shaft
 GRAVITY = 9.80665  # [m/s2]
@@ -436,6 +436,8 @@ class MagneticPowderClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through rotor, gaps, body and coil; of a complete clutch shields and shaft as well."""
+        from problems.magnetic_powder import drawing as powder_drawing  # costly to import; searches do without
+
         return powder_drawing.powder_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:

@@ -11,17 +11,17 @@ from problems import cost, friction, practice, wear
 from problems.friction import startup_curves
 from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
-from problems.multi_plate import drawing as pack_drawing
 from problems.multi_plate import pack as plate_pack
 from problems.multi_plate import plate_sets
 from problems.multi_plate.requirements import MadePackOptions, PackOptions
 from problems.sources import S0
 from synth import DesignProblem
 from synth.declaration import Declaration, Part
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.drawing import Drawing
 
 
 class MultiPlateClutch(DesignProblem):
@@ -188,6 +188,8 @@ class MultiPlateClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the released clutch; the pack alone where only that is counted."""
+        from problems.multi_plate import drawing as pack_drawing  # costly to import; searches do without
+
         complete = self.option("mass_scope") == "complete"
         piston = complete and self.option("actuator") != "external"
         return pack_drawing.multi_plate_drawing(spec, design, complete=complete, piston=piston)

@@ -14,16 +14,15 @@ from problems import cost, practice
 from problems.mechanics import contact as hertz
 from problems.roller_coupling import body as coupling_body
 from problems.roller_coupling import curves, formulas
-from problems.roller_coupling import drawing as coupling_drawing
 from problems.sources import DRIVE, EXTENDS_S3, S3, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from synth.declaration import Choice, Part
+    from synth.drawing import Drawing
 
 # Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
 ARM_RADIUS_MIN, ARM_RADIUS_MAX = 15.0, 200.0
@@ -1035,6 +1034,8 @@ class RollerCoupling(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section along one guide, and the float with rollers and pins from the front."""
+        from problems.roller_coupling import drawing as coupling_drawing  # costly to import; searches do without
+
         return coupling_drawing.coupling_drawing(spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:

@@ -9,13 +9,13 @@ from problems import practice
 from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, TYPICAL
 from problems.wrap_spring import blocks, body, curves, formulas
-from problems.wrap_spring import drawing as wrap_spring
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from synth.drawing import Drawing
 
 
 class ClearanceDuty(blocks.Duty):
@@ -311,6 +311,8 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through hubs, spring and collar, engaged, and a detail of the coils."""
+        from problems.wrap_spring import drawing as wrap_spring  # costly to import; searches do without
+
         return wrap_spring.clearance_drawing(
             spec,
             design,

@@ -11,13 +11,13 @@ from problems import practice, wear
 from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from problems.wrap_spring import blocks, body, curves, formulas
-from problems.wrap_spring import drawing as wrap_spring
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
-from synth.drawing import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from synth.drawing import Drawing
 
 
 MODEL_VALUE = f"{TYPICAL} of the reference model"
@@ -318,6 +318,8 @@ class WrapSpringClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through hubs and spring, and a detail of the coils."""
+        from problems.wrap_spring import drawing as wrap_spring  # costly to import; searches do without
+
         return wrap_spring.interference_drawing(
             spec,
             design,
