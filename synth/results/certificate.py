@@ -88,8 +88,8 @@ class Certificate:
         end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
         if self.kind == "exhaustive":
             return (
-                f"exhaustive: of {all_of(self.combinations)} {self.excluded_by_bound} are excluded by bounds; every other one "
-                f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
+                f"exhaustive: of {all_of(self.combinations)} {self.excluded_by_bound} are excluded by bounds; "
+                f"every other one was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
                 f"which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
             )
         gap = f"gap {_percent(self.gap)}{self.amounts()}{end}"
