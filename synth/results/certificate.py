@@ -89,8 +89,8 @@ class Certificate:
         if self.kind == "exhaustive":
             return (
                 f"exhaustive: of {all_of(self.combinations)} {self.excluded_by_bound} are excluded by bounds; "
-                f"every other one was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
-                f"which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
+                f"every other one was solved from several starts ({self.unresolved} boxes could not be closed "
+                f"by bounds, which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
             )
         gap = f"gap {_percent(self.gap)}{self.amounts()}{end}"
         return f"not proven: stopped before {all_of(self.combinations)} were covered; {gap}"
