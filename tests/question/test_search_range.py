@@ -138,7 +138,7 @@ def test_the_screen_and_the_table_of_a_check_say_it(tmp_path):
     result = CliRunner().invoke(app, ["check", str(tmp_path / "design.yaml"), "-o", str(tmp_path / "out")])
     assert result.exit_code in (0, 3), result.output
     told = " ".join(result.output.split())
-    assert "outside the range that is searched: friction_surfaces 9, searched is 2 to 60 in steps of 2" in told
+    assert "outside the range that is searched: friction surfaces 9, searched is 2 to 60 in steps of 2" in told
     table = (tmp_path / "out" / "check.csv").read_text().splitlines()
     (row,) = (line for line in table if line.startswith("count,friction_surfaces"))
     assert row.endswith(",outside the range that is searched")

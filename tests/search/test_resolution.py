@@ -75,7 +75,8 @@ def test_a_resolution_that_is_declared_is_the_one_that_counts():
 
 def test_the_amount_is_told_in_the_unit_of_the_objective(tmp_path):
     front = synth.synthesize(Coarse, {})
-    assert "0.1 % in every objective (mismatch: 0.01 mm2)" in front.certificate.sentence()
+    told = "0.1 % in every objective (differences below 0.01 mm² in mismatch do not count)"
+    assert told in front.certificate.sentence()
     record = json.loads((front.save(tmp_path) / "front.json").read_text())["certificate"]
     assert record["units"] == {"mismatch": "mm2"}
     assert record["resolution"] == dict(front.certificate.resolution)
