@@ -1,14 +1,15 @@
-"""A sheet as DXF: the part in true size in the model, with real dimensions; frame and lists on a layout with viewports.
+"""A sheet as DXF: all in the model, around the part in true size, with real dimensions; a layout shows it on paper.
 
-Each view has layers of its own for dimensions and hatching, which are frozen in the viewports of others, so that a
-detail is another look at the same part.
+Everything that stands in lengths of the paper is as much larger in the model as the part is smaller on paper. So it
+looks the same in programs that know no layouts. Details, and single parts at a scale of their own, are enlarged copies
+whose dimensions are told to divide what they measure.
 """
 
 from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from reports.drawing.filling import Filling, filling
@@ -16,24 +17,37 @@ from reports.drawing.paper import ARROW, PaperSheet, PlacedMeasure, PlacedView, 
 from reports.drawing.svg import NARROW_PART, lengthened
 from reports.drawing.view_places import CENTRE_OVER
 from reports.extras import needed
-from synth.drawing import XY, Angle, Area, Box2, Circle, Dimension, Drawable, Drawing, Line, LineKind, Radius, Slant
-from synth.drawing.shapes import Vertex, box_of, corner, points_of, thickness
+from synth.drawing import (
+    XY,
+    Angle,
+    Arc,
+    Area,
+    Circle,
+    Dimension,
+    Drawable,
+    Drawing,
+    Line,
+    LineKind,
+    Measured,
+    Radius,
+    Slant,
+)
+from synth.drawing.shapes import Vertex, box_of, corner, flattened, points_of, thickness
 
 STYLE = "CLUTCHSYNTH"
 FONT = "arial.ttf"
-CAP = "HATCH"
-# Line types as lengths of dashes (positive) and gaps [mm on paper].
+# Line types, by names that other programs know, as lengths of dashes (positive) and gaps [mm on paper].
 DASHES = {
-    LineKind.HIDDEN: (3.0, -1.0),
-    LineKind.CENTRE: (8.0, -1.0, 0.5, -1.0),
-    LineKind.PHANTOM: (8.0, -1.0, 0.5, -1.0, 0.5, -1.0),
+    "HIDDEN": (3.0, -1.0),
+    "CENTER": (8.0, -1.0, 0.5, -1.0),
+    "PHANTOM": (8.0, -1.0, 0.5, -1.0, 0.5, -1.0),
 }
 # Layer: line type, width in hundredths of a millimetre, colour.
 LAYERS = {
     "OUTLINE": ("Continuous", 50, 7),
     "THIN": ("Continuous", 25, 7),
     "HIDDEN": ("HIDDEN", 25, 3),
-    "CENTRE": ("CENTRE", 25, 1),
+    "CENTRE": ("CENTER", 25, 1),
     "PHANTOM": ("PHANTOM", 25, 6),
     "HATCH": ("Continuous", 25, 8),
     "DIMENSION": ("Continuous", 25, 4),
@@ -41,11 +55,12 @@ LAYERS = {
     "FRAME": ("Continuous", 70, 7),
     "VIEWPORT": ("Continuous", 13, 9),
 }
-GEOMETRY = ("OUTLINE", "THIN", "HIDDEN", "CENTRE", "PHANTOM")
 PATTERNS = {Filling.RIGHT: ("ANSI31", 0.0), Filling.LEFT: ("ANSI31", 90.0), Filling.CROSS: ("ANSI37", 0.0)}
 PATTERN_SCALE = {Filling.RIGHT: 0.5, Filling.LEFT: 0.5, Filling.CROSS: 0.35}  # of ANSI31: lines 3.175 mm apart
-SPARE = 5.0  # mm around what a viewport shows: letters of another program may be wider
-APART = 200.0  # mm on paper between views in the model
+FITTED = (
+    4  # texts of so many letters are as wide in any font as the layout takes them; fewer letters would be distorted
+)
+FINE = math.radians(0.5)  # of arcs that the window of a detail cuts
 
 
 def drawing_dxf(sheet: PaperSheet, drawing: Drawing) -> str:
@@ -81,38 +96,29 @@ class _Dxf:
     """Writes one sheet."""
 
     def __init__(self, ezdxf: Any, sheet: PaperSheet, drawing: Drawing) -> None:
-        self.sheet = sheet
+        self.sheet, self.larger = sheet, 1 / sheet.scale
+        self.clipping, self.align = needed("ezdxf.math.clipping", "--dxf", "dxf"), ezdxf.enums.TextEntityAlignment
         self.items = {item.number: item for item in drawing.items}
         self.doc = ezdxf.new("R2010", units=4)
-        self.doc.header["$LTSCALE"] = 1.0
-        self.doc.header["$PSLTSCALE"] = 1
+        self.doc.header["$LTSCALE"] = self.larger
+        self.doc.header["$PSLTSCALE"] = 0  # on the layout line types are as small as all else
         self.doc.header["$MEASUREMENT"] = 1
         self.doc.styles.add(STYLE, font=FONT)
-        for kind, dashes in DASHES.items():
-            pattern = [sum(map(abs, dashes)), *dashes]
-            self.doc.linetypes.add(kind.name, pattern, description=kind.value)
+        for name, dashes in DASHES.items():
+            self.doc.linetypes.add(name, [sum(map(abs, dashes)), *dashes], description=name.lower())
         for name, (linetype, weight, colour) in LAYERS.items():
             self.doc.layers.add(name, linetype=linetype, lineweight=weight, color=colour)
         self.doc.layers.get("VIEWPORT").off()
         self.model = self.doc.modelspace()
-        self.paper = self.doc.paperspace()
-        self.own_layers: dict[int, tuple[str, str]] = {}  # by view: of dimensions and of hatching
+        # Some programs go by the header alone.
+        self.doc.dimstyles.get(self._style(1.0)).copy_to_header(self.doc)
 
     def document(self) -> Any:
-        size = self.sheet.size
-        self.paper.page_setup(size=size, margins=(0, 0, 0, 0), units="mm")
-        self.doc.layouts.rename(self.paper.name, "Sheet")
-        offsets = self._offsets()
-        for k, placed in enumerate(self.sheet.views):
-            self.own_layers[k] = self._layers_of(k, placed)
-            if placed.detail is None:
-                for shape in placed.shapes:
-                    self._shape(shape, placed, offsets[k])
-            self._hatch(k, placed, offsets[k])
+        for placed in self.sheet.views:
+            for shape in placed.shapes:
+                self._shape(shape, placed)
             for measure in placed.measures:
-                self._measure(k, measure, placed, offsets[k])
-        for k, placed in enumerate(self.sheet.views):
-            self._viewports(k, placed, offsets[k])
+                self._measure(measure, placed)
             self._marks(placed)
         for stroke in self.sheet.strokes:
             self._stroke(stroke)
@@ -120,79 +126,100 @@ class _Dxf:
             self._ring(ring)
         for text in self.sheet.texts:
             self._text(text)
+        self._layout()
         return self.doc
 
-    def _offsets(self) -> list[XY]:
-        """Return where the point (0, 0) of each view is in the model; details are where their view is."""
-        of_view: dict[int, XY] = {}
-        right = 0.0
-        for placed in self.sheet.views:
-            if placed.detail is not None:
-                continue
-            x0, _, x1, _ = _in_part(placed.region, placed)
-            of_view[id(placed.view)] = (right - x0, 0.0)
-            right += x1 - x0 + APART / placed.scale
-        return [of_view[id(placed.view)] for placed in self.sheet.views]
+    def _layout(self) -> None:
+        """Show all of the model on paper."""
+        (wide, high), paper = self.sheet.size, self.doc.paperspace()
+        paper.page_setup(size=self.sheet.size, margins=(0, 0, 0, 0), units="mm")
+        self.doc.layouts.rename(paper.name, "Sheet")
+        centre = (wide / 2, high / 2)
+        paper.add_viewport(
+            center=centre, size=self.sheet.size, view_center_point=self._at(centre), view_height=high * self.larger,
+            dxfattribs={"layer": "VIEWPORT"},
+        )  # fmt: skip
 
-    def _layers_of(self, k: int, placed: PlacedView) -> tuple[str, str]:
-        """Return the layers that are a view's own."""
-        if k == 0:
-            return "DIMENSION", CAP
-        name = placed.detail.letter if placed.detail else str(k + 1)
-        found = []
-        for base in ("DIMENSION", CAP):
-            linetype, weight, colour = LAYERS[base]
-            layer = f"{base}_{name}"
-            if layer not in self.doc.layers:
-                self.doc.layers.add(layer, linetype=linetype, lineweight=weight, color=colour)
-            found.append(layer)
-        return found[0], found[1]
+    def _at(self, point: XY) -> XY:
+        """Return where a point of the paper is in the model."""
+        return point[0] * self.larger, point[1] * self.larger
 
-    def _shape(self, shape: Drawable, placed: PlacedView, offset: XY) -> None:
-        def at(point: XY) -> XY:
-            return point[0] + offset[0], point[1] + offset[1]
+    # -- the part ----------------------------------------------------------------------------------
 
+    def _shape(self, shape: Drawable, placed: PlacedView) -> None:
+        window = self._window(shape, placed)
         if isinstance(shape, Area):
-            narrow = thickness(shape) * placed.scale < NARROW_PART
-            attributes = {"layer": "THIN" if narrow else "OUTLINE"}
-            for outline in (shape.outline, *shape.holes):
-                self.model.add_lwpolyline(_moved(outline, offset), format="xyb", close=True, dxfattribs=attributes)
+            self._area(shape, placed, window)
             return
         layer = {"layer": shape.kind.name}
         if isinstance(shape, Line):
             over = CENTRE_OVER / placed.scale if shape.kind is LineKind.CENTRE else 0.0
-            a, b = lengthened(shape.a, shape.b, over)
-            self.model.add_line(at(a), at(b), dxfattribs=layer)
-        elif isinstance(shape, Circle):
-            self.model.add_circle(at(shape.centre), shape.radius, dxfattribs=layer)
+            a, b = (self._at(placed.on_paper(end)) for end in lengthened(shape.a, shape.b, over))
+            for start, end in [(a, b)] if window is None else window.lines([a, b]):
+                self.model.add_line(start, end, dxfattribs=layer)
+            return
+        if window is not None:
+            for piece in window.lines([self._at(placed.on_paper(p)) for p in _along(shape)]):
+                self.model.add_lwpolyline(piece, dxfattribs=layer)
+            return
+        centre, radius = self._at(placed.on_paper(shape.centre)), shape.radius * placed.scale * self.larger
+        if isinstance(shape, Circle):
+            self.model.add_circle(centre, radius, dxfattribs=layer)
         else:
-            self.model.add_arc(at(shape.centre), shape.radius, shape.start, shape.end, dxfattribs=layer)
+            self.model.add_arc(centre, radius, shape.start, shape.end, dxfattribs=layer)
 
-    def _hatch(self, k: int, placed: PlacedView, offset: XY) -> None:
-        """Hatch what is cut, at the scale of a view: of a detail what lies in its window."""
-        window = None if placed.detail is None else placed.detail.window
-        for area in (shape for shape in placed.shapes if isinstance(shape, Area)):
-            kind = filling(area, self.items.get(area.item), placed.scale)
-            if kind is Filling.WHITE or (window is not None and not _meet(box_of(points_of(area)), window)):
+    def _window(self, shape: Drawable, placed: PlacedView) -> _Window | None:
+        """Return what cuts a shape of a detail; None where all of it is seen."""
+        if placed.detail is None:
+            return None
+        x0, y0, x1, y1 = placed.window
+        u0, v0, u1, v1 = box_of([placed.on_paper(p) for p in points_of(shape)])
+        over = CENTRE_OVER if isinstance(shape, Line) and shape.kind is LineKind.CENTRE else 0.0
+        if x0 <= u0 - over and y0 <= v0 - over and u1 + over <= x1 and v1 + over <= y1:
+            return None
+        return _Window(self.clipping, self._at((x0, y0)), self._at((x1, y1)))
+
+    def _area(self, area: Area, placed: PlacedView, window: _Window | None) -> None:
+        layer = {"layer": "THIN" if thickness(area) * placed.scale < NARROW_PART else "OUTLINE"}
+        outlines: list[Sequence[Sequence[float]]] = []
+        for outline in (area.outline, *area.holes):
+            if window is None:
+                outlines.append(self._moved(outline, placed))
+                self.model.add_lwpolyline(outlines[-1], format="xyb", close=True, dxfattribs=layer)
                 continue
-            hatch = self.model.add_hatch(color=256, dxfattribs={"layer": self.own_layers[k][1]})
-            if kind in PATTERNS:
-                name, turn = PATTERNS[kind]
-                hatch.set_pattern_fill(name, scale=PATTERN_SCALE[kind] / placed.scale, angle=turn)
-            elif kind is Filling.DOTS:
-                hatch.set_pattern_fill("DOTS", scale=0.5 / placed.scale)
-            else:
-                hatch.set_solid_fill(color=256 if kind is Filling.BLACK else 8)
-            hatch.paths.add_polyline_path(_moved(area.outline, offset), is_closed=True)
-            for hole in area.holes:
-                hatch.paths.add_polyline_path(_moved(hole, offset), is_closed=True, flags=16)
+            corners = [self._at(placed.on_paper(p)) for p in flattened(outline, FINE)]
+            for piece in window.lines([*corners, corners[0]]):
+                self.model.add_lwpolyline(piece, dxfattribs=layer)
+            outlines += window.surfaces(corners)
+        self._hatch(area, placed, outlines)
 
-    def _style(self, scale: float) -> str:
-        """Return the dimension style of a scale: sizes are those on paper."""
-        name = f"{STYLE}_{1 / scale:g}".replace(".", "_")
+    def _hatch(self, area: Area, placed: PlacedView, outlines: Sequence[Sequence[Sequence[float]]]) -> None:
+        """Fill what is cut; the first outline is that of the area, others are of holes."""
+        kind = filling(area, self.items.get(area.item), placed.scale)
+        if kind is Filling.WHITE or not outlines:
+            return
+        hatch = self.model.add_hatch(color=256, dxfattribs={"layer": "HATCH"})
+        if kind in PATTERNS:
+            name, turn = PATTERNS[kind]
+            hatch.set_pattern_fill(name, scale=PATTERN_SCALE[kind] * self.larger, angle=turn)
+        elif kind is Filling.DOTS:
+            hatch.set_pattern_fill("DOTS", scale=0.5 * self.larger)
+        else:
+            hatch.set_solid_fill(color=256 if kind is Filling.BLACK else 8)
+        for k, outline in enumerate(outlines):
+            hatch.paths.add_polyline_path(outline, is_closed=True, flags=16 if k else 1)
+
+    def _moved(self, outline: Iterable[Vertex], placed: PlacedView) -> list[tuple[float, float, float]]:
+        return [(*self._at(placed.on_paper((x, y))), bulge) for x, y, bulge in map(corner, outline)]
+
+    # -- dimensions --------------------------------------------------------------------------------
+
+    def _style(self, enlarged: float) -> str:
+        """Return the dimension style of what is enlarged in the model: sizes are those on paper."""
+        name = STYLE if enlarged == 1 else f"{STYLE}_{enlarged:g}".replace(".", "_")
         if name not in self.doc.dimstyles:
             style = self.doc.dimstyles.new(name).dxf
-            style.dimscale = 1 / scale
+            style.dimscale, style.dimlfac = self.larger, 1 / enlarged
             style.dimtxt, style.dimasz, style.dimexe, style.dimexo, style.dimgap = 3.5, ARROW, 1.5, 1.0, 1.0
             style.dimtad, style.dimtih, style.dimtoh, style.dimtmove = 1, 0, 0, 2
             style.dimdec, style.dimzin, style.dimdsep, style.dimtxsty = 2, 8, ord("."), STYLE
@@ -200,68 +227,45 @@ class _Dxf:
             style.dimtix, style.dimtofl, style.dimlunit = 1, 1, 2
         return name
 
-    def _measure(self, k: int, placed_measure: PlacedMeasure, placed: PlacedView, offset: XY) -> None:
+    def _measure(self, placed_measure: PlacedMeasure, placed: PlacedView) -> None:
         measured = placed_measure.measured
-        attributes = {"layer": self.own_layers[k][0]}
-
-        def part(point: XY) -> XY:
-            return tuple(  # type: ignore[return-value]
-                (p - o) / placed.scale + shift for p, o, shift in zip(point, placed.origin, offset, strict=True)
-            )
+        attributes, enlarged = {"layer": "DIMENSION"}, placed.scale / self.sheet.scale
+        style, override = self._style(enlarged), _digits(measured)
+        words = _words(placed_measure, enlarged)
+        middle, base = _middle(placed_measure.text), placed_measure.base
+        text = self._at(middle)
 
         def at(point: XY) -> XY:
-            return point[0] + offset[0], point[1] + offset[1]
+            return self._at(placed.on_paper(point))
 
-        style = self._style(placed.scale)
-        override = _written(measured)
-        text = part(_middle(placed_measure.text))
         if isinstance(measured, Dimension):
             axis, turn = (0, 0) if measured.along == "x" else (1, 90)
-            aside = abs(_middle(placed_measure.text)[axis] - placed_measure.base[axis]) > 0.01
+            aside = abs(middle[axis] - base[axis]) > 0.01
             made = self.model.add_linear_dim(
-                part(placed_measure.base), at(measured.a), at(measured.b), location=text if aside else None, angle=turn,
-                dimstyle=style, override=override, dxfattribs=attributes,
+                self._at(base), at(measured.a), at(measured.b), location=text if aside else None, angle=turn,
+                text=words, dimstyle=style, override=override, dxfattribs=attributes,
             )  # fmt: skip
         elif isinstance(measured, Slant):
             made = self.model.add_aligned_dim(
-                at(measured.a), at(measured.b), distance=measured.apart / placed.scale, dimstyle=style,
-                override=override, dxfattribs=attributes,
+                at(measured.a), at(measured.b), distance=measured.apart * self.larger, text=words,
+                dimstyle=style, override=override, dxfattribs=attributes,
             )  # fmt: skip
         elif isinstance(measured, Angle):
             start, end = measured.ends
-            radius = measured.radius / placed.scale
             made = self.model.add_angular_dim_cra(
-                at(measured.vertex), radius, math.degrees(start), math.degrees(end), distance=0.0, dimstyle=style,
-                override=override, dxfattribs=attributes,
+                at(measured.vertex), measured.radius * self.larger, math.degrees(start), math.degrees(end),
+                distance=0.0, dimstyle=style, override=override, dxfattribs=attributes,
             )  # fmt: skip
         else:
             add = self.model.add_diameter_dim if measured.diameter else self.model.add_radius_dim
             made = add(
-                center=at(measured.centre), radius=measured.radius, angle=measured.angle, location=text,
-                dimstyle=style, override={**override, "dimtmove": 1, "dimtoh": 1, "dimtih": 1}, dxfattribs=attributes,
+                center=at(measured.centre), radius=measured.radius * enlarged, angle=measured.angle, location=text,
+                text=words, dimstyle=style, override={**override, "dimtmove": 1, "dimtoh": 1, "dimtih": 1},
+                dxfattribs=attributes,
             )  # fmt: skip
         made.render()
 
-    def _viewports(self, k: int, placed: PlacedView, offset: XY) -> None:
-        others = [name for j, own in self.own_layers.items() if j != k for name in own]
-        x0, y0, x1, y1 = placed.region
-        around = (x0 - SPARE, y0 - SPARE, x1 + SPARE, y1 + SPARE)
-        if placed.detail is None:
-            self._viewport(around, placed, offset, others)
-            return
-        dimensions, hatching = self.own_layers[k]
-        self._viewport(placed.window, placed, offset, [*others, dimensions])
-        self._viewport(around, placed, offset, [*others, hatching, *GEOMETRY])
-
-    def _viewport(self, box: Box2, placed: PlacedView, offset: XY, frozen: Iterable[str]) -> None:
-        centre = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
-        seen = tuple((c - o) / placed.scale + s for c, o, s in zip(centre, placed.origin, offset, strict=True))
-        high = box[3] - box[1]
-        viewport = self.paper.add_viewport(
-            center=centre, size=(box[2] - box[0], high), view_center_point=seen, view_height=high / placed.scale,
-            dxfattribs={"layer": "VIEWPORT"},
-        )  # fmt: skip
-        viewport.frozen_layers = [name for name in dict.fromkeys(frozen) if name in self.doc.layers]
+    # -- what stands in lengths of the paper -------------------------------------------------------
 
     def _marks(self, placed: PlacedView) -> None:
         for stroke in placed.bounds:
@@ -278,57 +282,85 @@ class _Dxf:
 
     def _stroke(self, stroke: Stroke, layer: str = "") -> None:
         named = layer or ("FRAME" if stroke.wide == 0.7 else stroke.kind.name)
-        self.paper.add_lwpolyline(stroke.points, close=stroke.closed, dxfattribs={"layer": named})
+        points = [self._at(p) for p in stroke.points]
+        self.model.add_lwpolyline(points, close=stroke.closed, dxfattribs={"layer": named})
+        arrow = ARROW * self.larger
         for tip, back, wanted in (
-            (stroke.points[0], stroke.points[1], stroke.arrows[0]),
-            (stroke.points[-1], stroke.points[-2], stroke.arrows[1]),
+            (points[0], points[1], stroke.arrows[0]),
+            (points[-1], points[-2], stroke.arrows[1]),
         ):
             if wanted:
                 long = math.dist(tip, back)
-                ux, uy = (tip[0] - back[0]) / long * ARROW, (tip[1] - back[1]) / long * ARROW
+                ux, uy = (tip[0] - back[0]) / long * arrow, (tip[1] - back[1]) / long * arrow
                 base = (tip[0] - ux, tip[1] - uy)
                 wings = (base[0] - uy / 6, base[1] + ux / 6), (base[0] + uy / 6, base[1] - ux / 6)
-                self.paper.add_solid([tip, *wings, wings[1]], dxfattribs={"layer": named})
+                self.model.add_solid([tip, *wings, wings[1]], dxfattribs={"layer": named})
 
     def _ring(self, ring: Ring) -> None:
-        self.paper.add_circle(ring.centre, ring.radius, dxfattribs={"layer": "THIN"})
+        self.model.add_circle(self._at(ring.centre), ring.radius * self.larger, dxfattribs={"layer": "THIN"})
 
     def _text(self, text: Text) -> None:
         words = text.text.replace("%%", "%%%%%%")  # %% begins a code of the format, %%% is a percent sign
-        made = self.paper.add_text(
-            words, height=text.height, rotation=text.turn, dxfattribs={"layer": "TEXT", "style": STYLE}
+        made = self.model.add_text(
+            words, height=text.height * self.larger, rotation=text.turn, dxfattribs={"layer": "TEXT", "style": STYLE}
         )
-        alignment = {"start": 0, "middle": 1, "end": 2}[text.anchor]
-        made.dxf.halign, made.dxf.insert = alignment, text.at
-        if alignment:
-            made.dxf.align_point = text.at
+        if len(words) >= FITTED:
+            made.set_placement(*map(self._at, text.base_line), self.align.FIT)
+            return
+        alignment = {"start": self.align.LEFT, "middle": self.align.CENTER, "end": self.align.RIGHT}[text.anchor]
+        made.set_placement(self._at(text.at), align=alignment)
 
 
-def _written(measured: Dimension | Slant | Angle | Radius) -> dict[str, Any]:
-    """Return how a dimension writes what it measures."""
+class _Window:
+    """What is seen of a detail."""
+
+    def __init__(self, clipping: Any, low: XY, high: XY) -> None:
+        self._vector, self._cut = clipping.Vec2, clipping.ClippingRect2d(clipping.Vec2(low), clipping.Vec2(high))
+
+    def lines(self, points: Sequence[XY]) -> list[list[XY]]:
+        """Return the pieces of a line that are seen."""
+        return self._pieces(self._cut.clip_polyline(self._vector.list(points)))
+
+    def surfaces(self, corners: Sequence[XY]) -> list[list[XY]]:
+        """Return the pieces of a surface that are seen."""
+        return self._pieces(self._cut.clip_polygon(self._vector.list(corners)))
+
+    @staticmethod
+    def _pieces(found: Iterable[Sequence[Any]]) -> list[list[XY]]:
+        return [[(p.x, p.y) for p in piece] for piece in found if len(piece) > 1]
+
+
+def _along(shape: Circle | Arc) -> list[XY]:
+    """Return points along a round line, near to each other."""
+    start, end = (0.0, 360.0) if isinstance(shape, Circle) else (shape.start, shape.end)
+    turned = math.radians((end - start) % 360 or 360)
+    pieces = math.ceil(turned / FINE)
+    angles = [math.radians(start) + turned * k / pieces for k in range(pieces + 1)]
+    return [
+        (shape.centre[0] + shape.radius * math.cos(t), shape.centre[1] + shape.radius * math.sin(t)) for t in angles
+    ]
+
+
+def _words(placed: PlacedMeasure, enlarged: float) -> str:
+    """Return the text of a dimension: <> where programs write there what they measure.
+
+    Of what is enlarged, and of radii, all is written out: not every program knows factors, and signs of radii.
+    """
+    measured = placed.measured
+    if enlarged != 1 or isinstance(measured, Radius):
+        return placed.text.text
     if isinstance(measured, Angle):
-        return {}
+        return "<>"
     times = f"{measured.times} × " if measured.times > 1 else ""
-    sign = "Ø" if measured.diameter else "R" if isinstance(measured, Radius) else ""
-    found: dict[str, Any] = {"dimpost": f"{times}{sign}<>"} if times or sign else {}
-    return {**found, "dimdec": 4} if measured.measure < 0.1 else found
+    return f"{times}{'Ø' if measured.diameter else ''}<>"
+
+
+def _digits(measured: Measured) -> dict[str, int]:
+    """Return how many decimals a dimension has where they are not those of its style."""
+    return {"dimdec": 4} if not isinstance(measured, Angle) and measured.measure < 0.1 else {}
 
 
 def _middle(text: Text) -> XY:
     """Return the middle of a text."""
     x0, y0, x1, y1 = box_of(text.corners)
     return (x0 + x1) / 2, (y0 + y1) / 2
-
-
-def _moved(outline: Iterable[Vertex], offset: XY) -> list[tuple[float, float, float]]:
-    return [(x + offset[0], y + offset[1], bulge) for x, y, bulge in map(corner, outline)]
-
-
-def _in_part(box: Box2, placed: PlacedView) -> Box2:
-    """Return a box on paper in millimetres of the part."""
-    (x, y), s = placed.origin, placed.scale
-    return (box[0] - x) / s, (box[1] - y) / s, (box[2] - x) / s, (box[3] - y) / s
-
-
-def _meet(a: Box2, b: Box2) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]

@@ -1,6 +1,6 @@
 """The sheet of a drawing: its size, the scale, and the places of views and details.
 
-Scales are those of ISO 5455, sheets A4 to A2 lying (ISO 5457). Views stand in one row, to the left of title block and
+Scales are those of ISO 5455, sheets A4 to A1 lying (ISO 5457). Views stand in one row, to the left of title block and
 parts list or above them, whichever lets them be larger; details are as large as their room allows.
 """
 

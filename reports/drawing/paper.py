@@ -30,12 +30,23 @@ class Text:
     @property
     def corners(self) -> list[XY]:
         """The corners of the box around it."""
-        wide = width(self.text, self.height) * (1.08 if self.bold else 1.0)
-        left = {"start": 0.0, "middle": -wide / 2, "end": -wide}[self.anchor]
+        left, right = self._ends(width(self.text, self.height) * (1.08 if self.bold else 1.0))
         below, above = -0.28 * self.height, 1.05 * self.height
+        return [self._turned(u, v) for u, v in ((left, below), (right, below), (right, above), (left, above))]
+
+    @property
+    def base_line(self) -> tuple[XY, XY]:
+        """The ends of the line on which the letters stand."""
+        left, right = self._ends(width(self.text, self.height))
+        return self._turned(left, 0.0), self._turned(right, 0.0)
+
+    def _ends(self, wide: float) -> tuple[float, float]:
+        left = {"start": 0.0, "middle": -wide / 2, "end": -wide}[self.anchor]
+        return left, left + wide
+
+    def _turned(self, along: float, above: float) -> XY:
         c, s = math.cos(math.radians(self.turn)), math.sin(math.radians(self.turn))
-        around = ((left, below), (left + wide, below), (left + wide, above), (left, above))
-        return [(self.at[0] + c * u - s * v, self.at[1] + s * u + c * v) for u, v in around]
+        return self.at[0] + c * along - s * above, self.at[1] + s * along + c * above
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ WIDE = 180.0  # of title block and parts list (ISO 7200)
 BLOCK = 36.0  # height of the title block
 ROW = 5.0  # of the parts list
 NOTE = 3.9  # from line to line of notes
+INDENT = 3.0  # mm of the later lines of a note
 LEAST = 1.8  # least height of letters
 # Columns of the parts list: heading, width, whether numbers stand in it.
 COLUMNS = (
@@ -35,6 +36,15 @@ class Written:
     strokes: tuple[Stroke, ...]
     texts: tuple[Text, ...]
     rings: tuple[Ring, ...] = ()
+
+
+@dataclass(frozen=True)
+class NoteLine:
+    """A line of the notes, so far to the right [mm]."""
+
+    words: str
+    indent: float = 0.0
+    bold: bool = False
 
 
 def list_height(items: Sequence[Item]) -> float:
@@ -114,20 +124,26 @@ def _first_angle(x: float, y: float) -> Written:
     return Written(strokes, (), (Ring((x + 4, y), 2.8), Ring((x + 4, y), 1.4)))
 
 
-def note_lines(drawing: Drawing, wide: float) -> list[tuple[str, bool]]:
-    """Return the notes of a sheet in lines that fit, and whether each is a heading."""
-    lines = [(NOT_DRAWN, True)]
+def note_lines(drawing: Drawing, wide: float) -> list[NoteLine]:
+    """Return the notes of a sheet in lines that fit."""
+    lines = [NoteLine(NOT_DRAWN, bold=True)]
     for text in drawing.omitted:
-        lines += [((" – " if k == 0 else "    ") + x, False) for k, x in enumerate(wrapped(text, wide - 4, SMALL))]
-    lines.append(("Remarks:", True))
+        lines += _note(text, wide)
+    lines.append(NoteLine("Remarks:", bold=True))
     for text in (f"{SIZES}.", *drawing.remarks):
-        lines += [((" – " if k == 0 else "    ") + x, False) for k, x in enumerate(wrapped(text, wide - 4, SMALL))]
+        lines += _note(text, wide)
     return lines
 
 
-def notes(lines: Sequence[tuple[str, bool]], left: float, bottom: float) -> Written:
+def _note(text: str, wide: float) -> list[NoteLine]:
+    found = wrapped(f"– {text}", wide - INDENT, SMALL)
+    return [NoteLine(words, INDENT if k else 1.0) for k, words in enumerate(found)]
+
+
+def notes(lines: Sequence[NoteLine], left: float, bottom: float) -> Written:
     """Return the notes, the last line at the bottom."""
     texts = []
-    for k, (words, heading) in enumerate(reversed(lines)):
-        texts.append(Text((left, bottom + 1.5 + NOTE * k), words, SMALL, bold=heading))
+    for k, line in enumerate(reversed(lines)):
+        at = (left + line.indent, bottom + 1.5 + NOTE * k)
+        texts.append(Text(at, line.words, SMALL, bold=line.bold))
     return Written((), tuple(texts))

@@ -213,12 +213,11 @@ class _Svg:
         wide = width(text.text, text.height)
         bold = ' font-weight="bold"' if text.bold else ""
         whole = f"<title>{escape(text.whole)}</title>" if text.whole else ""
-        spaced = ' xml:space="preserve"' if text.text != text.text.strip() else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
         edge = 'stroke="#fff" stroke-width="1.2" paint-order="stroke"' if over_hatching else 'stroke="none"'
         self.out.append(
             f'<text x="{x:.2f}" y="{y:.2f}" font-size="{size_of(text.height):.2f}"{anchor}{turn}{bold} '
-            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" {edge}{spaced}>'
+            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" {edge}>'
             f"{escape(text.text)}{whole}</text>"
         )
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import synth
+from reports.drawing.dxf import dxf_document
 from reports.drawing.page import paper_sheet
 from reports.drawing.paper import corners_of, overlap
 from reports.drawing.svg import drawing_svg
@@ -20,6 +21,7 @@ from synth.analysis.drawing import drawing_of, draws, shown_measure, weighed
 from synth.results.design import DesignSteps
 from tests.conformance.cases import CASES, front_of, question
 from tests.repetitions import repetitions
+from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
 
@@ -138,6 +140,16 @@ def assert_readable(sheet):
     for k, region in enumerate(regions):
         assert all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in region)
         assert not any(overlap(region, other) for other in regions[:k])
+
+
+@pytest.mark.parametrize("family", DRAWN)
+def test_dxf_is_sound_and_measures_what_is_drawn(family):
+    pytest.importorskip("ezdxf")
+    design, drawing = drawings_of(family, next(reversed(CASES[family].option_sets)))[-1]
+    document = dxf_document(paper_sheet(drawing, design.frame.title, "clutchsynth 0.0.0"), drawing)
+    audit = document.audit()
+    assert (audit.errors, audit.fixes) == ([], [])
+    assert measured_in(document) == pytest.approx(sorted(drawn_measure(d) for d in drawing.measured), rel=1e-9)
 
 
 def ring_box(ring):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
@@ -33,10 +34,12 @@ from synth.drawing import (
     rectangle,
 )
 from synth.errors import InputError
+from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
 
 ezdxf = pytest.importorskip("ezdxf")
+pytest.importorskip("ezdxf.bbox")
 
 
 @pytest.fixture(scope="module")
@@ -75,26 +78,52 @@ def test_dxf_is_sound_and_measures_what_is_drawn():
     document = dxf_document(paper_sheet(drawing, "Clutch", "program"), drawing)
     audit = document.audit()
     assert (audit.errors, audit.fixes) == ([], [])
-    measured = sorted(e.get_measurement() for e in document.modelspace().query("DIMENSION"))
-    wanted = [d.measure * (180 / 3.141592653589793 if isinstance(d, Angle) else 1) for d in drawing.measured]
-    assert measured == pytest.approx(sorted(wanted), rel=1e-9)
+    assert measured_in(document) == pytest.approx(sorted(drawn_measure(d) for d in drawing.measured), rel=1e-9)
 
 
-def test_dxf_has_layers_line_types_and_viewports():
+def test_dxf_has_layers_line_types_and_a_layout():
     drawing = everything()
     sheet = paper_sheet(drawing, "Clutch", "program")
     document = ezdxf.read(io.StringIO(dxf_of(drawing, "Clutch", "program")))
     assert document.units == 4
     weights = {layer.dxf.name: layer.dxf.lineweight for layer in document.layers}
     assert (weights["OUTLINE"], weights["CENTRE"], weights["DIMENSION"]) == (50, 25, 25)
-    assert document.layers.get("CENTRE").dxf.linetype == "CENTRE"
-    ports = [v for v in document.layout("Sheet").query("VIEWPORT") if v.dxf.id != 1]
-    assert len(ports) == len(drawing.views) + 2 * 1  # a detail has one for its window and one for its dimensions
-    scales = {round(v.dxf.height / v.dxf.view_height, 6) for v in ports}
-    assert scales == {round(v.scale, 6) for v in sheet.views}
-    for port in ports:  # each view shows the dimensions of no other
-        shown = {x.dxf.name for x in document.layers if x.dxf.name.startswith("DIMENSION")} - set(port.frozen_layers)
-        assert len(shown) <= 1
+    assert document.layers.get("CENTRE").dxf.linetype == "CENTER"
+    (port,) = [v for v in document.layout("Sheet").query("VIEWPORT") if v.dxf.id != 1]
+    assert port.dxf.height / port.dxf.view_height == pytest.approx(sheet.scale)
+    assert (port.dxf.width, port.dxf.height) == sheet.size
+
+
+def test_a_view_is_in_true_size_in_the_model_and_all_lies_within_the_frame():
+    drawing = everything()
+    sheet = paper_sheet(drawing, "Clutch", "program")
+    assert sheet.scale != 1
+    model = dxf_document(sheet, drawing).modelspace()
+    assert sorted(c.dxf.radius for c in model.query('CIRCLE[layer=="CENTRE"]')) == [20.0]
+    rings = [p for p in model.query('LWPOLYLINE[layer=="OUTLINE"]') if p.closed and len(p) == 4]
+    sides = sorted(max(x for x, *_ in p) - min(x for x, *_ in p) for p in rings)
+    assert any(side == pytest.approx(20.0) for side in sides)
+    low, high = sheet.frame[:2], sheet.frame[2:]
+    extents = ezdxf.bbox.extents(e for e in model if e.dxftype() != "DIMENSION")
+    assert all(p >= x / sheet.scale - 1e-6 for p, x in zip(extents.extmin, low, strict=False))
+    assert all(p <= x / sheet.scale + 1e-6 for p, x in zip(extents.extmax, high, strict=False))
+
+
+def test_of_a_detail_only_its_window_is_drawn():
+    drawing = everything()
+    sheet = paper_sheet(drawing, "Clutch", "program")
+    (placed,) = [view for view in sheet.views if view.detail]
+    x0, y0, x1, y1 = (end / sheet.scale for end in placed.window)
+    model = dxf_document(sheet, drawing).modelspace()
+    pieces = [p for p in model.query("LWPOLYLINE") if not p.closed and p.dxf.layer in ("OUTLINE", "THIN")]
+    corners = [[(x, y) for x, y, *_ in p] for p in pieces]
+    inside = [
+        own for own in corners if all(x0 - 1e-6 <= x <= x1 + 1e-6 and y0 - 1e-6 <= y <= y1 + 1e-6 for x, y in own)
+    ]
+    # Of the ring: its end at the left, its outside, and nothing where the window cuts it.
+    edges = [(a, b) for own in inside for a, b in pairwise(own)]
+    assert len(edges) == 2
+    assert sum(abs(a[0] - b[0]) > 1 for a, b in edges) == 1
 
 
 def test_the_same_design_gives_the_same_files(front, tmp_path):
