@@ -18,7 +18,6 @@ from reports.sheet.blocks import (
     Code,
     Column,
     Document,
-    Figure,
     Heading,
     Link,
     Paragraph,
@@ -28,7 +27,7 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import DRAWN, DRAWN_ALT, front_state
+from reports.sheet.design_sheet import front_state
 from synth.plain_text import counted, percent, plain_number, printable, thousands, words
 from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
 
@@ -273,10 +272,13 @@ def _in_full(batch: BatchRecord, about: About) -> list[Block]:
         blocks.append(Paragraph(f"{row.remarks[:1].upper()}{_short(row.remarks)[1:]}.", small=True))
     if told.front is None or told.calculation is None:
         return blocks
+    drawings = {}
     if told.drawing is not None:
-        svg = svg_of(told.drawing, told.front.frame.title, _program(batch), about)
-        blocks.append(Figure(svg, DRAWN_ALT, DRAWN))
-    inner = first_design(FrontReportRequest(front=told.front, calculation=told.calculation, about=about))
+        title = told.front.frame.title
+        drawings[told.front.designs[0].rank or 0] = svg_of(told.drawing, title, _program(batch), about)
+    inner = first_design(
+        FrontReportRequest(front=told.front, calculation=told.calculation, about=about, drawings=drawings)
+    )
     return blocks + [_deeper(block) for block in inner]
 
 

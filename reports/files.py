@@ -27,7 +27,7 @@ from reports.workbook import live_workbook
 from reports.workbook_front import front_workbook
 from synth.drawing import Drawing
 from synth.errors import InputError
-from synth.results import Design, ParetoFront
+from synth.results import Design, ParetoFront, foremost
 from synth.results.batch_record import BatchRecord
 from synth.results.calculation import Calculation
 
@@ -116,8 +116,8 @@ def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], 
     Parameters
     ----------
     asked : mapping
-        ``content`` of comparison.json, ``fronts``, ``calculations`` and ``links`` by family, ``formats``, ``about``,
-        ``about_folder``, ``fonts``.
+        ``content`` of comparison.json, ``fronts`` and ``links`` by family, ``formats``, ``about``, ``about_folder``,
+        ``fonts``; for the explorer ``calculations`` by family, and ``drawings`` by rank.
     """
     about = About.of(asked.get("about"), asked.get("about_folder"))
     content, fronts, links = asked["content"], asked["fronts"], asked["links"]
@@ -125,7 +125,8 @@ def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], 
     files, notes = documents({"report": document}, asked["formats"], asked["fonts"])
     if "explorer" in asked["formats"]:
         beside = {family: file for family, file in links.items() if "explorer" not in file}
-        record = comparison_record(content, fronts, asked["calculations"], about=about, links=beside)
+        calculations, drawings = asked["calculations"], asked["drawings"]
+        record = comparison_record(content, fronts, calculations, about=about, links=beside, drawings=drawings)
         files["explorer.html"] = explorer_page(record)
     return files, notes
 
@@ -195,6 +196,11 @@ class _Files:
                 near_equals=request.near_equals,
                 curves=request.curves,
                 explorer="explorer.html" if "explorer" in request.formats else "",
+                drawings={
+                    d.rank or 0: self._picture(d, f"drawing-{d.rank}")
+                    for d in foremost(front, request.full)
+                    if d.rank in request.drawings
+                },
             )
         )
         self._document(document, "report")
@@ -239,9 +245,8 @@ class _Files:
 
     def _sheet(self, design: Design, name: str) -> None:
         request = self.request
-        told = design.frame.title, program_name(request.front), request.about
         drawing = request.drawings.get(design.rank or 0)
-        picture = "" if drawing is None or request.length == "summary" else svg_of(drawing, *told)
+        picture = "" if drawing is None or request.length == "summary" else self._picture(design)
         sheet = SheetRequest(request.calculation, design, request.front, request.about, request.length, picture)
         self._document(design_sheet(sheet), f"{name}_sheet")
         if "json" in request.formats:
@@ -256,9 +261,15 @@ class _Files:
                 request.calculation, design, request.rows, request.about, proven
             )
         for word, file in self._drawing_files(design.rank or 0, name).items():
+            told = design.frame.title, program_name(request.front), request.about
             self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
         if drawing is not None and any(word in BODIES for word in request.formats):
             self._tell_left_out(drawing)
+
+    def _picture(self, design: Design, prefix: str = "drawing") -> str:
+        """Return the drawing of a design as SVG, with names inside that begin so."""
+        told = design.frame.title, program_name(self.request.front), self.request.about
+        return svg_of(self.request.drawings[design.rank or 0], *told, prefix)
 
     def _tell_left_out(self, drawing: Drawing) -> None:
         """Tell which parts of a drawing are not among its bodies."""

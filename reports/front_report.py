@@ -31,8 +31,16 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import front_details, front_state, next_in_tables, percent, program_name
-from synth.results import Design, ParetoFront
+from reports.sheet.design_sheet import (
+    DRAWN,
+    DRAWN_ALT,
+    front_details,
+    front_state,
+    next_in_tables,
+    percent,
+    program_name,
+)
+from synth.results import Design, ParetoFront, foremost
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
 from synth.units import unit_text
@@ -69,6 +77,8 @@ class FrontReportRequest:
         Files of curves and simulations in the folder.
     explorer : str
         File of the explorer beside the report, if there is one.
+    drawings : mapping
+        Rank -> drawing as SVG, of designs that have one.
     """
 
     front: ParetoFront
@@ -80,18 +90,7 @@ class FrontReportRequest:
     near_equals: Sequence[Mapping[str, Any]] = ()
     curves: Sequence[str] = ()
     explorer: str = ""
-
-
-def chosen_designs(front: ParetoFront, count: int) -> list[Design]:
-    """Return the designs that are told in full: rank 1, the knee, the best of each objective, then by rank."""
-    wanted = list(front.designs[:1]) + [d for d in front.designs if "knee" in d.note]
-    for name, sense in front.frame.objectives.items():
-        if front.designs:
-            sign = 1 if sense == "min" else -1
-            wanted.append(min(front.designs, key=lambda d: (sign * d.objectives[name], d.rank or 0)))
-    wanted += front.designs
-    unique = list({d.rank: d for d in wanted}.values())[:count]
-    return sorted(unique, key=lambda d: d.rank or 0)
+    drawings: Mapping[int, str] = field(default_factory=dict)
 
 
 def front_report(request: FrontReportRequest) -> Document:
@@ -111,7 +110,7 @@ class _Report:
         self.request, self.front, self.calculation = request, request.front, request.calculation
         self.frame = request.front.frame
         self.quantities = request.calculation.quantities
-        self.full = chosen_designs(self.front, request.full)
+        self.full = foremost(self.front, request.full)
 
     def document(self) -> Document:
         level, head = front_state(self.front)
@@ -243,6 +242,8 @@ class _Report:
             blocks.append(
                 Paragraph(said("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
             )
+        if rank in self.request.drawings:
+            blocks.append(Figure(self.request.drawings[rank], f"Design #{rank}. {DRAWN_ALT}", DRAWN))
         blocks.append(Bullets((*self._choices(design), *self._parts(design), *next_in_tables(design))))
         blocks.append(TableBlock("Sizes and results", VALUE_COLUMNS, self._values(design)))
         blocks.append(TableBlock.of("Limits, the most used first", USED_COLUMNS, self._limits(design)))

@@ -11,7 +11,7 @@ from reports.drawing.svg import drawing_svg
 from synth.drawing import Drawing
 
 
-def svg_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str:
+def svg_of(drawing: Drawing, title: str, program: str, about: Any = None, prefix: str = "drawing") -> str:
     """Return a drawing as an SVG file.
 
     Parameters
@@ -23,8 +23,10 @@ def svg_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str
         What computed the design, with its version.
     about : About or mapping, optional
         What the title block tells.
+    prefix : str
+        Of the names inside, which must differ where several drawings stand in one page.
     """
-    return drawing_svg(paper_sheet(drawing, title, program, About.of(about)), drawing)
+    return drawing_svg(paper_sheet(drawing, title, program, About.of(about)), drawing, prefix)
 
 
 def dxf_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str:

@@ -8,7 +8,7 @@ from reports.drawing.callout_places import callouts
 from reports.drawing.dimension_places import angular, slanted, tiers
 from reports.drawing.paper import Callout, PlacedMeasure, PlacedView, Stroke, Text, scale_label
 from synth.drawing import XY, Angle, Box2, Detail, Dimension, Line, LineKind, Radius, Slant, View
-from synth.drawing.shapes import box_of
+from synth.drawing.shapes import box_of, points_of
 
 CENTRE_OVER = 4.0  # mm that centre lines reach beyond their ends
 HEADING = 5.0  # height of letters over details
@@ -65,7 +65,7 @@ def placed_detail(view: View, detail: Detail, scale: float, origin: XY) -> Place
         detail=detail,
         scale=scale,
         origin=origin,
-        shapes=view.drawn,
+        shapes=tuple(shape for shape in view.drawn if _meet(box_of(points_of(shape)), detail.window)),
         measures=tuple(measures),
         callouts=tuple(called),
         heading=heading,
@@ -112,6 +112,10 @@ def _with(region: Box2, heading: Text | None) -> Box2:
 def _on_paper(box: Box2, scale: float, origin: XY) -> Box2:
     x, y = origin
     return x + scale * box[0], y + scale * box[1], x + scale * box[2], y + scale * box[3]
+
+
+def _meet(a: Box2, b: Box2) -> bool:
+    return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
 def _middle(box: Box2) -> float:

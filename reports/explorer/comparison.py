@@ -10,6 +10,7 @@ from reports.about import About
 from reports.explorer.record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 from reports.front_report import NOT_COVERED
 from reports.sheet.design_sheet import as_sentence, program_name
+from synth.drawing import Drawing
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.calculation import Calculation
 
@@ -23,6 +24,7 @@ def comparison_record(
     *,
     about: Any = None,
     links: Mapping[str, str] | None = None,
+    drawings: Mapping[int, Drawing] | None = None,
 ) -> dict[str, Any]:
     """Return what the explorer shows of a comparison, as JSON knows it.
 
@@ -37,8 +39,10 @@ def comparison_record(
     about : About or mapping, optional
     links : mapping, optional
         Family -> file of its report beside the page.
+    drawings : mapping, optional
+        Rank in the common front -> Drawing.
     """
-    told = _Compared(content, fronts, calculations, About.of(about), links or {})
+    told = _Compared(content, fronts, calculations, About.of(about), links or {}, drawings or {})
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(next(iter(fronts.values()), None)),
@@ -67,8 +71,10 @@ class _Compared:
         calculations: Mapping[str, Calculation],
         about: About,
         links: Mapping[str, str],
+        drawings: Mapping[int, Drawing],
     ) -> None:
         self.content, self.fronts, self.about, self.links = content, fronts, about, links
+        self.drawings = drawings
         self.records = {family: RecordOf(fronts[family], calculations[family], about) for family in calculations}
         self.titles = self._titles()
         self.quantities: dict[str, dict[str, Any]] = {}
@@ -194,7 +200,9 @@ class _Compared:
         """Return one design, with its rank among those of all families."""
         family, title = told["family"], self.titles[told["family"]]
         record, own = self.records[family], self._own(told)
-        found = record.design(own, (), {}, {})
+        drawing = self.drawings.get(told["rank"])
+        pictures = {own.rank or 0: record.picture(drawing)} if drawing is not None else {}
+        found = record.design(own, (), {}, pictures)
         used = dict(zip(self._limits_of(family), found["used"], strict=True))
         sides = dict(zip(self._limits_of(family), found["sides"], strict=True))
         names = {self._key(family, name): name for name in [*self.content["objectives"], *record.names]}

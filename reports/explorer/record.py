@@ -51,8 +51,7 @@ def explorer_record(
         Rank -> Drawing; it is shown as a picture, in which nothing runs.
     """
     told = RecordOf(front, calculation, About.of(about))
-    title, program = front.frame.title, program_name(front)
-    pictures = {rank: svg_of(drawing, title, program, told.about) for rank, drawing in (drawings or {}).items()}
+    pictures = {rank: told.picture(drawing) for rank, drawing in (drawings or {}).items()}
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
@@ -268,6 +267,10 @@ class RecordOf:
             "drawing": drawings.get(d.rank or 0, ""),
         }
         return told | {key: value for key, value in more.items() if value}
+
+    def picture(self, drawing: Drawing) -> str:
+        """Return a drawing as SVG."""
+        return svg_of(drawing, self.frame.title, program_name(self.front), self.about)
 
     def _binds(self, d: Design, name: str) -> bool:
         used = d.utilisation.get(name)

@@ -18,7 +18,7 @@ from synth.files import read_bytes, read_json
 from synth.output_folder import save_files
 from synth.plain_text import csv_cell
 from synth.question.instance import Instance
-from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.results import Design, ParetoFront, design_columns, design_row, foremost
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON, load_front
@@ -136,7 +136,19 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     if record is None:
         raise InputError("explore", None, NO_REPORTS)
     content, _, fronts = _compared(source)
-    found: dict[str, Any] = record(content, fronts, _calculations(fronts), about=about)
+    drawings = _drawings_of_all(content["designs"], fronts)
+    found: dict[str, Any] = record(content, fronts, _calculations(fronts), about=about, drawings=drawings)
+    return found
+
+
+def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Any]:
+    """Return drawings of the first designs of a common front, by their rank there."""
+    first = listed[:DRAWN]
+    found: dict[int, Any] = {}
+    for family, front in fronts.items():
+        ranks = {x["own_rank"]: int(x["rank"]) for x in first if x["family"] == family}
+        drawn, _ = _drawings(front, [d for d in front.designs if d.rank in ranks])
+        found |= {ranks[own]: drawing for own, drawing in drawn.items()}
     return found
 
 
@@ -197,8 +209,10 @@ def _of_front(
     wanted = {str(word).strip() for word in chosen}
     named = [d for d in front.designs if str(d.rank) in wanted or ("knee" in wanted and "knee" in d.note)]
     asked["drawings"], untold = _drawings(front, named, problem, catalogs, asked=how.draws)
-    if "explorer" in how.formats:
-        asked["drawings"] |= _drawings(front, front.designs[:DRAWN], problem, catalogs)[0]
+    shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
+    shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
+    more = {d.rank: d for d in shown if d.rank not in asked["drawings"]}
+    asked["drawings"] |= _drawings(front, list(more.values()), problem, catalogs)[0]
     files, notes = _made(asked, how)
     return files, [*notes, *untold]
 
@@ -286,7 +300,8 @@ def report_comparison(
     make = report_named("comparison")
     assert make is not None
     asked: dict[str, Any] = {"content": content, "fronts": fronts, "links": links}
-    asked["calculations"] = _calculations(fronts) if "explorer" in how.formats else {}
+    if "explorer" in how.formats:
+        asked |= {"calculations": _calculations(fronts), "drawings": _drawings_of_all(listed, fronts)}
     own, told = make({**asked, **how.asked()})
     notes += [note for note in told if note not in notes]
     save_files(folder, {**own, **files})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from synth.results.certificate import Certificate
     from synth.results.design import Design, Frame, PartRow, design_columns, design_row, shown_value
-    from synth.results.front import ParetoFront
+    from synth.results.front import ParetoFront, foremost
 
 __all__ = [
     "Certificate",
@@ -18,6 +18,7 @@ __all__ = [
     "PartRow",
     "design_columns",
     "design_row",
+    "foremost",
     "shown_value",
 ]
 
@@ -30,6 +31,7 @@ _HOME = {
     "design_row": "synth.results.design",
     "shown_value": "synth.results.design",
     "ParetoFront": "synth.results.front",
+    "foremost": "synth.results.front",
 }
 
 

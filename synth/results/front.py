@@ -335,3 +335,14 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
     }
     content["digest"] = digest_of(content)
     return content
+
+
+def foremost(front: ParetoFront, count: int) -> list[Design]:
+    """Return the designs that are told first: rank 1, the knee, the best of each objective, then by rank."""
+    wanted = list(front.designs[:1]) + [d for d in front.designs if "knee" in d.note]
+    for name, sense in front.frame.objectives.items():
+        if front.designs:
+            sign = 1 if sense == "min" else -1
+            wanted.append(min(front.designs, key=lambda d: (sign * d.objectives[name], d.rank or 0)))
+    unique = list({d.rank: d for d in (*wanted, *front.designs)}.values())[:count]
+    return sorted(unique, key=lambda d: d.rank or 0)

@@ -152,6 +152,30 @@ def test_sheets_and_the_explorer_show_the_drawing(front, tmp_path):
     assert explored(front)["designs"][0]["drawing"].startswith("<svg")
 
 
+def test_the_report_draws_what_it_tells_in_full_and_names_inside_differ(front, tmp_path):
+    report(front, tmp_path, design=2, full=2)
+    told = (tmp_path / "report.html").read_text()
+    assert told.count("Dimensioned drawing of the design") == 2
+    names = re.findall(r' id="([^"]+)"', told)
+    assert {"drawing-1-right", "drawing-2-right"} <= set(names)
+    assert len(names) == len(set(names))
+    # A sheet is asked for of designs that are not told in full.
+    report(front, tmp_path / "none", design=2, full=0)
+    assert "Dimensioned drawing" not in (tmp_path / "none" / "report.html").read_text()
+    assert "Dimensioned drawing" in (tmp_path / "none" / "design_02_sheet.html").read_text()
+
+
+def test_a_detail_holds_only_what_its_window_shows():
+    drawing = everything()
+    far = Area(rectangle(10, 12, 15, 20), 1)
+    section = replace(drawing.views[0], shapes=(*drawing.views[0].shapes, far))
+    sheet = paper_sheet(replace(drawing, views=(section, *drawing.views[1:])), "Clutch", "program")
+    (placed,) = [view for view in sheet.views if view.detail]
+    assert far in section.drawn
+    assert far not in placed.shapes
+    assert section.shapes[0] in placed.shapes
+
+
 def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
     design = front.designs[0]
     old = replace(design, steps=type(design.steps)({k: v for k, v in design.steps.items() if k != "release_gap"}))

@@ -55,6 +55,13 @@ def test_designs_are_those_of_the_common_front_in_the_units_of_their_columns() -
         assert set(told["parts"].values()) <= set(record["parts"])
 
 
+def test_the_first_designs_have_their_drawing() -> None:
+    found, record = compared()
+    for told, own in zip(record["designs"][:8], found.designs, strict=False):
+        assert told["drawing"].startswith("<svg")
+        assert f'data-measure="{1000 * own.values["outer_diameter"]!r}"' in told["drawing"]
+
+
 def test_what_became_of_each_family_and_how_far_it_is_proven_is_told() -> None:
     found, record = compared()
     told = {family["name"]: family for family in record["families"]}
