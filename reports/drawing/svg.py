@@ -8,7 +8,7 @@ from html import escape
 
 from reports.drawing.dimension_places import TAIL
 from reports.drawing.filling import Filling, filling
-from reports.drawing.lettering import size_of, width
+from reports.drawing.lettering import plain, size_of, width
 from reports.drawing.paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
 from reports.drawing.view_places import CENTRE_OVER
 from synth.drawing import XY, Angle, Area, Circle, Drawable, Drawing, Line, LineKind, Slant
@@ -49,7 +49,7 @@ class _Svg:
         self.out = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:g}mm" height="{high:g}mm" '
             f'viewBox="0 0 {wide:g} {high:g}" font-family="{FONT}" role="img">',
-            f"<title>{escape(told)}</title>",
+            f"<title>{escape(plain(told))}</title>",
             self._definitions(),
             f'<rect width="{wide:g}" height="{high:g}" fill="#fff"/>',
             f'<g fill="none" stroke="#000" stroke-width="{NARROW:g}">',
@@ -84,7 +84,7 @@ class _Svg:
 
     def _view(self, placed: PlacedView) -> None:
         name = placed.view.name + (f", detail {placed.detail.letter}" if placed.detail else "")
-        self.out.append(f'<g data-view="{escape(name)}">')
+        self.out.append(f'<g data-view="{escape(plain(name))}">')
         if placed.detail:
             x0, y0, x1, y1 = placed.window
             high = self.sheet.size[1]
@@ -137,7 +137,7 @@ class _Svg:
         back = f'<path d="{path}" fill="#fff" fill-rule="evenodd" stroke="none"/>' if kind not in solid else ""
         self.out.append(
             f'{back}<path d="{path}" fill="{fill}" fill-rule="evenodd" stroke="{colour}" stroke-width="{pen}">'
-            f"<title>{escape(f'{item.number} {item.name}' if item else '')}</title></path>"
+            f"<title>{escape(plain(f'{item.number} {item.name}') if item else '')}</title></path>"
         )
 
     def _outline(self, placed: PlacedView, outline: Sequence[tuple[float, ...]]) -> str:
@@ -212,7 +212,7 @@ class _Svg:
         turn = f' transform="rotate({-text.turn:g} {x:.2f} {y:.2f})"' if text.turn else ""
         wide = width(text.text, text.height)
         bold = ' font-weight="bold"' if text.bold else ""
-        whole = f"<title>{escape(text.whole)}</title>" if text.whole else ""
+        whole = f"<title>{escape(plain(text.whole))}</title>" if text.whole else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
         edge = 'stroke="#fff" stroke-width="1.2" paint-order="stroke"' if over_hatching else 'stroke="none"'
         self.out.append(

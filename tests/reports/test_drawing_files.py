@@ -6,6 +6,7 @@ import io
 import re
 from dataclasses import replace
 from itertools import pairwise
+from xml.etree import ElementTree
 
 import pytest
 
@@ -174,6 +175,31 @@ def test_a_detail_holds_only_what_its_window_shows():
     assert far in section.drawn
     assert far not in placed.shapes
     assert section.shapes[0] in placed.shapes
+
+
+HOSTILE = (
+    "<script>alert(1)</script>",
+    '=cmd() #read("/etc/passwd") $HOME',
+    "%%c {\\fArial;x} \\P \\U+0041 ^J",
+    "0\nEOF\n\x00\x1b[2J\u2028\ud800",
+    "\u202eabc\u202c\u0627\u0644 \u9f8d",
+    "\"'`&;" + "x" * 10_000,
+)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_hostile_texts_do_nothing_in_drawings(text):
+    drawing = everything()
+    items = tuple(replace(item, name=text, material=text, note=text) for item in drawing.items)
+    views = tuple(replace(view, name=text[:60]) for view in drawing.views)
+    hostile = replace(drawing, title=text[:60], items=items, omitted=(text[:300],), remarks=(text[:300],), views=views)
+    about = {"project": text[:200], "company": text[:200]}
+    picture = svg_of(hostile, text[:60], "program", about)
+    tree = ElementTree.fromstring(picture)
+    assert not [e.tag for e in tree.iter() if e.tag.endswith(("script", "foreignObject", "image"))]
+    written = dxf_of(hostile, text[:60], "program", about)
+    audit = ezdxf.read(io.StringIO(written.encode().decode())).audit()
+    assert (audit.errors, audit.fixes) == ([], [])
 
 
 def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
