@@ -94,7 +94,7 @@ def report(
         *((f"--{OPTION.get(word, word)}", on or None) for word, on in wanted),
     )
     if _is_batch(source):
-        _refuse(flags, "without it: a batch has report.html, --pdf and --xlsx", ("--pdf", "--xlsx"))
+        _refuse(flags, "no option of fronts alone: a batch has report.html, --pdf and --xlsx", ("--pdf", "--xlsx"))
         if length != "normal":
             raise InputError("--length", length, "the folder of a front with it: a batch has no sheets")
         target = folder or source
@@ -146,7 +146,7 @@ def _refuse(flags: Sequence[tuple[str, Any]], right: str, but: Sequence[str]) ->
     """Refuse flags that what is reported does not take."""
     for flag, value in flags:
         if value is not None and flag not in but:
-            raise InputError(flag, None if value is True else value, right)
+            raise InputError("report", flag, right) if value is True else InputError(flag, value, right)
 
 
 def _of_batch(
