@@ -251,10 +251,13 @@ class _Dxf:
                 dimstyle=style, override=override, dxfattribs=attributes,
             )  # fmt: skip
         elif isinstance(measured, Angle):
+            # By both legs: not every program knows angles by three points.
+            vertex, radius = at(measured.vertex), measured.radius * self.larger
             start, end = measured.ends
-            made = self.model.add_angular_dim_cra(
-                at(measured.vertex), measured.radius * self.larger, math.degrees(start), math.degrees(end),
-                distance=0.0, dimstyle=style, override=override, dxfattribs=attributes,
+            legs = [[_around(vertex, share * radius, t) for share in (0.5, 1.0)] for t in (start, end)]
+            made = self.model.add_angular_dim_2l(
+                _around(vertex, radius, (start + end) / 2), *reversed(legs), dimstyle=style, override=override,
+                dxfattribs=attributes,
             )  # fmt: skip
         else:
             add = self.model.add_diameter_dim if measured.diameter else self.model.add_radius_dim
@@ -358,6 +361,11 @@ def _words(placed: PlacedMeasure, enlarged: float) -> str:
 def _digits(measured: Measured) -> dict[str, int]:
     """Return how many decimals a dimension has where they are not those of its style."""
     return {"dimdec": 4} if not isinstance(measured, Angle) and measured.measure < 0.1 else {}
+
+
+def _around(centre: XY, radius: float, angle: float) -> XY:
+    """Return the point at so many radians on a circle."""
+    return centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
 
 
 def _middle(text: Text) -> XY:

@@ -10,8 +10,14 @@ from synth.drawing import Angle, Measured
 
 def measured_in(document: Any) -> list[float]:
     """Return what the dimensions of a document say, in order: millimetres and degrees."""
-    found = document.modelspace().query("DIMENSION")
-    return sorted(e.get_measurement() * (1.0 if e.dimtype in (2, 5) else e.override().get("dimlfac")) for e in found)
+    return sorted(_measured(e) for e in document.modelspace().query("DIMENSION"))
+
+
+def _measured(dimension: Any) -> float:
+    found = float(dimension.get_measurement())
+    if dimension.dimtype == 2:  # between two lines; ezdxf goes around from the first one as they stand in the file
+        return min(found, 360.0 - found)
+    return found * float(dimension.override().get("dimlfac"))
 
 
 def drawn_measure(measured: Measured) -> float:
