@@ -1,8 +1,7 @@
 """The design that comes first: looked for on its own, so that it does not depend on how many others are listed.
 
 Nothing of it is proven but what is proven of every design listed: that none improves it in all objectives. That none
-comes nearer to the ideal is as far searched as the boxes allow. Where all designs that none dominates are known it is
-one of them, and so are those at the ends: nothing is searched then.
+comes nearer to the ideal is as far searched as the boxes allow.
 """
 
 from __future__ import annotations
@@ -31,8 +30,6 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
     """
     form, limits = state.form, state.task.limits
     state.scored = ScoredFront(_scale(state), np.asarray(weights, dtype=float), form.objectives)
-    if state.proof.complete:
-        return
     rule = NearestIdeal(state.scored, limits.first_share, form.archive)
     if not rule.least:
         return
@@ -60,10 +57,9 @@ def first_is_listed(state: FrontState) -> bool:
 def _scale(state: FrontState) -> Scale:
     """Return the scale of the front: what is best in each objective, and what the others must cost then."""
     form, m = state.form, state.task.m
-    if not state.proof.complete:
-        for k in range(m):
-            _least_in(state, k, np.full(len(form.goals), np.inf))
-        polish_extremes(form, m, float(state.rule.tolerance.max()))
+    for k in range(m):
+        _least_in(state, k, np.full(len(form.goals), np.inf))
+    polish_extremes(form, m, float(state.rule.tolerance.max()))
     ideal = form.objectives.values_of(form.archive.phi[:, :m]).min(axis=0)
     worst = ideal if np.all(ideal > 0) else _worst_at_ends(state, ideal)
     near = nearly(ideal, worst)
@@ -89,7 +85,6 @@ def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
     phi = form.archive.phi
     within = np.flatnonzero(np.all(phi <= cutoffs, axis=1))
     start = form.archive[int(within[np.argmin(phi[within, k])])]
-    best_known = start.phi[k] <= phi[:, k].min() and bool(np.isfinite(cutoffs).any())
-    if not (state.proof.complete or best_known):
+    if start.phi[k] > phi[:, k].min() or not np.isfinite(cutoffs).any():
         start = better_in(state, k, cutoffs, start, limits.first_nodes, limits.first_gap) or start
     return float(form.objectives.signed(k, start.phi[k]))
