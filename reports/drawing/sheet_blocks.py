@@ -90,7 +90,7 @@ def title_block(
         (0, 12, 60, 12, "Project, customer", ", ".join(x for x in (about.project, about.customer) if x)),
         (60, 12, 80, 12, "Shows", drawing.title),
         (140, 12, 20, 12, "Revision", about.revision),
-        (160, 12, 20, 12, "Sheet", f"1/1  {name}"),
+        (160, 12, 20, 12, "Sheet", f"1/1 {name}"),
         (0, 24, 40, 12, "Created by", about.author or program),
         (40, 24, 35, 12, "Approved by", about.checked_by),
         (75, 24, 25, 12, "Date of issue", about.date),
