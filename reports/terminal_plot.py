@@ -14,7 +14,7 @@ from rich.text import Text
 
 from reports.front_plot import LABELLED, Axis, Drawn
 from reports.label_spots import Box, label_spots
-from synth.plain_text import plain_number, printable, words
+from synth.plain_text import one_line, plain_number, printable, words
 from synth.results import Design
 
 WIDEST = 100  # characters of the whole plot
@@ -128,7 +128,7 @@ def plot_lines(drawn: Drawn, width: int, signs: Signs) -> list[Text]:
 
 def _cut(text: str, width: int) -> str:
     """Return a text that takes no more than so many places of a line, and does nothing there."""
-    text = " ".join(printable(text).split())
+    text = one_line(text)
     return text if cell_len(text) <= width else set_cell_size(text, width - 3) + "..."
 
 

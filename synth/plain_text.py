@@ -31,6 +31,17 @@ def printable(text: str) -> str:
     return UNSAFE.sub(_written_out, text)
 
 
+def one_line(text: str) -> str:
+    r"""Return a text on one line, in which what acts on the program that reads it is written out.
+
+    Examples
+    --------
+    >>> one_line("core\x1b[2J\n 4")
+    'core\\x1b[2J 4'
+    """
+    return " ".join(printable(text).split())
+
+
 def plain_number(value: float | None, digits: int = 4) -> str:
     """Return a number as people write it: so many digits, without an exponent, thousands apart.
 

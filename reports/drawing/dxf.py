@@ -57,9 +57,7 @@ LAYERS = {
 }
 PATTERNS = {Filling.RIGHT: ("ANSI31", 0.0), Filling.LEFT: ("ANSI31", 90.0), Filling.CROSS: ("ANSI37", 0.0)}
 PATTERN_SCALE = {Filling.RIGHT: 0.5, Filling.LEFT: 0.5, Filling.CROSS: 0.35}  # of ANSI31: lines 3.175 mm apart
-FITTED = (
-    4  # texts of so many letters are as wide in any font as the layout takes them; fewer letters would be distorted
-)
+FITTED = 4  # texts of so many letters are as wide as the layout takes them, whatever the font; fewer look distorted
 FINE = math.radians(0.5)  # of arcs that the window of a detail cuts
 
 
@@ -256,8 +254,8 @@ class _Dxf:
             start, end = measured.ends
             legs = [[_around(vertex, share * radius, t) for share in (0.5, 1.0)] for t in (start, end)]
             made = self.model.add_angular_dim_2l(
-                _around(vertex, radius, (start + end) / 2), *reversed(legs), dimstyle=style, override=override,
-                dxfattribs=attributes,
+                _around(vertex, radius, (start + end) / 2), *reversed(legs), text=words, dimstyle=style,
+                override=override, dxfattribs=attributes,
             )  # fmt: skip
         else:
             add = self.model.add_diameter_dim if measured.diameter else self.model.add_radius_dim
@@ -339,9 +337,7 @@ def _along(shape: Circle | Arc) -> list[XY]:
     turned = math.radians((end - start) % 360 or 360)
     pieces = math.ceil(turned / FINE)
     angles = [math.radians(start) + turned * k / pieces for k in range(pieces + 1)]
-    return [
-        (shape.centre[0] + shape.radius * math.cos(t), shape.centre[1] + shape.radius * math.sin(t)) for t in angles
-    ]
+    return [_around(shape.centre, shape.radius, t) for t in angles]
 
 
 def _words(placed: PlacedMeasure, enlarged: float) -> str:
@@ -350,10 +346,10 @@ def _words(placed: PlacedMeasure, enlarged: float) -> str:
     Of what is enlarged, and of radii, all is written out: not every program knows factors, and signs of radii.
     """
     measured = placed.measured
+    if isinstance(measured, Angle):
+        return "<>"  # as large in any scale
     if enlarged != 1 or isinstance(measured, Radius):
         return placed.text.text
-    if isinstance(measured, Angle):
-        return "<>"
     times = f"{measured.times} × " if measured.times > 1 else ""
     return f"{times}{'Ø' if measured.diameter else ''}<>"
 

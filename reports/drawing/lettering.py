@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.plain_text import printable
+from synth.plain_text import one_line
 
 TEXT = 3.5  # mm, height of letters of dimensions (ISO 3098)
 SMALL = 2.5  # of lists and notes
@@ -46,15 +46,6 @@ def width(text: str, height: float) -> float:
     return units / 1000 * size_of(height)
 
 
-def plain(text: str) -> str:
-    r"""Return a text on one line in which nothing acts on the program that reads it.
-
-    >>> plain("core\x1b[2J\n 4")
-    'core\\x1b[2J 4'
-    """
-    return " ".join(printable(text).split())
-
-
 def fitted(text: str, most: float, height: float, least: float) -> tuple[str, float]:
     """Return a text that is no wider than ``most``: smaller letters first, then cut with an ellipsis.
 
@@ -63,7 +54,7 @@ def fitted(text: str, most: float, height: float, least: float) -> tuple[str, fl
     >>> fitted("A name without end", 20, 2.5, 2.0)
     ('A name witho…', 2.0)
     """
-    text = plain(text)
+    text = one_line(text)
     needed = width(text, height)
     if needed <= most:
         return text, height
@@ -83,7 +74,7 @@ def wrapped(text: str, most: float, height: float) -> list[str]:
     ['Not part of', 'the model']
     """
     lines = [""]
-    for word in plain(text).split():
+    for word in one_line(text).split():
         rest = word
         while rest:
             wider = f"{lines[-1]} {rest}".strip()

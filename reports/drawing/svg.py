@@ -8,11 +8,12 @@ from html import escape
 
 from reports.drawing.dimension_places import TAIL
 from reports.drawing.filling import Filling, filling
-from reports.drawing.lettering import plain, size_of, width
+from reports.drawing.lettering import size_of, width
 from reports.drawing.paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
 from reports.drawing.view_places import CENTRE_OVER
 from synth.drawing import XY, Angle, Area, Circle, Drawable, Drawing, Line, LineKind, Slant
 from synth.drawing.shapes import arc_of, sides, thickness
+from synth.plain_text import one_line
 
 WIDE, NARROW = 0.5, 0.25  # mm (ISO 128-2)
 NARROW_PART = 3.0  # parts thinner than that on paper have lighter outlines
@@ -49,7 +50,7 @@ class _Svg:
         self.out = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:g}mm" height="{high:g}mm" '
             f'viewBox="0 0 {wide:g} {high:g}" font-family="{FONT}" role="img">',
-            f"<title>{escape(plain(told))}</title>",
+            f"<title>{escape(one_line(told))}</title>",
             self._definitions(),
             f'<rect width="{wide:g}" height="{high:g}" fill="#fff"/>',
             f'<g fill="none" stroke="#000" stroke-width="{NARROW:g}">',
@@ -84,7 +85,7 @@ class _Svg:
 
     def _view(self, placed: PlacedView) -> None:
         name = placed.view.name + (f", detail {placed.detail.letter}" if placed.detail else "")
-        self.out.append(f'<g data-view="{escape(plain(name))}">')
+        self.out.append(f'<g data-view="{escape(one_line(name))}">')
         if placed.detail:
             x0, y0, x1, y1 = placed.window
             high = self.sheet.size[1]
@@ -137,7 +138,7 @@ class _Svg:
         back = f'<path d="{path}" fill="#fff" fill-rule="evenodd" stroke="none"/>' if kind not in solid else ""
         self.out.append(
             f'{back}<path d="{path}" fill="{fill}" fill-rule="evenodd" stroke="{colour}" stroke-width="{pen}">'
-            f"<title>{escape(plain(f'{item.number} {item.name}') if item else '')}</title></path>"
+            f"<title>{escape(one_line(f'{item.number} {item.name}') if item else '')}</title></path>"
         )
 
     def _outline(self, placed: PlacedView, outline: Sequence[tuple[float, ...]]) -> str:
@@ -212,7 +213,7 @@ class _Svg:
         turn = f' transform="rotate({-text.turn:g} {x:.2f} {y:.2f})"' if text.turn else ""
         wide = width(text.text, text.height)
         bold = ' font-weight="bold"' if text.bold else ""
-        whole = f"<title>{escape(plain(text.whole))}</title>" if text.whole else ""
+        whole = f"<title>{escape(one_line(text.whole))}</title>" if text.whole else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
         edge = 'stroke="#fff" stroke-width="1.2" paint-order="stroke"' if over_hatching else 'stroke="none"'
         self.out.append(

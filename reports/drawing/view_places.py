@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from reports.drawing.callout_places import callouts
 from reports.drawing.dimension_places import angular, slanted, tiers
-from reports.drawing.lettering import plain
 from reports.drawing.paper import Callout, PlacedMeasure, PlacedView, Stroke, Text, scale_label
 from synth.drawing import XY, Angle, Box2, Detail, Dimension, Line, LineKind, Radius, Slant, View
 from synth.drawing.shapes import box_of, points_of
+from synth.plain_text import one_line
 
 CENTRE_OVER = 4.0  # mm that centre lines reach beyond their ends
 HEADING = 5.0  # height of letters over details
@@ -25,7 +25,7 @@ def placed_view(view: View, scale: float, origin: XY, *, named: bool) -> PlacedV
     told = [*view.balloons, *view.details, *(d for d in view.dimensions if isinstance(d, Radius))]
     window = _on_paper(view.box, scale, origin)
     measures, called, region = _marked(view.dimensions, told, window, scale, origin)
-    words = plain(f"{view.name} ({scale_label(scale)})" if view.own_scale else view.name)
+    words = one_line(f"{view.name} ({scale_label(scale)})" if view.own_scale else view.name)
     heading = Text((_middle(window), region[3] + 3), words, NAME, "middle") if named else None
     return PlacedView(
         view=view,

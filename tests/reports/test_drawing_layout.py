@@ -8,11 +8,12 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from reports.about import About
-from reports.drawing.lettering import fitted, plain, width, wrapped
+from reports.drawing.lettering import fitted, width, wrapped
 from reports.drawing.page import paper_sheet
 from reports.drawing.paper import overlap
 from reports.drawing.svg import drawing_svg
 from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, disc, rectangle
+from synth.plain_text import one_line
 
 HOSTILE = (
     "<script>alert(1)</script>",
@@ -49,7 +50,7 @@ def test_no_text_leaves_its_place_or_becomes_more_than_text(words):
     assert_apart(sheet)
     root = ET.fromstring(drawing_svg(sheet, found))
     assert not [x for x in root.iter() if x.tag.endswith("script")]
-    assert "".join(plain(words).split()) in "".join("".join(root.itertext()).split())  # nothing is lost
+    assert "".join(one_line(words).split()) in "".join("".join(root.itertext()).split())  # nothing is lost
 
 
 def test_the_same_drawing_gives_the_same_bytes():

@@ -139,7 +139,7 @@ def _derived(front: ParetoFront) -> dict[str, str]:
 
 
 def _explored(records: Mapping[str, bytes]) -> str:
-    """Return what the explorer shows of a front, or of a comparison; a page asks for drawings one by one."""
+    """Return what the explorer shows of a front, whose drawings a page asks for one by one, or of a comparison."""
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
         folder = Path(place, "front")
         unpack(records, folder)
