@@ -950,7 +950,7 @@ class NlpSettings:
     other_starts: tuple[float, ...] = (0.75, 0.25)
     edge: float = 1e-3
     at_once: int = 6000
-    compiled_at_once: int = 512
+    compiled_at_once: int = 128
     lanes: int = 2048
     refill: float = 0.75
     step_cost: int = 1000

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -224,22 +223,3 @@ class Batches:
         """Return the boxes from a first to a last one; it knows addresses only, of arrays that live as long as this."""
         places = {name: place + first * step for name, (place, step) in self._steps.items()}
         return BatchStructure(count=last - first, **self._numbers, **self._places, **places)
-
-
-def all_done(work: Sequence[Callable[[], None]], workers: int) -> None:
-    """Do all of some work, shared among threads.
-
-    Threads take the next part when they are free: a core that is busy with something else holds nobody up.
-    """
-    waiting = iter(work)
-
-    def run() -> None:
-        for part in waiting:
-            part()
-
-    threads = [threading.Thread(target=run) for _ in range(min(workers, len(work)) - 1)]
-    for thread in threads:
-        thread.start()
-    run()
-    for thread in threads:
-        thread.join()

@@ -7,13 +7,13 @@ values, tables and ends are arguments, so that the code is compiled once per fam
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared, all_done
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared
 from synth.bounds.box_source import source
 from synth.bounds.boxes import Boxes
 from synth.bounds.compiled_subtrees import SubtreeCode
@@ -22,6 +22,7 @@ from synth.bounds.interpreted_boxes import ListedCode, listed_code
 from synth.bounds.interpreted_boxes import source as interpreter_source
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.compiled.compiler import QUICK, LibraryBeside, library
+from synth.compiled.threads import side_by_side
 from synth.operating_system import COMPILER_FLAGS
 from synth.tuning import CompilingEffort, CompilingLimits
 
@@ -105,22 +106,15 @@ class BoxCode:
         batches = Batches(prepared, boxes, weights, passes, moving, still, cutoffs_step=step)
         parts = max(1, count // prepared.sizes.part) if workers > 1 else 1
         ends = [count * k // parts for k in range(parts + 1)]
-        kept = self._run([batches.part(first, last) for first, last in pairwise(ends)], workers)
+        work = [partial(self._tightened, batches.part(first, last)) for first, last in pairwise(ends)]
+        kept = side_by_side(work, workers)
         rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
         found = Boxes(*(taken[f"out_{name}"] for name in ("cell", "low", "high", "bounds", "scores", "tag")))
         return Packed(Boxes.joined([found.take(own) for own in rows]), taken["alive"], taken["undecided"])
 
-    def _run(self, batches: Sequence[BatchStructure], workers: int) -> list[int]:
-        kept = [0] * len(batches)
-
-        def part(k: int) -> Callable[[], None]:
-            def work() -> None:
-                kept[k] = self._contract(ctypes.byref(batches[k]))
-
-            return work
-
-        all_done([part(k) for k in range(len(batches))], workers)
-        return kept
+    def _tightened(self, batch: BatchStructure) -> int:
+        """Tighten some boxes; return how many are left."""
+        return int(self._contract(ctypes.byref(batch)))
 
 
 def _places(prepared: Prepared, boxes: Boxes) -> dict[str, np.ndarray]:

@@ -8,13 +8,15 @@ back, and those that are too small to be split.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared, all_done
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared
 from synth.bounds.boxes import Boxes, Subtrees
+from synth.compiled.threads import side_by_side
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
@@ -173,25 +175,18 @@ class SubtreeCode:
         # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
         # must not depend on it.
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
-        found: list[tuple[Boxes, np.ndarray, int] | None] = [None] * len(ends)
 
-        def part(k: int) -> Callable[[], None]:
-            def work() -> None:
-                first, last = ends[k]
-                capacity = sizes.tree_room * (last - first) + sizes.tree_beside
-                taken = _places(prepared, boxes, capacity)
-                room = {name: a.ctypes.data for name, a in taken.items()}
-                tree = _TreeStructure(capacity=capacity, **numbers, **places, **room)
-                kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
-                if kept >= 0:  # else told below: an exception would end a thread, not the search
-                    found[k] = (*_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted))
+        def grown(first: int, last: int) -> tuple[Boxes, np.ndarray, int]:
+            capacity = sizes.tree_room * (last - first) + sizes.tree_beside
+            taken = _places(prepared, boxes, capacity)
+            room = {name: a.ctypes.data for name, a in taken.items()}
+            tree = _TreeStructure(capacity=capacity, **numbers, **places, **room)
+            kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
+            if kept < 0:
+                raise MemoryError
+            return *_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted)
 
-            return work
-
-        all_done([part(k) for k in range(len(ends))], workers)
-        parts = [own for own in found if own is not None]
-        if len(parts) < len(found):
-            raise MemoryError
+        parts = side_by_side([partial(grown, first, last) for first, last in ends], workers)
         both = Boxes.joined([own for own, _, _ in parts])
         too_small = np.concatenate([small for _, small, _ in parts])
         return Subtrees(both.take(~too_small), both.take(too_small), sum(contracted for _, _, contracted in parts))

@@ -13,14 +13,14 @@ differentiated piecewise as they stand, which leads to optima beside their kinks
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Literal
 
 import numpy as np
 
 from synth import deadline
+from synth.compiled.threads import side_by_side
 from synth.model.program import Program
 from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_c import Solver, native
@@ -195,7 +195,7 @@ class BatchNlp:
         chunk = self.settings.compiled_at_once if self.compiled else self.settings.at_once
 
         def solved(first: int) -> Solutions:
-            deadline.check()
+            deadline.check()  # threads beside know of no end
             rows = slice(first, min(first + chunk, count))
             return self._solve_part(
                 Tasks(
@@ -215,15 +215,8 @@ class BatchNlp:
                 void[rows],
             )
 
-        begins = range(0, max(count, 1), chunk)
-        if self.compiled and min(workers, len(begins)) > 1:
-            with ThreadPoolExecutor(min(workers, len(begins))) as threads:
-                parts = []
-                for part in threads.map(solved, begins):
-                    deadline.check()  # the threads themselves know of none
-                    parts.append(part)
-        else:
-            parts = [solved(first) for first in begins]
+        work = [partial(solved, first) for first in range(0, max(count, 1), chunk)]
+        parts = side_by_side(work, workers if self.compiled else 1)
         return Solutions(
             **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Solutions)}
         )

@@ -1,0 +1,75 @@
+"""Work of compiled code shared among threads."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from functools import partial
+
+import pytest
+
+from synth.compiled.threads import side_by_side
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 8])
+@pytest.mark.parametrize("count", [0, 1, 2, 50])
+def test_what_comes_of_parts_stands_in_their_order(workers: int, count: int) -> None:
+    assert side_by_side([partial(pow, k, 2) for k in range(count)], workers) == [k * k for k in range(count)]
+
+
+def test_parts_run_side_by_side() -> None:
+    meeting = threading.Barrier(2, timeout=30.0)
+    assert len(side_by_side([meeting.wait, meeting.wait], 2)) == 2  # one alone would wait in vain
+
+
+@pytest.mark.parametrize("wrong", [0, 1, 7])
+def test_an_error_of_a_part_is_raised_once_nothing_is_under_way_any_more(wrong: int) -> None:
+    under_way, begun = set[int](), list[int]()
+
+    def part(k: int) -> None:
+        begun.append(k)
+        under_way.add(k)
+        time.sleep(0.01)
+        under_way.discard(k)
+        if k == wrong:
+            raise ValueError(f"part {k}")
+
+    with pytest.raises(ValueError, match=f"part {wrong}"):
+        side_by_side([partial(part, k) for k in range(20)], 2)
+    assert not under_way
+    assert len(begun) < 20
+
+
+def test_several_callers_share_threads_without_waiting_for_each_other_for_ever() -> None:
+    def inner(k: int) -> int:
+        return sum(side_by_side([partial(pow, k, j) for j in range(4)], 2))
+
+    expected = [sum(k**j for j in range(4)) for k in range(16)]
+    assert side_by_side([partial(inner, k) for k in range(16)], 2) == expected
+    found: dict[int, int] = {}
+    callers = [threading.Thread(target=lambda k=k: found.update({k: inner(k)})) for k in range(16)]
+    for caller in callers:
+        caller.start()
+    for caller in callers:
+        caller.join(timeout=30.0)
+    assert [found[k] for k in range(16)] == expected
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_process_that_was_forked_has_no_threads_and_does_it_alone() -> None:
+    side_by_side([partial(pow, 2, k) for k in range(4)], 2)
+    child = os.fork()
+    if not child:
+        os._exit(0 if side_by_side([partial(pow, 2, k) for k in range(4)], 2) == [1, 2, 4, 8] else 1)
+    deadline = time.monotonic() + 30.0
+    while time.monotonic() < deadline:
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            assert os.waitstatus_to_exitcode(status) == 0
+            return
+        time.sleep(0.01)
+    os.kill(child, 9)
+    pytest.fail(f"a forked process waits for ever ({sys.platform})")
