@@ -81,26 +81,27 @@ def by_turns(
     """
     trees: list[TurnTree] = []
     looked, stuck = [0] * len(ways), [False] * len(ways)
-    whole, paces = [0.0] * len(ways), [0.0] * len(ways)
+    whole, left, paces = [0.0] * len(ways), [0.0] * len(ways), [0.0] * len(ways)
     effort, turn = first, 0
     while True:
         k = turn % len(ways)
         if turn < len(ways):
             trees.append(ways[k]())
-            whole[k], share = trees[k].extent, 1.0
+            whole[k] = left[k] = trees[k].extent
+            share = 1.0
         else:
             share = 1.0 if paces[k] >= max(paces) else budget.effort.behind
             effort *= 2 if k == 0 else 1
-        before = trees[k].extent
+        before = left[k]
         own = budget.turn(trees[k], share * effort)
         looked[k] += own
         # What is open is too small to be split: a tree that has nothing else to look into will never close. Each look
         # at it still takes a little off.
-        left = trees[k].extent
-        stuck[k] = own < share * effort and left > (1 - budget.effort.closing) * before
-        if not left:
+        left[k] = trees[k].extent
+        stuck[k] = own < share * effort and left[k] > (1 - budget.effort.closing) * before
+        if not left[k]:
             return [t for t in trees if t is not trees[k]] + [trees[k]]
-        paces[k] = math.log(whole[k] / left) / math.log(looked[k] + 2)
+        paces[k] = math.log(whole[k] / left[k]) / math.log(looked[k] + 2)
         if budget.looked >= budget.boxes or all(stuck):
             first_tree = trees[paces.index(max(paces[: len(trees)]))]
             budget.finish(first_tree)

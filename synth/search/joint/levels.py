@@ -206,19 +206,19 @@ class LevelProof:
     def levels(self, proven_alone: bool = False) -> list[Level]:
         """Return what is proven of each level; what is open is told by the lower bounds of its boxes.
 
-        ``proven_alone``: only of levels that are proven.
+        ``proven_alone``: only of levels that are proven, which spares those bounds.
         """
         best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.room
         apart = np.flatnonzero(self.search.told_apart()).tolist()
         told: list[Level] = []
         unproven, closed = [k for k in apart if self.unproven[k]], np.empty((0, 2))
         # Where no tree has begun nothing is known of what is open.
-        for still in [t.corners(unproven) for t in self.trees] or [dict.fromkeys(unproven)]:
+        still_open = [] if proven_alone else [t.corners(unproven) for t in self.trees]
+        for still in still_open or [dict.fromkeys(unproven)]:
             corners = {k: still.get(k) if self.unproven[k] else closed for k in apart}
             told += levels_told(self.cutoffs, best, corners)
         proven = {float(level.within[CAPPED]): level for level in told if not len(level.corners)}
-        still_open = [level for level in told if len(level.corners)]
-        return [*proven.values(), *([] if proven_alone else still_open)]
+        return [*proven.values(), *(level for level in told if len(level.corners))]
 
     def own(self, combination: int) -> int:
         """Return the number that a combination has in the question."""
