@@ -174,7 +174,8 @@ class FrontProof:
 
     def note_cover(self, rule: EpsilonCover) -> None:
         """Note that everything is covered as a rule asks."""
-        self.finest_cover = rule
+        if self.finest_cover is None or np.any(rule.tolerance < self.finest_cover.tolerance):
+            self.finest_cover = rule
         self.note_covered_within(rule.tolerance)
 
     def note_covered_within(self, tolerance: np.ndarray) -> None:
@@ -252,6 +253,7 @@ class FrontState:
         self._shared: SharedBounds | None = None
         self.sampled = False  # whether parts were drawn for what several levels leave open
         self.may_find_more = True  # unless a try was given up
+        self.left_at_ties: Boxes | None = None  # what a look for all designs has left open; None before the first
         self.reporting = False  # whether the designs stand, and are only told
         self.taught = learned is not None and self.form.bounding.branching.adopt(learned)
 

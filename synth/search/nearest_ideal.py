@@ -69,13 +69,18 @@ class NearestIdeal:
         """The smallest score that is known."""
         return self._least
 
+    @property
+    def enough(self) -> float:
+        """The score that a design must stay below to come before the first one known."""
+        return self._least * (1.0 - self._share)
+
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to come before the first one."""
         scale, objectives = self.scored.scale, self.scored.objectives
         share = self.scored.weights / self.scored.weights.sum()
         counts = (share > 0) & (scale.nadir > scale.ideal)
         parts = share * scale.units(np.nan_to_num(objectives.values_of(lower[:, self.columns]), nan=-np.inf)) ** 2
-        room = (self._least * (1.0 - self._share)) ** 2 - (parts.sum(axis=1, keepdims=True) - parts)
+        room = self.enough**2 - (parts.sum(axis=1, keepdims=True) - parts)
         with np.errstate(all="ignore"):
             unit = np.sqrt(room / share)
             own = objectives.phi_of(scale.ideal + scale.span * unit)
@@ -93,7 +98,7 @@ class NearestIdeal:
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many come before the first one known."""
         scores = self.scored.scores(phi[:, self.columns])
-        nearer = scores < self._least * (1.0 - self._share)
+        nearer = scores < self.enough
         self._least = float(min(self._least, scores.min(initial=np.inf)))
         return int(nearer.sum())
 

@@ -78,14 +78,16 @@ def _look_for_more(state: FrontState) -> bool:
         state.may_find_more = fill_levels(state)
     else:
         finest = state.cover_within(np.full(m, state.task.tuning.tolerances.tie))
-        outcome = cover_everything(state, finest, node_limit, points)
+        # What was covered before stays so, and need not be looked into again.
+        outcome = cover_everything(state, finest, node_limit, points, left=state.left_at_ties)
+        state.left_at_ties = outcome.open
         state.proof.complete = outcome.closed and len(archive) <= points
     return not np.array_equal(archive.phi, known)
 
 
 def _covered_at_gap(state: FrontState) -> bool:
     """Tell whether everything is covered as finely as the gap; a front at once is covered now."""
-    if state.by_levels:
+    if state.by_levels or proven_at_gap(state):
         return proven_at_gap(state)
     return cover_everything(state, state.rule, state.task.limits.boxes).closed
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from synth.pareto import Scale, nearly
+from synth.search.archive import Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState
 from synth.search.nearest_ideal import NearestIdeal, ScoredFront
@@ -31,7 +32,7 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
     form, limits = state.form, state.task.limits
     state.scored = ScoredFront(_scale(state), np.asarray(weights, dtype=float), form.objectives)
     rule = NearestIdeal(state.scored, limits.first_share, form.archive)
-    if not rule.least:
+    if not rule.least or _none_nearer(state, rule):
         return
     state.begin_tree(None)
     outcome = branch_and_bound(
@@ -39,6 +40,18 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
     )
     state.counters.nodes += outcome.looked
     state.end_tree()
+
+
+def _none_nearer(state: FrontState, rule: NearestIdeal) -> bool:
+    """Tell whether what is covered proves already that nothing known is worse than the rule asks for.
+
+    For each possible design one is known that is worse by no more than the tolerance of the cover in any objective.
+    """
+    cover, m = state.proof.finest_cover, state.task.m
+    if cover is None or state.scored is None:
+        return False
+    scores = state.scored.scores(state.form.archive.phi[:, :m] - cover.tolerance)
+    return bool(scores.min() >= rule.enough)
 
 
 def first_is_listed(state: FrontState) -> bool:
@@ -85,6 +98,20 @@ def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
     phi = form.archive.phi
     within = np.flatnonzero(np.all(phi <= cutoffs, axis=1))
     start = form.archive[int(within[np.argmin(phi[within, k])])]
-    if start.phi[k] > phi[:, k].min() or not np.isfinite(cutoffs).any():
+    beaten = start.phi[k] > phi[:, k].min() or not np.isfinite(cutoffs).any()
+    if beaten and not _is_least(state, k, cutoffs, start):
         start = better_in(state, k, cutoffs, start, limits.first_nodes, limits.first_gap) or start
     return float(form.objectives.signed(k, start.phi[k]))
+
+
+def _is_least(state: FrontState, k: int, cutoffs: np.ndarray, design: Candidate) -> bool:
+    """Tell whether what is covered proves already that nothing within cutoffs is better than a design."""
+    form, m, cover = state.form, state.task.m, state.proof.finest_cover
+    if cover is None:
+        return False
+    phi = form.archive.phi[:, :m]
+    # What covers a design within the cutoffs may itself miss them, by no more than the tolerance.
+    within = np.all(phi - cover.tolerance <= cutoffs[:m], axis=1)
+    least = float((phi[within, k] - cover.tolerance[k]).min(initial=np.inf))
+    gap = min(state.task.settings.gap, state.task.limits.first_gap)
+    return bool(design.phi[k] - least <= form.objectives.tolerance(gap, np.abs(design.phi))[k])

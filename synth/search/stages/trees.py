@@ -17,9 +17,16 @@ from synth.search.polishing import solve_everywhere
 from synth.search.proven_gap import Bound
 from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule
 
+WIDER = 1.0 + 1e-6  # so that rounding does not decide whether what is missed is covered
+
 
 def cover_everything(
-    state: FrontState, rule: EpsilonCover, node_limit: float, enough: int | None = None, judged: bool = False
+    state: FrontState,
+    rule: EpsilonCover,
+    node_limit: float,
+    enough: int | None = None,
+    judged: bool = False,
+    left: Boxes | None = None,
 ) -> TreeOutcome:
     """Cover everything with one tolerance; if the time runs out, the boxes that are open tell what is proven.
 
@@ -33,10 +40,13 @@ def cover_everything(
         Stop when more designs than this are known.
     judged : bool
         Stop where a front of two objectives will hardly close at once.
+    left : Boxes, optional
+        What an earlier tree has left open that covered as finely; where there was none, the box of everything.
     """
+    boxes = state.pool if left is None else left
     hopeless = state.hopeless if judged else lambda looked, waiting: False
     state.begin_tree(rule.tolerance)
-    outcome = branch_and_bound(state.form, state.pool, rule, state.clock, state.rng, node_limit, enough, hopeless)
+    outcome = branch_and_bound(state.form, boxes, rule, state.clock, state.rng, node_limit, enough, hopeless)
     return _noted(state, rule, outcome)
 
 
@@ -44,9 +54,24 @@ def _noted(state: FrontState, rule: EpsilonCover, outcome: TreeOutcome) -> TreeO
     """Count the boxes; what is covered with one tolerance stays known if the time runs out later."""
     state.end_tree()
     state.counters.nodes += outcome.looked
-    if outcome.closed:
-        state.proof.note_cover(rule)
+    reached = rule if outcome.closed else _reached(state, rule, outcome.open)
+    if reached is not None:
+        state.proof.note_cover(reached)
     return outcome
+
+
+def _reached(state: FrontState, rule: EpsilonCover, left: Boxes) -> EpsilonCover | None:
+    """Return a cover that holds in boxes left open as well, where one as fine as the gap does; None otherwise.
+
+    Boxes too small to be split may stay open at the tolerance of ties, by less than can be told apart.
+    """
+    corners = state.form.objectives.phi_of(left.bounds)
+    missed = float(rule.possible_gain(corners, left.cell).max(initial=0.0))
+    wider = rule.tolerance + missed * WIDER
+    if not np.all(wider <= state.rule.tolerance):
+        return None
+    cover = state.cover_within(wider)
+    return None if np.any(cover.possible_gain(corners, left.cell) > 0) else cover
 
 
 def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
