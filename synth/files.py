@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import json
+import math
 import os
 import stat
 from collections.abc import Callable, Iterable, Sequence
@@ -116,7 +117,8 @@ def read_json(path: str | Path, field: str, right: str, most: int = INPUT_LIMITS
     """
     raw = read_bytes(path, field, right, most)
     try:
-        return json.loads(raw.decode("utf-8"), parse_constant=_no_number)
+        text = raw.decode("utf-8")
+        return json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_finite_whole)
     except RecursionError as error:
         raise InputError(field, str(path), f"{right}; this one is nested too deeply") from error
     except ValueError as error:
@@ -124,7 +126,18 @@ def read_json(path: str | Path, field: str, right: str, most: int = INPUT_LIMITS
 
 
 def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no finite number")
+    raise ValueError(f"{word if len(word) <= 20 else word[:17] + '...'} is no finite number")
+
+
+def _finite(word: str) -> float:
+    number = float(word)
+    return number if math.isfinite(number) else _no_number(word)
+
+
+def _finite_whole(word: str) -> int:
+    """Read a whole number, which may be used as a float."""
+    _finite(word)
+    return int(word)
 
 
 def _too_large(field: str, path: str | Path, right: str, most: int) -> NoReturn:

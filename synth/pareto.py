@@ -111,8 +111,10 @@ class Scale:
 
     @staticmethod
     def read(told: Mapping[str, Sequence[float]], objectives: Mapping[str, str]) -> Scale:
-        """Return what ``told`` has told."""
+        """Return what ``told`` has told; a ValueError where an end is no number."""
         ends = np.array([told[name] for name in objectives], dtype=float) * signs_of(objectives)[:, None]
+        if not np.isfinite(ends).all():
+            raise ValueError("scale: an end is no number")
         return Scale(ends[:, 0], ends[:, 1])
 
     @property

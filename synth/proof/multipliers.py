@@ -90,10 +90,12 @@ class StraightRows:
         centers, slopes = np.minimum(told[:count], 0.0), np.zeros(self._shape)  # what the design is off counts as none
         for (i, k), low, high in zip(self._at, told[count::2], told[count + 1 :: 2], strict=True):
             slopes[i, k] = 0.5 * (low + high)
-        known = np.isfinite(centers) & np.isfinite(slopes).all(axis=1)
+        with np.errstate(invalid="ignore"):
+            across = slopes * halves  # where a design stands at an end of what a logarithm reaches nothing is told
+        known = np.isfinite(centers) & np.isfinite(across).all(axis=1)
         result = np.zeros(count)
         if known.any():
-            matrix = np.column_stack([slopes[known] * halves, -np.ones(np.count_nonzero(known))])
+            matrix = np.column_stack([across[known], -np.ones(np.count_nonzero(known))])
             ends: list[Any] = [*[(-1.0, 1.0)] * width, (None, None)]
             solved = linprog([*[0.0] * width, 1.0], matrix, -centers[known], bounds=ends)
             if solved.success:

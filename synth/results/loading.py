@@ -21,6 +21,7 @@ from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
 COMPARISON = "comparison.json"
+MOST_DIGITS = 17  # that tell any number apart from its neighbours
 
 
 def load_front(folder: str | Path) -> ParetoFront:
@@ -111,6 +112,8 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         headline=tuple(content.get("headline", ())),
         sized_by=content.get("sized_by", ""),
     )
+    if not frame.objectives:
+        raise ValueError("objectives: there is none")
     rows = content["parts"]
     designs = [_design_from_json(frame, d, rows) for d in content["designs"]]
     return ParetoFront(
@@ -161,9 +164,15 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         not_checked=tuple(d["not_checked"]),
         robust=DesignRating.read(d.get("robust", {})),
         steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
-        digits=d.get("digits"),
+        digits=_digits(d.get("digits")),
         next_rows={n: NextRow.read(told) for n, told in d.get("next_rows", {}).items()},
     )
+
+
+def _digits(told: Any) -> int | None:
+    if told is not None and (type(told) is not int or not 0 <= told <= MOST_DIGITS):
+        raise ValueError(f"digits: {told!r} is no whole number from 0 to {MOST_DIGITS}")
+    return told
 
 
 def _number(value: Any) -> float:

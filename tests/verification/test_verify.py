@@ -501,6 +501,9 @@ IN_TURNS = (
     1e30,
     True,
     "\ud800",
+    0,
+    {},
+    10**400,
 )  # inside of a record each at some places, and every place has one
 
 
