@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import Context
 from functools import cache
 from typing import TypeVar
 
@@ -39,7 +40,8 @@ def side_by_side(work: Sequence[Callable[[], T]], workers: int) -> list[T]:
         finally:
             deque(waiting, maxlen=0)  # after an error nothing more is begun
 
-    beside = [_threads(workers - 1).submit(run) for _ in range(min(workers, len(work)) - 1)]
+    # Threads that are kept know nothing of whoever was the first to need them, as a time limit.
+    beside = [_threads(workers - 1).submit(Context().run, run) for _ in range(min(workers, len(work)) - 1)]
     try:
         run()
     finally:

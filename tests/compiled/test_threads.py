@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import threading
@@ -10,6 +11,7 @@ from functools import partial
 
 import pytest
 
+from synth import deadline
 from synth.compiled.threads import side_by_side
 
 
@@ -55,6 +57,20 @@ def test_several_callers_share_threads_without_waiting_for_each_other_for_ever()
     for caller in callers:
         caller.join(timeout=30.0)
     assert [found[k] for k in range(16)] == expected
+
+
+def test_threads_know_of_no_end_of_the_caller() -> None:
+    meeting = threading.Barrier(2, timeout=30.0)
+
+    def part() -> float:
+        meeting.wait()
+        return deadline.current().time - time.monotonic()
+
+    for _ in range(2):  # the second time with threads that are kept
+        with deadline.until(time.monotonic() + 1000.0):
+            found = sorted(side_by_side([part, part], 2))
+        assert found[0] <= 1000.0
+        assert found[1] == math.inf
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
