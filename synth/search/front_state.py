@@ -336,7 +336,7 @@ class FrontState:
 
     def set_pool(self) -> None:
         """Begin with the box of everything; what it allows is the first that is proven."""
-        self.pool = self.form.boxes.root()
+        self.pool, self.left_at_ties = self.form.boxes.root(), None
         corners = self.form.objectives.phi_of(self.pool.bounds)[:, : self.task.m]
         self.proof.bounds.append(Bound(np.zeros(self.task.m), corners))
 
@@ -354,7 +354,7 @@ class FrontState:
         """Go on with an earlier formulation, and keep what is known."""
         known, self.form, self.infeasibility_mode = self.form.archive, form, form.infeasibility
         form.archive.add(known.combination, known.variables, known.phi)
-        self.rule, self.pool = self.cover_at_gap(None), form.boxes.root()
+        self.rule, self.pool, self.left_at_ties = self.cover_at_gap(None), form.boxes.root(), None
 
     def begin_tree(self, tolerance: np.ndarray | None) -> None:
         """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""
