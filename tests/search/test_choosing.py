@@ -73,7 +73,7 @@ def test_what_a_tree_that_does_not_end_has_covered_at_the_gap_is_noted(
 @pytest.mark.parametrize("objectives", [TWO, NARROW, THREE])
 @pytest.mark.parametrize("share", [1e-6, 0.1, 0.5, 1.0])
 def test_what_is_noted_of_a_tree_is_true_of_every_design(objectives: list[str], share: float) -> None:
-    for node_limit in (0, 10, 100, 1000, *range(2000, 20_000, 2000)):
+    for node_limit in (0, 100, 1000, 4000, 8000, 13_000):
         state = state_of(objectives=objectives, gap=0.05)
         outcome = cover_everything(state, state.cover_within(share * state.rule.tolerance), node_limit)
         cover = state.proof.finest_cover
