@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from problems.centrifugal.body import (
-    LeverRules,
-    Rules,
     Surroundings,
-    declare_rules,
     limit_discs,
     limit_set,
     limit_spring_circle,
@@ -30,6 +27,7 @@ from problems.centrifugal.flyweights import (
     limit_weight_room,
 )
 from problems.centrifugal.lining import Lining, advise_release_gap, declare_lining, declare_wear
+from problems.centrifugal.rules import LeverRules, Rules, declare_rules
 from problems.centrifugal.size import declare_objectives, declare_size
 from problems.centrifugal.springs import (
     SpringSet,

@@ -1,18 +1,16 @@
-"""The complete centrifugal clutch around its plates and flyweights, and what an engineer demands of both."""
+"""The complete centrifugal clutch around its plates and flyweights, and the limits that rules of practice set it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from problems import cost, wear
-from problems.friction.duty import Duty as FrictionDuty
 from problems.mechanics import centrifugal
 from problems.practice import UNSOURCED, Scope, name_boss
 from problems.sources import DRIVE
-from synth.declaration import Block, Requirement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,6 +18,7 @@ if TYPE_CHECKING:
     from problems.centrifugal.duty import WholeDuty
     from problems.centrifugal.flyweights import Flyweights
     from problems.centrifugal.lining import Lining
+    from problems.centrifugal.rules import LeverRules, Rules
     from problems.centrifugal.springs import SpringSet
     from synth.declaration import Declaration, Part
 
@@ -28,103 +27,6 @@ TOLERANCES = 10  # least preload over the tolerance to which it is set
 THIN = 0.95  # of the hub that the shaft needs: one of a round size may lie a little below it
 NARROW_RING = 0.75  # remarks only: inner over outer radius of a lining that spreads little heat
 DISC_PLATES = 2  # flywheel and pressure plate
-
-
-class Rules(Block):
-    """Rules for all centrifugal clutches, all in SI."""
-
-    group = "practice"
-
-    allow_obsolete = replace(
-        FrictionDuty.allow_obsolete,
-        text="historical: also friction pairs that are built no more (cork, leather, wood, felt); yes: also those not "
-        "allowed in new designs (asbestos), to re-compute old machines",
-    )
-    springs_per_set_min = Requirement(
-        "-",
-        3,
-        lower=2,
-        upper=12,
-        symbol="N_min",
-        text=f"Least springs in each set: two tilt the plate that they push ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-    setting_tolerance = Requirement(
-        "mm",
-        0.2,
-        lower=0,
-        upper=2,
-        symbol="tol",
-        text="Tolerance of the deflection of springs at rest, a tenth of the least such deflection: the contact speed "
-        f"shifts with it ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-    friction_surfaces_max = Requirement(
-        "-",
-        4,
-        lower=2,
-        upper=8,
-        symbol="z_max",
-        text=f"Most friction surfaces ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-    gap_per_surface_min = Requirement(
-        "mm",
-        0.3,
-        lower=0,
-        upper=5,
-        symbol="g_min",
-        text="Least travel of the plate to contact over friction surfaces, so that the released clutch does not drag",
-        source="practice, 0.3 to 0.5 mm and the run-out",
-    )
-    wire_diameter_min = Requirement(
-        "mm",
-        0.8,
-        lower=0,
-        upper=20,
-        symbol="d_sp_min",
-        text=f"Least wire of springs that turn with the clutch and bow outwards ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the linings are worn",
-        source=DRIVE,
-        group="duty",
-    )
-
-
-class LeverRules(Rules):
-    """Rules for centrifugal clutches with levers, whose springs stand on the circle of the weights; all in SI."""
-
-    group = "practice"
-
-    spring_gap = Requirement(
-        "mm",
-        2,
-        lower=0,
-        upper=50,
-        symbol="c_sp",
-        text=f"Gap between springs around their circle ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-    spring_circles = Requirement(
-        "-",
-        1,
-        lower=0.1,
-        upper=10,
-        symbol="k_circle",
-        text="Circles of the radius of the weights at rest over which the springs are spread; springs inside others "
-        f"count as a circle more ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-
-
-AnyRules = TypeVar("AnyRules", bound=Rules)
 
 
 @dataclass(frozen=True)
@@ -150,11 +52,6 @@ class Surroundings:
     travel: Any
     ball: Part | None = None
     discs: int = 0
-
-
-def declare_rules(d: Declaration, kind: type[AnyRules], *, scope: Scope) -> AnyRules | None:
-    """Declare the requirements that the rules of practice go by, where they count."""
-    return d.block(kind) if scope.rules else None
 
 
 def declare_body(

@@ -10,9 +10,9 @@ from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S4, S4, UNIFORM_WEAR
 
 if TYPE_CHECKING:
-    from problems.centrifugal.body import Rules
     from problems.centrifugal.duty import Duty
     from problems.centrifugal.lining import Lining
+    from problems.centrifugal.rules import Rules
     from synth.declaration import Declaration
 
 # Remarks only.

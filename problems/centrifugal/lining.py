@@ -9,8 +9,8 @@ from problems.mechanics import centrifugal, heat, ring
 from problems.practice import lining_conditions
 
 if TYPE_CHECKING:
-    from problems.centrifugal.body import Rules
     from problems.centrifugal.duty import Duty
+    from problems.centrifugal.rules import Rules
     from synth.declaration import Declaration, Part
 
 # Remarks only.
