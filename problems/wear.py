@@ -10,10 +10,21 @@ from typing import Any
 import numpy as np
 
 from problems.mechanics import wear as wear_formulas
-from synth.declaration import Declaration, Part
+from problems.sources import DRIVE
+from synth.declaration import Declaration, Part, Requirement
 
 WEAR_LIFE = "wear_life"
 DEPTH, RATE = "wearable_depth", "wear_rate"
+LEAST_LIFE = Requirement(
+    "-",
+    lower=1,
+    upper=1e12,
+    optional=True,
+    symbol="N_w_min",
+    text="Least engagements until the linings are worn",
+    source=DRIVE,
+    group="duty",
+)
 
 
 def depth(part: Part, limit: Any) -> Any:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
+from problems import wear
 from problems.friction.duty import Duty as FrictionDuty
 from problems.practice import UNSOURCED, Scope
-from problems.sources import DRIVE
 from synth.declaration import Block, Requirement
 
 if TYPE_CHECKING:
@@ -70,16 +70,7 @@ class Rules(Block):
         text=f"Least wire of springs that turn with the clutch and bow outwards ({UNSOURCED})",
         source=UNSOURCED,
     )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the linings are worn",
-        source=DRIVE,
-        group="duty",
-    )
+    wear_life_min = wear.LEAST_LIFE
 
 
 class LeverRules(Rules):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -163,16 +163,7 @@ class ConeRules(Block):
         text="Least share of p_allow that is used while the cones engage (linings of car discs: 0.35 to 0.5)",
         source=UNSOURCED,
     )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the lining is worn",
-        source=DRIVE,
-        group="duty",
-    )
+    wear_life_min = replace(wear.LEAST_LIFE, text="Least engagements until the lining is worn")
 
     @property
     def pull_max(self) -> Any:

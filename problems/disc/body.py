@@ -69,16 +69,7 @@ class DiscRules(Block):
         text="Least share of p_allow that is used (linings of car discs: 0.35 to 0.5)",
         source=UNSOURCED,
     )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the linings are worn",
-        source=DRIVE,
-        group="duty",
-    )
+    wear_life_min = wear.LEAST_LIFE
     top_speed = Requirement(
         "1/min",
         lower=0.1,

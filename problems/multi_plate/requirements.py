@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from problems import wear
 from problems.friction.duty import Duty
 from problems.friction.ring import Ring
 from problems.mechanics import guide_friction
@@ -317,16 +318,7 @@ class PackRules(Block):
         text="Least release gap per surface where plate_gap is given (a transmission pack has 0.06 to 0.09 mm)",
         source=UNSOURCED,
     )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the linings are worn",
-        source="requirement of the drive",
-        group="duty",
-    )
+    wear_life_min = wear.LEAST_LIFE
 
 
 class PistonPackRules(PackRules):
