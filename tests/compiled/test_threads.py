@@ -80,8 +80,8 @@ def test_a_process_that_was_forked_has_no_threads_and_does_it_alone() -> None:
     child = os.fork()
     if not child:
         os._exit(0 if side_by_side([partial(pow, 2, k) for k in range(4)], 2) == [1, 2, 4, 8] else 1)
-    deadline = time.monotonic() + 30.0
-    while time.monotonic() < deadline:
+    end = time.monotonic() + 30.0
+    while time.monotonic() < end:
         ended, status = os.waitpid(child, os.WNOHANG)
         if ended:
             assert os.waitstatus_to_exitcode(status) == 0

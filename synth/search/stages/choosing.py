@@ -87,9 +87,9 @@ def _look_for_more(state: FrontState) -> bool:
 
 def _covered_at_gap(state: FrontState) -> bool:
     """Tell whether everything is covered as finely as the gap; a front at once is covered now."""
-    if state.by_levels or proven_at_gap(state):
-        return proven_at_gap(state)
-    return cover_everything(state, state.rule, state.task.limits.boxes).closed
+    if proven_at_gap(state):
+        return True
+    return not state.by_levels and cover_everything(state, state.rule, state.task.limits.boxes).closed
 
 
 def _stand_for_all(state: FrontState) -> bool:

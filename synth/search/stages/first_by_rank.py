@@ -43,15 +43,18 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
 
 
 def _none_nearer(state: FrontState, rule: NearestIdeal) -> bool:
-    """Tell whether what is covered proves already that nothing known is worse than the rule asks for.
+    """Tell whether what is covered proves already that no design comes nearer to the ideal than the rule asks for."""
+    least = _covered_from(state)
+    return least is not None and bool(rule.scored.scores(least).min() >= rule.enough)
+
+
+def _covered_from(state: FrontState) -> np.ndarray | None:
+    """Return phi (designs, objectives) such that each possible design is nowhere below some row; None if unknown.
 
     For each possible design one is known that is worse by no more than the tolerance of the cover in any objective.
     """
-    cover, m = state.proof.finest_cover, state.task.m
-    if cover is None or state.scored is None:
-        return False
-    scores = state.scored.scores(state.form.archive.phi[:, :m] - cover.tolerance)
-    return bool(scores.min() >= rule.enough)
+    cover = state.proof.finest_cover
+    return None if cover is None else state.form.archive.phi[:, : state.task.m] - cover.tolerance
 
 
 def first_is_listed(state: FrontState) -> bool:
@@ -106,12 +109,11 @@ def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
 
 def _is_least(state: FrontState, k: int, cutoffs: np.ndarray, design: Candidate) -> bool:
     """Tell whether what is covered proves already that nothing within cutoffs is better than a design."""
-    form, m, cover = state.form, state.task.m, state.proof.finest_cover
-    if cover is None:
+    least = _covered_from(state)
+    if least is None:
         return False
-    phi = form.archive.phi[:, :m]
     # What covers a design within the cutoffs may itself miss them, by no more than the tolerance.
-    within = np.all(phi - cover.tolerance <= cutoffs[:m], axis=1)
-    least = float((phi[within, k] - cover.tolerance[k]).min(initial=np.inf))
+    within = np.all(least <= cutoffs[: state.task.m], axis=1)
     gap = min(state.task.settings.gap, state.task.limits.first_gap)
-    return bool(design.phi[k] - least <= form.objectives.tolerance(gap, np.abs(design.phi))[k])
+    tolerance = float(state.form.objectives.tolerance(gap, np.abs(design.phi))[k])
+    return bool(design.phi[k] - least[within, k].min(initial=np.inf) <= tolerance)

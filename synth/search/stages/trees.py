@@ -17,8 +17,6 @@ from synth.search.polishing import solve_everywhere
 from synth.search.proven_gap import Bound
 from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule
 
-WIDER = 1.0 + 1e-6  # so that rounding does not decide whether what is missed is covered
-
 
 def cover_everything(
     state: FrontState,
@@ -67,7 +65,7 @@ def _reached(state: FrontState, rule: EpsilonCover, left: Boxes) -> EpsilonCover
     """
     corners = state.form.objectives.phi_of(left.bounds)
     missed = float(rule.possible_gain(corners, left.cell).max(initial=0.0))
-    wider = rule.tolerance + missed * WIDER
+    wider = rule.tolerance + missed + state.task.tuning.tolerances.tie  # so that rounding does not decide
     if not np.all(wider <= state.rule.tolerance):
         return None
     cover = state.cover_within(wider)
