@@ -36,6 +36,7 @@ GIVEN = {
     "high": "double",
     "bounds": "double",
     "tag": "int",
+    "scores": "float",
     "cutoffs": "double",
     "floors": "double",
     "constants": "double",
@@ -51,6 +52,7 @@ GIVEN = {
     "spreads": "float *const",
     "grids": "double *const",
     "grid_sizes": "long long",
+    "per_unit": "double",
     "shape": "void",
 }
 TAKEN = {
@@ -126,19 +128,11 @@ class CompiledQuestion:
 
 
 class Prepared:
-    """The arrays of one question as the compiled code reads them.
+    """The arrays of one question as the compiled code reads them."""
 
-    Parameters
-    ----------
-    limits : int
-        How many the compiled code knows.
-    question : CompiledQuestion
-    """
-
-    def __init__(self, limits: int, question: CompiledQuestion) -> None:
+    def __init__(self, question: CompiledQuestion) -> None:
         steep, of_clusters = question.scoring.steep, question.scoring.spreads
         self.n, self.factors, self.sizes = len(question.lower), len(of_clusters), question.sizes
-        self.limits = limits
         width = -(-steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
@@ -158,6 +152,7 @@ class Prepared:
             padded[:, : spread.shape[1]] = spread
         grids = [np.ascontiguousarray(g, dtype=float) for g in question.grids]
         self.kept["grid_sizes"] = np.array([len(g) for g in grids] or [0], dtype=np.int64)
+        self.kept["per_unit"] = np.array([_per_unit(g) for g in grids] or [0.0])
         self._lists = {"rows": rows, "spreads": spreads, "grids": grids}
         for name, arrays in self._lists.items():
             self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
@@ -167,6 +162,16 @@ class Prepared:
             "snap": question.margins[0],
             "pinned": question.margins[1],
         }
+
+    def parts(self, boxes: int, workers: int) -> list[int]:
+        """Return where parts of so many boxes end that threads share, from 0 on."""
+        parts = max(1, boxes // self.sizes.part) if workers > 1 else 1
+        return [boxes * k // parts for k in range(parts + 1)]
+
+
+def _per_unit(grid: np.ndarray) -> float:
+    """Return how many values of a grid there are per unit, on average."""
+    return (len(grid) - 1) / (grid[-1] - grid[0]) if len(grid) > 1 else 0.0
 
 
 class Batches:
@@ -223,3 +228,25 @@ class Batches:
         """Return the boxes from a first to a last one; it knows addresses only, of arrays that live as long as this."""
         places = {name: place + first * step for name, (place, step) in self._steps.items()}
         return BatchStructure(count=last - first, **self._numbers, **self._places, **places)
+
+
+def room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
+    """Return arrays for so many boxes that come of some, by their names in the record; without scores."""
+    return {
+        "out_cell": np.empty((count, boxes.cell.shape[1]), dtype=np.int32),
+        "out_low": np.empty((count, boxes.low.shape[1])),
+        "out_high": np.empty((count, boxes.high.shape[1])),
+        "out_bounds": np.empty((count, boxes.bounds.shape[1])),
+        "out_tag": np.empty(count, dtype=np.int32),
+    }
+
+
+def scored_room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
+    """Return the same with room for scores."""
+    columns = boxes.low.shape[1] + boxes.cell.shape[1]
+    return room(boxes, count) | {"out_scores": np.empty((count, columns), dtype=np.float32)}
+
+
+def filled(arrays: Mapping[str, np.ndarray]) -> Boxes:
+    """Return what was written to room with scores."""
+    return Boxes(*(arrays[f"out_{name}"] for name in ("cell", "low", "high", "bounds", "scores", "tag")))

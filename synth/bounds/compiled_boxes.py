@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, scored_room
 from synth.bounds.box_source import source
 from synth.bounds.boxes import Boxes
 from synth.bounds.compiled_subtrees import SubtreeCode
@@ -32,22 +32,24 @@ GENERAL_FLAGS = (*QUICK, "-ffp-contract=off")
 
 
 @dataclass(frozen=True)
-class Packed:
-    """What a contraction leaves.
+class Verdicts:
+    """What a contraction finds of each box, where that is wanted: searches go by the boxes that are left.
 
     Parameters
     ----------
-    boxes : Boxes
-        Those that are alive, scored.
     alive : array (boxes,)
-        Which of all boxes these are.
+        Which boxes are left.
     undecided : array (boxes, limits)
-        Limits that a box may still break, of all boxes.
+        Limits that a box may still break.
     """
 
-    boxes: Boxes
     alive: np.ndarray
     undecided: np.ndarray
+
+    @staticmethod
+    def room(boxes: int, limits: int) -> Verdicts:
+        """Return room for what is found of so many boxes."""
+        return Verdicts(np.zeros(boxes, dtype=bool), np.zeros((boxes, limits), dtype=bool))
 
 
 class BoxCode:
@@ -81,8 +83,9 @@ class BoxCode:
         weights: np.ndarray,
         passes: int,
         workers: int = 1,
-    ) -> Packed:
-        """Tighten, snap and score boxes.
+        verdicts: Verdicts | None = None,
+    ) -> Boxes:
+        """Tighten, snap and score boxes; return what is alive.
 
         Parameters
         ----------
@@ -96,40 +99,27 @@ class BoxCode:
             Forward-backward sweeps.
         workers : int
             Threads; the boxes are split between them and the result is the same for any number.
+        verdicts : Verdicts, optional
+            Takes what is found of each box.
         """
-        count = len(boxes)
         most = np.ascontiguousarray(np.full(boxes.bounds.shape[1], np.inf) if cutoffs is None else cutoffs, dtype=float)
         step = most.shape[1] if most.ndim == 2 else 0
-        taken = _places(prepared, boxes)
+        taken = scored_room(boxes, len(boxes))
         moving, still = dict(taken), dict(self._read)
         (moving if step else still)["cutoffs"] = most
+        if verdicts is not None:
+            moving |= {"alive": verdicts.alive, "undecided": verdicts.undecided}
         batches = Batches(prepared, boxes, weights, passes, moving, still, cutoffs_step=step)
-        parts = max(1, count // prepared.sizes.part) if workers > 1 else 1
-        ends = [count * k // parts for k in range(parts + 1)]
+        ends = prepared.parts(len(boxes), workers)
         work = [partial(self._tightened, batches.part(first, last)) for first, last in pairwise(ends)]
         kept = side_by_side(work, workers)
         rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
-        found = Boxes(*(taken[f"out_{name}"] for name in ("cell", "low", "high", "bounds", "scores", "tag")))
-        return Packed(Boxes.joined([found.take(own) for own in rows]), taken["alive"], taken["undecided"])
+        found = filled(taken)
+        return Boxes.joined([found.take(own) for own in rows])
 
     def _tightened(self, batch: BatchStructure) -> int:
         """Tighten some boxes; return how many are left."""
         return int(self._contract(ctypes.byref(batch)))
-
-
-def _places(prepared: Prepared, boxes: Boxes) -> dict[str, np.ndarray]:
-    """Return arrays for what comes of boxes."""
-    count, n, factors = len(boxes), prepared.n, prepared.factors
-    return {
-        "out_cell": np.empty((count, factors), dtype=np.int32),
-        "out_low": np.empty((count, n)),
-        "out_high": np.empty((count, n)),
-        "out_bounds": np.empty(boxes.bounds.shape),
-        "out_tag": np.empty(count, dtype=np.int32),
-        "out_scores": np.empty((count, n + factors), dtype=np.float32),
-        "alive": np.empty(count, dtype=bool),
-        "undecided": np.empty((count, prepared.limits), dtype=bool),
-    }
 
 
 class CompiledForms:

@@ -72,7 +72,7 @@ class CompiledPropagation:
         if code is None:
             return None
         weights, workers = self._branching.weights, self._execution.workers
-        return code.contract(self._read(every), boxes, cutoffs, weights, passes, workers).boxes
+        return code.contract(self._read(every), boxes, cutoffs, weights, passes, workers)
 
     def grow(self, boxes: Boxes, cutoffs: CutoffTables, passes: int, levels: int) -> Subtrees | None:
         """Tighten and split boxes for some generations; None where no code is compiled.
@@ -98,6 +98,13 @@ class CompiledPropagation:
         self._grown = found.looked
         return found
 
+    def split(self, boxes: Boxes) -> tuple[Boxes, Boxes] | None:
+        """Split scored boxes; return their halves and what is too small, and None where no code is compiled."""
+        code = self._code(False, True, 0)
+        if code is None:
+            return None
+        return code.subtrees.split(self._read(False), self._halves(), boxes, self._execution.workers)
+
     def to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
         """Count so many boxes more, and tell whether they are worth compiling: by the question, not by what exists."""
         self._contracted[every, capped] += boxes
@@ -113,7 +120,7 @@ class CompiledPropagation:
         """Return the arrays that the code reads, made anew where boxes are scored by other tables."""
         scoring, prepared = self._prepared.get(every, (None, None))
         if prepared is None or scoring is not self._branching.tables:
-            prepared = Prepared(len(self._propagation.question.constraints), self._question(every))
+            prepared = Prepared(self._question(every))
             self._prepared[every] = self._branching.tables, prepared
         return prepared
 

@@ -1,4 +1,4 @@
-"""Whole subtrees of boxes in compiled code: tighten, compare with what is known, split, and again.
+"""Whole subtrees of boxes in compiled code: tighten, compare with what is known, split, and again; or split alone.
 
 What a search does with a box between two looks for designs, written once in C: the same steps as
 :func:`synth.search.branch_and_bound.branch_and_bound` takes over arrays. Boxes that a later generation is left for come
@@ -11,10 +11,11 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, room, scored_room
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.compiled.threads import side_by_side
 
@@ -121,7 +122,7 @@ class Halves:
 
 
 class SubtreeCode:
-    """Compiled growth of subtrees.
+    """Compiled splitting of boxes, and growth of subtrees.
 
     Parameters
     ----------
@@ -135,6 +136,9 @@ class SubtreeCode:
         self._grow = loaded.grow
         self._grow.argtypes = [ctypes.POINTER(BatchStructure), ctypes.POINTER(_TreeStructure)]
         self._grow.restype = ctypes.c_longlong
+        self._split = loaded.split
+        self._split.argtypes = [ctypes.POINTER(BatchStructure), ctypes.POINTER(_TreeStructure)]
+        self._split.restype = None
 
     def grow(
         self,
@@ -178,9 +182,9 @@ class SubtreeCode:
 
         def grown(first: int, last: int) -> tuple[Boxes, np.ndarray, int]:
             capacity = sizes.tree_room * (last - first) + sizes.tree_beside
-            taken = _places(prepared, boxes, capacity)
-            room = {name: a.ctypes.data for name, a in taken.items()}
-            tree = _TreeStructure(capacity=capacity, **numbers, **places, **room)
+            taken = room(boxes, capacity) | {"too_small": np.empty(capacity, dtype=bool)}
+            written = {name: a.ctypes.data for name, a in taken.items()}
+            tree = _TreeStructure(capacity=capacity, **numbers, **places, **written)
             kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
             if kept < 0:
                 raise MemoryError
@@ -191,17 +195,35 @@ class SubtreeCode:
         too_small = np.concatenate([small for _, small, _ in parts])
         return Subtrees(both.take(~too_small), both.take(too_small), sum(contracted for _, _, contracted in parts))
 
+    def split(self, prepared: Prepared, halves: Halves, boxes: Boxes, workers: int = 1) -> tuple[Boxes, Boxes]:
+        """Split boxes by their scores.
 
-def _places(prepared: Prepared, boxes: Boxes, capacity: int) -> dict[str, np.ndarray]:
-    """Return arrays for what comes of boxes."""
-    return {
-        "out_cell": np.empty((capacity, prepared.factors), dtype=np.int32),
-        "out_low": np.empty((capacity, prepared.n)),
-        "out_high": np.empty((capacity, prepared.n)),
-        "out_bounds": np.empty((capacity, boxes.bounds.shape[1])),
-        "out_tag": np.empty(capacity, dtype=np.int32),
-        "too_small": np.empty(capacity, dtype=bool),
-    }
+        Parameters
+        ----------
+        prepared, halves, boxes, workers
+            As for :meth:`grow`; the boxes are scored, and may have bounds of all objectives.
+
+        Returns
+        -------
+        tuple of Boxes
+            First the first halves, in order, then the second halves; and the boxes that are too small to be split.
+        """
+        count = len(boxes)
+        taken, too_small = scored_room(boxes, 2 * count), np.empty(count, dtype=bool)
+        scores = np.ascontiguousarray(boxes.scores, dtype=np.float32)
+        unweighted = np.zeros((1, 0))
+        batches = Batches(prepared, boxes, unweighted, 0, moving={**taken, "scores": scores}, still=self._read)
+        places = {name: a.ctypes.data for name, a in halves.kept.items()}
+
+        def halved(first: int, last: int) -> None:
+            tree = _TreeStructure(capacity=count, too_small=too_small[first:].ctypes.data, **places)
+            self._split(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
+
+        side_by_side([partial(halved, *ends) for ends in pairwise(prepared.parts(count, workers))], workers)
+        both = filled(taken)
+        if not too_small.any():
+            return both, boxes.take(slice(0, 0))
+        return both.take(np.tile(~too_small, 2)), boxes.take(too_small)
 
 
 def _taken(taken: dict[str, np.ndarray], kept: int, scores: int) -> tuple[Boxes, np.ndarray]:

@@ -15,6 +15,7 @@ from synth.bounds import box_source, compiled_boxes
 from synth.bounds.box_batches import CompiledQuestion, Prepared
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
+from synth.bounds.compiled_boxes import Verdicts
 from synth.bounds.contractor import Contractor
 from synth.bounds.interpreted_boxes import MOST
 from synth.bounds.intervals import BACKWARD, FORWARD
@@ -28,6 +29,7 @@ from synth.model.program import OP_SELECT, Program
 from synth.nlp import interior_point_c as native
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
+from synth.search.makeable_values import MakeableValues
 from synth.special import TABLE, recorded
 from synth.tuning import TUNING, CodeSizes, CompilingEffort, CompilingLimits
 from tests.asking import instance_of
@@ -127,7 +129,7 @@ class Case:
         alive &= ~np.any(low > above(high, *TUNING.tolerances.margins), axis=1)
         return alive, low, np.maximum(low, high), goals, opens
 
-    def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes(), made=loaded):  # noqa: B008 - it is frozen
+    def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes(), made=loaded, grids=None):  # noqa: B008 - it is frozen
         unbounded = np.full(self.n, np.inf)
         question = CompiledQuestion(
             self.tables,
@@ -138,12 +140,12 @@ class Case:
             unbounded,
             np.ones(self.n),
             ScoreTables(self.steep, self.spreads),
-            [np.empty(0)] * self.n,
+            grids or [np.empty(0)] * self.n,
             TUNING.tolerances.margins,
             sizes,
             self.floors,
         )
-        prepared = Prepared(len(self.constraints), question)
+        prepared = Prepared(question)
         boxes = Boxes(
             self.cell,
             self.low,
@@ -152,32 +154,27 @@ class Case:
             np.ones((self.boxes, self.n + 2), dtype=np.float32),
             np.arange(self.boxes),
         )
-        return made(code).contract(
-            prepared,
-            boxes,
-            self.cutoffs if capped else None,
-            np.ones((1, len(self.steep))),
-            passes,
-            workers,
-        )
+        verdicts = Verdicts.room(self.boxes, len(self.constraints))
+        cutoffs, weights = self.cutoffs if capped else None, np.ones((1, len(self.steep)))
+        return made(code).contract(prepared, boxes, cutoffs, weights, passes, workers, verdicts), verdicts
 
     def agree(self, capped, passes, rtol, atol=0.0):
         """Check that both ways agree; return how many boxes are alive."""
         code = self.contractor.code(self.root, capped)
         alive, low, high, goals, opens = self.numpy(code, capped, passes)
-        found = self.compiled(code, capped, passes)
-        np.testing.assert_array_equal(found.alive, alive)
-        np.testing.assert_array_equal(found.boxes.tag, np.flatnonzero(alive))
-        np.testing.assert_array_equal(found.boxes.cell, self.cell[alive])
-        np.testing.assert_array_equal(found.undecided[alive], opens[alive])
-        np.testing.assert_allclose(found.boxes.low, low[alive], rtol, atol)
-        np.testing.assert_allclose(found.boxes.high, high[alive], rtol, atol)
+        found, verdicts = self.compiled(code, capped, passes)
+        np.testing.assert_array_equal(verdicts.alive, alive)
+        np.testing.assert_array_equal(found.tag, np.flatnonzero(alive))
+        np.testing.assert_array_equal(found.cell, self.cell[alive])
+        np.testing.assert_array_equal(verdicts.undecided[alive], opens[alive])
+        np.testing.assert_allclose(found.low, low[alive], rtol, atol)
+        np.testing.assert_allclose(found.high, high[alive], rtol, atol)
         expected = np.where(np.isnan(goals), -np.inf, goals)[alive]
-        np.testing.assert_allclose(found.boxes.bounds, expected, rtol, atol)
+        np.testing.assert_allclose(found.bounds, expected, rtol, atol)
         counted = np.concatenate([opens, np.ones(goals.shape, dtype=bool)], axis=1)[alive].astype(float)
         spreads = [np.einsum("bj,bj->b", counted, s[self.cell[alive, f]]) for f, s in enumerate(self.spreads)]
         scores = np.concatenate([counted @ self.steep * (high[alive] - low[alive]), np.stack(spreads, axis=1)], axis=1)
-        np.testing.assert_allclose(found.boxes.scores, scores, 1e-5, 1e-6)
+        np.testing.assert_allclose(found.scores, scores, 1e-5, 1e-6)
         return int(alive.sum())
 
 
@@ -338,16 +335,34 @@ def test_random_programs_agree(seed, passes, capped):
     random_case(seed, SMOOTH).agree(capped, passes, 1e-12, 1e-12)
 
 
+@given(st.integers(0, 10**6))
+@settings(deadline=None, derandomize=True, max_examples=repetitions(10, 100))
+def test_boxes_are_snapped_to_any_grid_as_over_arrays(seed):
+    case, rng = random_case(4, ARITHMETIC, boxes=83), np.random.default_rng(seed)
+    code = case.contractor.code(case.root, False)
+    free, _ = case.compiled(code, False, 2)
+    least, most = case.low_end[0] - 0.5, case.high_end[0]
+    even, uneven = np.linspace(least, most, int(rng.integers(2, 300))), rng.uniform(least, most, rng.integers(1, 40))
+    kinds = [np.empty(0), even, np.unique(uneven), np.unique([*free.low[:, 0], *free.high[:3, 0]]), even[:1]]
+    grids = [kinds[k] for k in rng.integers(len(kinds), size=case.n)]
+    snapped, _ = case.compiled(code, False, 2, grids=grids)
+    alive = MakeableValues(grids, TUNING.tolerances.margins).snap(free.low, free.high)
+    for name in ("tag", "low", "high"):
+        np.testing.assert_array_equal(getattr(snapped, name), getattr(free, name)[alive], name)
+
+
 def test_the_result_is_the_same_for_any_number_of_threads():
     small = CodeSizes(part=5)
     case = random_case(11, ARITHMETIC, boxes=83)
     code = case.contractor.code(case.root, False)
-    alone = case.compiled(code, False, 2)
+    alone, verdicts = case.compiled(code, False, 2)
+    assert 0 < len(alone) == verdicts.alive.sum() < len(verdicts.alive)
     for workers in (2, 3, 8):
-        shared = case.compiled(code, False, 2, workers, small)
-        np.testing.assert_array_equal(shared.alive, alone.alive)
+        shared, found = case.compiled(code, False, 2, workers, small)
+        np.testing.assert_array_equal(found.alive, verdicts.alive)
+        np.testing.assert_array_equal(found.undecided, verdicts.undecided)
         for name in ("cell", "low", "high", "bounds", "scores", "tag"):
-            np.testing.assert_array_equal(getattr(shared.boxes, name), getattr(alone.boxes, name))
+            np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name))
 
 
 # -- special functions -------------------------------------------------------------------------------

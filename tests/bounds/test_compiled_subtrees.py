@@ -141,6 +141,28 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     assert len(grown.halves) + len(grown.small) <= len(boxes) * sizes.tree_room + room
 
 
+@pytest.mark.parametrize("grid", [True, False])
+@pytest.mark.parametrize("workers", [1, 3])
+def test_boxes_are_split_as_over_arrays(grid, workers, monkeypatch):
+    form = strut_form(grid, at_once(CodeSizes(part=16)), Execution(workers=workers))
+    rule = purpose_of("front", form, np.random.default_rng(7))
+    boxes = Boxes.joined([after(form, rule, generations) for generations in (1, 6, 12)])
+    # Boxes that nothing more can be told of by scores, and boxes that hold one design.
+    boxes.scores[::5] = 0.0
+    points = boxes.take(np.arange(0, len(boxes), 7))
+    leaves = [tree.leaf_of_row[0] for tree in form.boxes.cells.trees]
+    points.cell[:], points.high[:] = leaves, points.low
+    boxes = Boxes.joined([boxes, points])
+    boxes.tag[:] = np.arange(len(boxes))
+    split = form.boxes.split(boxes)
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
+    over_arrays = strut_form(grid, at_once()).boxes.split(boxes)
+    assert len(split[1]) == len(points) > 4
+    for found, expected in zip(split, over_arrays, strict=True):
+        for name in ("cell", "low", "high", "bounds", "scores", "tag"):
+            np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), name)
+
+
 def test_threads_change_nothing():
     found = []
     for workers in (1, 3):

@@ -26,16 +26,30 @@ static long long above(const double *grid, long long count, double x) {
     return first;
 }
 
+/* The same where values stand at equal distances mostly: the place that this says is looked at before all are searched. */
+static long long guessed(const double *grid, long long size, double per_unit, double x) {
+    const double place = (x - grid[0]) * per_unit;
+    return !(place > 0.0) ? 0 : place < (double)(size - 1) ? (long long)place + 1 : size;
+}
+static long long not_below_soon(const double *grid, long long size, double per_unit, double x) {
+    const long long k = guessed(grid, size, per_unit, x);
+    return (k == size || !(grid[k] < x)) && (!k || grid[k - 1] < x) ? k : not_below(grid, size, x);
+}
+static long long above_soon(const double *grid, long long size, double per_unit, double x) {
+    const long long k = guessed(grid, size, per_unit, x);
+    return (k == size || !(grid[k] <= x)) && (!k || grid[k - 1] <= x) ? k : above(grid, size, x);
+}
+
 static vi snap(const Batch *b, vd V[][2]) {
     vi dead = all_i(0);
     for (int i = 0; i < N; i++) {
         vd low = v_max(V[i][0], all(b->lower[i])), high = v_min(V[i][1], all(b->upper[i]));
         const long long size = b->grid_sizes[i];
         if (size) {
-            const double *grid = b->grids[i];
+            const double *grid = b->grids[i], per_unit = b->per_unit[i];
             for (int l = 0; l < LANES; l++) {
-                const long long first = not_below(grid, size, end_below(low[l], b->snap, b->pinned));
-                const long long last = above(grid, size, end_above(high[l], b->snap, b->pinned)) - 1;
+                const long long first = not_below_soon(grid, size, per_unit, end_below(low[l], b->snap, b->pinned));
+                const long long last = above_soon(grid, size, per_unit, end_above(high[l], b->snap, b->pinned)) - 1;
                 if (first > last) dead[l] = -1;
                 low[l] = grid[first < size ? first : size - 1];
                 high[l] = grid[last > 0 ? last : 0];
@@ -124,7 +138,7 @@ long long contract(const Batch *b) {
             const long long first = start + w * LANES, left = b->count - first;
             Registers *const r = block + w;
             const vi dead = dead_of[w] | snap(b, r->V);
-            for (int l = 0; l < LANES && l < left; l++) {
+            for (int l = 0; b->alive && l < LANES && l < left; l++) {
                 b->alive[first + l] = !dead[l];
                 for (int j = 0; j < LIMITS; j++)
                     b->undecided[(first + l) * LIMITS + j] = !dead[l] && r->undecided[j][l] != 0;

@@ -1,4 +1,5 @@
-/* Whole subtrees of boxes: tighten, compare with what is known, split, and again. Stands after boxes.c. */
+/* Whole subtrees of boxes: tighten, compare with what is known, split, and again; and boxes that are split alone. Stands
+   after boxes.c. */
 
 #include <stdlib.h>
 
@@ -48,9 +49,9 @@ static int cutoffs_of(const Batch *b, const Tree *t, const double *lower, const 
 static void middle_of(const Batch *b, int i, double low, double high, double *end, double *start) {
     const long long size = b->grid_sizes[i];
     if (size) {
-        const double *grid = b->grids[i];
-        const long long first = not_below(grid, size, end_below(low, b->snap, b->pinned));
-        const long long last = above(grid, size, end_above(high, b->snap, b->pinned)) - 1;
+        const double *grid = b->grids[i], per_unit = b->per_unit[i];
+        const long long first = not_below_soon(grid, size, per_unit, end_below(low, b->snap, b->pinned));
+        const long long last = above_soon(grid, size, per_unit, end_above(high, b->snap, b->pinned)) - 1;
         const long long cut = (first + last) / 2;
         *end = grid[cut];
         *start = grid[cut + 1 < size ? cut + 1 : size - 1];
@@ -108,6 +109,31 @@ static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell
         second_cell[choice - N] = t->right[choice - N][cell[choice - N]];
     }
     return 1;
+}
+
+/* Splits boxes that are scored: first halves come in their order, second halves t->capacity places further on. What is too
+   small to be split comes back as it is, in place of its first half. */
+void split(const Batch *b, const Tree *t) {
+    const long long factors = b->factors, columns = N + factors;
+    for (long long k = 0; k < b->count; k++) {
+        const int *cell = b->cell + k * factors;
+        const float *scores = b->scores + k * columns;
+        int cells[2][factors + 1];
+        Box box, halves[2];
+        memcpy(box.low, b->low + k * N, N * sizeof(double));
+        memcpy(box.high, b->high + k * N, N * sizeof(double));
+        t->too_small[k] = (unsigned char)!halved(b, t, &box, cell, scores, halves + 1, cells[1], halves, cells[0]);
+        for (int half = 0; half < 2 - t->too_small[k]; half++) {
+            const Box *own = t->too_small[k] ? &box : halves + half;
+            const long long place = k + half * t->capacity;
+            memcpy(b->out_cell + place * factors, t->too_small[k] ? cell : cells[half], factors * sizeof *cell);
+            memcpy(b->out_low + place * N, own->low, N * sizeof(double));
+            memcpy(b->out_high + place * N, own->high, N * sizeof(double));
+            memcpy(b->out_bounds + place * b->goals, b->bounds + k * b->goals, b->goals * sizeof(double));
+            memcpy(b->out_scores + place * columns, scores, columns * sizeof *scores);
+            b->out_tag[place] = b->tag[k];
+        }
+    }
 }
 
 /* Where a box comes among those that come back: first those of the last box, and first its first half. */
