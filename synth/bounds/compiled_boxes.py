@@ -27,7 +27,7 @@ from synth.operating_system import COMPILER_FLAGS
 from synth.tuning import CompilingEffort, CompilingLimits
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
-BOX_FLAGS = (*COMPILER_FLAGS, "-O2", "-ffp-contract=off")
+BOX_FLAGS = (*COMPILER_FLAGS, "-ffp-contract=off")
 GENERAL_FLAGS = (*QUICK, "-ffp-contract=off")
 
 

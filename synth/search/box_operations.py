@@ -141,16 +141,15 @@ class BoxOperations:
         if every_goal and width < self.goals:
             unknown = np.full((len(boxes), self.goals - width), -np.inf)
             boxes = replace(boxes, bounds=np.concatenate([boxes.bounds, unknown], axis=1))
-        at_once = self.tuning.arrays.boxes
-        if len(boxes) <= at_once:
-            return self._contract(boxes, cutoffs, passes, every_goal) if len(boxes) else boxes
-        kept = []
-        for first in range(0, len(boxes), at_once):
-            deadline.check()
-            rows = slice(first, min(first + at_once, len(boxes)))
-            own = cutoffs if cutoffs is None or cutoffs.ndim == 1 else cutoffs[rows]
-            kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
-        return Boxes.joined(kept)
+        if not len(boxes):
+            return boxes
+        deadline.check()
+        values = None if cutoffs is None else self.objectives.values_of(cutoffs)
+        self.counters.contracted += len(boxes)
+        found = self.bounding.compiled.contract(boxes, values, passes, every_goal)
+        if found is None:
+            found = self._over_arrays(boxes, values, passes, every_goal)
+        return self._without_refused(found)
 
     def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Subtrees | None:
         """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
@@ -171,12 +170,17 @@ class BoxOperations:
         )
         return replace(boxes, low=low, high=high)
 
-    def _contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Boxes:
-        self.counters.contracted += len(boxes)
-        values = None if cutoffs is None else self.objectives.values_of(cutoffs)
-        compiled = self.bounding.compiled.contract(boxes, values, passes, every)
-        if compiled is not None:
-            return self._without_refused(compiled)
+    def _over_arrays(self, boxes: Boxes, values: np.ndarray | None, passes: int, every: bool) -> Boxes:
+        """Tighten boxes without compiled code, so many at a time that arrays stay in the cache."""
+        kept, at_once = [], self.tuning.arrays.boxes
+        for first in range(0, len(boxes), at_once):
+            deadline.check()
+            rows = slice(first, first + at_once)
+            own = values if values is None or values.ndim == 1 else values[rows]
+            kept.append(self._propagated(boxes.take(rows), own, passes, every))
+        return Boxes.joined(kept)
+
+    def _propagated(self, boxes: Boxes, values: np.ndarray | None, passes: int, every: bool) -> Boxes:
         found = self.bounding.propagation.run(boxes, values, passes, every)
         low, high = found.low, found.high
         alive = found.alive & self._snap(low, high)
@@ -185,7 +189,7 @@ class BoxOperations:
             bounds[:, j] = np.fmax(bounds[:, j], least)
         tightened = replace(boxes, low=low, high=high, bounds=bounds)
         scores = self.bounding.branching.scores(tightened, found.undecided, len(found.goals), values)
-        return self._without_refused(replace(tightened, scores=scores).take(alive))
+        return replace(tightened, scores=scores).take(alive)
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
         """Return the boxes that may hold a combination that no refusal over several slots forbids."""
