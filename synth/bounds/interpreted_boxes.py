@@ -18,7 +18,8 @@ from synth.bounds.contractor import Code
 from synth.compiled.c_text import filled, template
 
 # Sizes that the code has room for; a larger question needs code of its own.
-MOST = {"N": 24, "LIMITS": 256, "GOALS": 16, "TABLES": 256, "NODES": 1024}
+# Variables are goals as well: the last that settle ties.
+MOST = {"N": 24, "LIMITS": 256, "GOALS": 40, "TABLES": 256, "NODES": 1024}
 MOST_REGISTERS = 4096
 
 

@@ -24,7 +24,8 @@ from synth.nlp.row_functions import RowFunctions
 from synth.tuning import InteriorPointSettings, NlpSettings
 
 # Sizes that the code has room for; what is larger is solved without it.
-MOST = {"N": 24, "ROWS": 96, "GOALS": 16, "NONZEROS": 1024, "CURVATURES": 300}
+# Variables are goals as well: the last that settle ties.
+MOST = {"N": 24, "ROWS": 96, "GOALS": 40, "NONZEROS": 1024, "CURVATURES": 300}
 WIDTH = 5  # of an instruction: what is done, where the result goes, and up to three operands
 INTEGERS = ctypes.POINTER(ctypes.c_int)
 NUMBERS = (

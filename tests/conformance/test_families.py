@@ -11,10 +11,14 @@ import pytest
 import yaml
 
 import synth
+from synth.bounds.interpreted_boxes import listed_code
 from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
+from synth.nlp.interior_point_c_interpreted import fits
 from synth.nlp.ipopt import Task
+from synth.nlp.row_functions import RowFunctions
 from synth.question.catalogs import as_catalogs
+from synth.question.objectives import chosen_objectives, with_ties
 from synth.results.front import front_record
 from synth.results.front_record import record_text
 from synth.row_cells import named_column
@@ -90,6 +94,16 @@ def test_limit_sides_have_the_kind_of_their_unit(traced):
         same = [q for q in d.derived.values() if q.sx.element_hash() == ca.SX(limit.value).element_hash()]
         for quantity in same:
             assert parse_unit(quantity.unit).kind == parse_unit(limit.unit).kind, limit.name
+
+
+def test_code_that_serves_all_questions_has_room_for_it(traced):
+    # What has no room is solved over arrays, and takes twice as long, or waits for a compiler.
+    instance = traced[0]
+    asked = chosen_objectives(instance.model, None)
+    form = Formulation(instance, with_ties(instance.model, asked), len(asked))
+    assert fits(RowFunctions(instance.model.program, form.n, form.continuous.rows))
+    for every in (False, True):
+        assert listed_code(form.bounding.propagation.code(every, True)) is not None
 
 
 # -- numbers -----------------------------------------------------------------------------------------
