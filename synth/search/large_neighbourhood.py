@@ -14,7 +14,7 @@ from synth.nlp.batch import Tasks
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.pruning import EpsilonCover
+from synth.search.pruning import EpsilonCover, rows_of_use
 from synth.search.refused_cells import not_refused
 
 
@@ -41,26 +41,26 @@ def large_neighbourhood_search(
         place = turn % len(columns)
         k = columns[place]
         best = form.archive.phi[:, k].min()
-        combinations = _promising(form, columns, k, float(tolerance[place]), rng)
+        no_cutoffs = np.full(len(form.goals), np.inf)
+        rule = EpsilonCover([k], tolerance[place : place + 1], no_cutoffs, form.new_archive([k]))
+        rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
+        combinations = _promising(form, rule, columns, rng)
         if len(combinations):
-            no_cutoffs = np.full(len(form.goals), np.inf)
-            rule = EpsilonCover([k], tolerance[place : place + 1], no_cutoffs, form.new_archive([k]))
-            rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
             branch_and_bound(form, form.boxes.leaves(combinations), rule, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - tolerance[place] else failures + 1
         if failures >= limits.patience * len(columns):
             return
 
 
-def _promising(
-    form: Formulation, columns: Sequence[int], k: int, tolerance: float, rng: np.random.Generator
-) -> np.ndarray:
+def _promising(form: Formulation, rule: EpsilonCover, columns: Sequence[int], rng: np.random.Generator) -> np.ndarray:
     """Return combinations near the designs known that could be better in one objective if all sizes were makeable.
 
     The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
     """
-    limits = form.tuning.heuristics.neighbourhood
+    limits, k = form.tuning.heuristics.neighbourhood, rule.columns[0]
     combinations, start = _two_parts_away(form, rng, limits.solved)
+    rows = rows_of_use(form, rule, combinations)
+    combinations, start = combinations[rows], start[rows]
     weights = np.zeros((len(combinations), len(form.goals)))
     weights[:, list(columns)] = limits.tie_weight
     weights[:, k] = 1.0
@@ -68,9 +68,9 @@ def _promising(
     tasks = Tasks(weights, np.zeros_like(weights), free, form.objectives.scales, 0.0)
     found = form.continuous.solve_many(tasks, combinations, start, rough=True)
     reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
-    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - tolerance)
+    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - float(rule.tolerance[0]))
     if not len(good):
-        return combinations[:0]
+        return np.zeros(0, dtype=np.int64)
     good = good[np.argsort(reach[good], kind="stable")]
     chosen: np.ndarray = combinations[good[np.unique((rng.random(limits.promising) ** 2 * len(good)).astype(int))]]
     return chosen

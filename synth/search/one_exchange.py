@@ -15,7 +15,7 @@ from synth.search.archive import Candidate
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics, spread_choice
-from synth.search.pruning import PruningRule
+from synth.search.pruning import PruningRule, rows_of_use
 from synth.search.refused_cells import not_refused
 
 
@@ -129,8 +129,12 @@ class OneExchange:
         return self._solved(self.heuristics.upwards(base), combinations, start)
 
     def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
-        """Solve many problems over the whole range of the variables; return how many designs are new."""
+        """Solve problems over the whole range of the variables, where that may be of use; return how many are new."""
         form, columns = self.form, self.rule.columns
+        rows = rows_of_use(form, self.rule, combinations)
+        if not len(rows):
+            return 0
+        tasks, combinations, start = tasks.take(rows), combinations[rows], start[rows]
         found = form.continuous.solve_many(tasks, combinations, start)
         self.heuristics.learn(tasks, combinations, found)
         if not form.gridded.any():

@@ -74,17 +74,14 @@ INLINE void put(const Batch *b, Tree *t, long long place, const Box *box, const 
 /* What is splittable of a box is split where the scores say; 0 where nothing is. */
 static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell, const float *scores,
                   Box *second, int *second_cell, Box *first, int *first_cell) {
-    double width[MOST_N], best = -1.0;
-    int choice = -1, flat = 1;
+    int wide[MOST_N], choice = -1, flat = 1;
+    double best = -1.0;
     for (int i = 0; i < N; i++) {
         const double low = box->low[i], high = box->high[i], size = fmax(fabs(low), fabs(high));
-        const double floor = b->grid_sizes[i] ? b->snap * size : 1e-7 * fmax(size, 1e-9 * t->ranges[i]);
-        const double own = b->spans[i] == 0.0 ? log(high / low) : (high - low) / b->spans[i];
-        width[i] = high - low > floor ? fmax(own, 1e-12) : 0.0;
-        if (width[i] > 0.0) {
-            flat &= !(scores[i] > 1e-9);
-            if (scores[i] > best) { best = scores[i]; choice = i; }
-        }
+        wide[i] = high - low > (b->grid_sizes[i] ? b->snap * size : 1e-7 * fmax(size, 1e-9 * t->ranges[i]));
+        if (!wide[i]) continue;
+        flat &= !(scores[i] > 1e-9);
+        if (scores[i] > best) { best = scores[i]; choice = i; }
     }
     for (int f = 0; f < b->factors; f++) {
         if (t->left[f][cell[f]] < 0) continue;
@@ -94,7 +91,12 @@ static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell
     if (flat) {
         best = -1.0;
         choice = -1;
-        for (int i = 0; i < N; i++) if (width[i] > best && width[i] > 0.0) { best = width[i]; choice = i; }
+        for (int i = 0; i < N; i++) {
+            if (!wide[i]) continue;
+            const double low = box->low[i], high = box->high[i];
+            const double width = fmax(b->spans[i] == 0.0 ? log(high / low) : (high - low) / b->spans[i], 1e-12);
+            if (width > best) { best = width; choice = i; }
+        }
         for (int f = 0; f < b->factors; f++)
             if (t->left[f][cell[f]] >= 0 && 1e3 > best) { best = 1e3; choice = N + f; }
     }

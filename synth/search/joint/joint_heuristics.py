@@ -10,6 +10,7 @@ from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.joint.joint_question import BestPerScenario, JointInstance
 from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import rows_of_use
 from synth.search.refused_cells import not_refused
 from synth.tuning import JointHeuristicLimits
 
@@ -137,6 +138,10 @@ class JointHeuristics:
         self.clock.check()
         if not form.n or not len(combinations):
             return heuristics.offer(start, combinations)
+        rows = rows_of_use(form, rule, combinations)
+        if not len(rows):
+            return 0
+        combinations, start = combinations[rows], start[rows]
         tasks, found = self._solved(rule, combinations, start, as_made)
         best = self._best_of_each(rule, combinations, found)
         if not len(best):
