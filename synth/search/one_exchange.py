@@ -15,7 +15,7 @@ from synth.search.archive import Candidate
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics, spread_choice
-from synth.search.pruning import PruningRule, rows_of_use
+from synth.search.pruning import EpsilonCover, PruningRule, rows_of_use
 from synth.search.refused_cells import not_refused
 
 
@@ -122,6 +122,15 @@ class OneExchange:
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
 
+    def _improvement(self) -> EpsilonCover:
+        """Return the rule by which all is of use that no known design beats, by however little."""
+        rule, archive = self.rule, self.form.archive
+        found = EpsilonCover(
+            rule.columns, np.zeros(len(rule.columns)), rule.fixed_cutoffs, self.form.new_archive(rule.columns)
+        )
+        found.take(archive.combination, archive.variables, archive.phi)
+        return found
+
     def _reach(self, combinations: np.ndarray, start: np.ndarray, base: np.ndarray) -> int:
         """Solve from each base straight up, or for the one objective; return how many designs are new."""
         if not len(combinations):
@@ -131,7 +140,7 @@ class OneExchange:
     def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
         """Solve problems over the whole range of the variables, where that may be of use; return how many are new."""
         form, columns = self.form, self.rule.columns
-        rows = rows_of_use(form, self.rule, combinations)
+        rows = rows_of_use(form, self._improvement(), combinations)
         if not len(rows):
             return 0
         tasks, combinations, start = tasks.take(rows), combinations[rows], start[rows]
