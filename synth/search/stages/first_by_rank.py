@@ -77,7 +77,7 @@ def _scale(state: FrontState) -> Scale:
         _least_in(state, k, np.full(len(form.goals), np.inf))
     polish_extremes(form, m, float(state.rule.tolerance.max()))
     ideal = form.objectives.values_of(form.archive.phi[:, :m]).min(axis=0)
-    worst = ideal if np.all(ideal > 0) else _worst_at_ends(state, ideal)
+    worst = _worst_at_ends(state, ideal)  # what comes first at an end is best in the others as well
     near = nearly(ideal, worst)
     return Scale(ideal, np.maximum(near, _worst_at_ends(state, near)))
 
