@@ -11,8 +11,11 @@ import pytest
 import synth
 from synth.pareto import NEAR, rank, signs_of
 from synth.question.spec import read_spec
+from synth.search.front_state import FrontState
+from synth.search.stages.first_by_rank import find_first
 from synth.search.synthesize import find_front
 from synth.tuning import TUNING
+from tests.asking import pose
 from tests.repetitions import repetitions
 
 EXAMPLES = [
@@ -100,6 +103,20 @@ def test_an_end_that_costs_much_for_little_is_not_first_and_is_told_to() -> None
     assert dear.rank == len(front.designs)
     told = front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
     assert told["mass"] == pytest.approx([4.0, 7.0])
+
+
+def test_the_ends_are_best_in_the_other_objective_too_whatever_was_known() -> None:
+    rows = [(1.0, 40.0), (1.0, 12.0), (1.004, 7.0), (1.2, 5.0), (1.5, 4.0), (1.8, 4.0)]
+    problem = lattice(rows, {"diameter": "min", "mass": "min"})
+    state = FrontState(pose(problem, {}, points=6).search().state.task)
+    state.set_pool()
+    form, known = state.form, np.array([0, 5])  # of equal ends the worse one each
+    kept, phi = form.points.feasible_rows(np.zeros((2, form.n)), known)
+    assert kept.tolist() == [0, 1]
+    form.archive.add(known, np.zeros((2, form.n)), phi)
+    find_first(state, [1.0, 1.0])
+    assert {1, 4} <= set(form.archive.combination.tolist())
+    assert not {0, 5} & set(form.archive.combination.tolist())
 
 
 def test_a_front_that_is_saved_is_ranked_again_by_its_own_scale(tmp_path: Path) -> None:
