@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import synth
@@ -105,18 +106,32 @@ def test_an_end_that_costs_much_for_little_is_not_first_and_is_told_to() -> None
     assert told["mass"] == pytest.approx([4.0, 7.0])
 
 
+class Row(synth.DesignProblem):
+    """A design is a row of a table."""
+
+    name = "row"
+
+    def declare(self, d: synth.Declaration) -> None:
+        part = d.part("part", "rows")
+        for name in ("diameter", "mass"):
+            d.derive(name, "-", getattr(part, name))
+            d.objective(name)
+
+
 def test_the_ends_are_best_in_the_other_objective_too_whatever_was_known() -> None:
-    rows = [(1.0, 40.0), (1.0, 12.0), (1.004, 7.0), (1.2, 5.0), (1.5, 4.0), (1.8, 4.0)]
-    problem = lattice(rows, {"diameter": "min", "mass": "min"})
-    state = FrontState(pose(problem, {}, points=6).search().state.task)
+    # Of equal ends the worse is known, and much that is almost as good is better than either.
+    rows = [(1.0, 40.0), (1.0, 12.0), *((1.004, mass) for mass in np.linspace(7.0, 11.9, 3000)), (1.5, 4.0), (1.8, 4.0)]
+    table = pd.DataFrame(rows, columns=["diameter [-]", "mass [-]"])
+    table.insert(0, "designation", [f"row {k}" for k in range(len(rows))])
+    state = FrontState(pose(Row(), {}, points=6, catalogs={"rows": table}).search().state.task)
     state.set_pool()
-    form, known = state.form, np.array([0, 5])  # of equal ends the worse one each
-    kept, phi = form.points.feasible_rows(np.zeros((2, form.n)), known)
-    assert kept.tolist() == [0, 1]
-    form.archive.add(known, np.zeros((2, form.n)), phi)
+    form, worse = state.form, np.array([0, len(rows) - 1])
+    nowhere = np.zeros((2, 0))
+    form.archive.add(worse, nowhere, form.points.feasible_rows(nowhere, worse)[1])
     find_first(state, [1.0, 1.0])
-    assert {1, 4} <= set(form.archive.combination.tolist())
-    assert not {0, 5} & set(form.archive.combination.tolist())
+    known = set(form.archive.combination.tolist())
+    assert {1, 2, len(rows) - 2} <= known
+    assert not known & set(worse.tolist())
 
 
 def test_a_front_that_is_saved_is_ranked_again_by_its_own_scale(tmp_path: Path) -> None:
