@@ -22,9 +22,9 @@ from typing import Any
 from synth.errors import InputError, where_raised
 from synth.jobs.engine_tasks import task_of
 from synth.jobs.job_settings import JOBS, EngineSettings
-from synth.operating_system import ENDING, bound_memory, give_way, resident
+from synth.jobs.served_process import begin_to_serve
+from synth.operating_system import bound_memory, give_way, resident
 
-ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"
 
 
@@ -336,10 +336,7 @@ class Engines:
 
 def _serve(pipe: Connection, settings: EngineSettings) -> None:
     """Do what is asked, one thing after the other, until the other side is gone."""
-    for number in (signal.SIGINT, *ENDING):  # whole groups of processes get them; the master decides
-        signal.signal(number, signal.SIG_IGN)
-    for name in ONE_THREAD:
-        os.environ.setdefault(name, "1")
+    begin_to_serve()
     give_way(settings.nice)
     bound_memory(settings.addresses)  # the supervisor looks at what is really used
     asked: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()

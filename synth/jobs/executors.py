@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 import threading
 import time
 from collections.abc import Callable
@@ -19,11 +18,10 @@ from typing import Any
 
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, ClusterSettings
+from synth.jobs.served_process import begin_to_serve
 from synth.jobs.signs import share
-from synth.operating_system import ENDING
 
 LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
-ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 class Inline(Executor):
@@ -111,10 +109,7 @@ def _begin(lifeline: Connection, found: Any) -> None:
     ``found``: where it shows how many rows of a group have designs.
     """
     share(found)
-    for name in ONE_THREAD:
-        os.environ.setdefault(name, "1")
-    for number in (signal.SIGINT, *ENDING):  # whole groups of processes get them; the master decides
-        signal.signal(number, signal.SIG_IGN)
+    begin_to_serve()
 
     def watch() -> None:
         try:
