@@ -132,7 +132,7 @@ class Prepared:
 
     def __init__(self, question: CompiledQuestion) -> None:
         steep, of_clusters = question.scoring.steep, question.scoring.spreads
-        self.n, self.factors, self.sizes = len(question.lower), len(of_clusters), question.sizes
+        self.sizes, factors = question.sizes, len(of_clusters)
         width = -(-steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
@@ -143,7 +143,7 @@ class Prepared:
         self.kept["steep"] = np.ascontiguousarray(steep, dtype=float)
         for name, end in (("root_low", question.root.low), ("root_high", question.root.high)):
             self.kept[name] = np.where(question.root.narrowed, end, np.nan)
-        per_factor: list[list[np.ndarray]] = [[] for _ in range(self.factors)]
+        per_factor: list[list[np.ndarray]] = [[] for _ in range(factors)]
         for f, low, high in question.tables:
             per_factor[f] += [low, high]
         rows = [np.stack(own, axis=1) if own else np.zeros((1, 1)) for own in per_factor]
@@ -157,7 +157,7 @@ class Prepared:
         for name, arrays in self._lists.items():
             self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
         self.numbers = {
-            "factors": self.factors,
+            "factors": factors,
             "score_width": width,
             "snap": question.margins[0],
             "pinned": question.margins[1],

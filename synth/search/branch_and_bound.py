@@ -19,7 +19,7 @@ from synth.search.budget import Clock
 from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
-from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, reaches_beyond
+from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, of_use, reaches_beyond
 from synth.search.relaxed_boxes import RelaxedBoxes
 
 
@@ -134,9 +134,7 @@ def further(
         What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
     """
     looked, none = len(batch), batch.take(slice(0, 0))
-    cutoffs = rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell)
-    batch = form.boxes.contract(batch, cutoffs, every_goal=heuristics.every_goal)
-    batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
+    batch = of_use(form, rule, batch, heuristics.every_goal)
     if together is not None and len(batch):
         batch = together.tighten(batch, rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell))
         batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
