@@ -119,7 +119,7 @@ class LevelLimits:
         where these are few.
     before_looking : int
         For all levels at which designs are to be looked for, before combinations are solved at them: a looking round
-        takes as long as some millions.
+        takes as long as a million.
     picture : int
         Levels of a rough picture of the front, beside so many as designs are asked for.
     rounds : int
@@ -131,7 +131,7 @@ class LevelLimits:
     first: int = 5_000
     first_of_one: int = 5_000
     before_looking_at_one: int = 500_000
-    before_looking: int = 500_000
+    before_looking: int = 150_000
     picture: int = 8
     rounds: int = 8
 
