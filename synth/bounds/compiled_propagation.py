@@ -14,7 +14,7 @@ from synth.bounds.box_batches import CompiledQuestion, Prepared
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.bounds.branching import BranchingWeights, ScoreTables
 from synth.bounds.compiled_boxes import BoxCode, compiled
-from synth.bounds.compiled_subtrees import CutoffTables, Halves
+from synth.bounds.compiled_subtrees import CutoffTables, Growth, Halves
 from synth.bounds.propagation import Propagation
 from synth.compiled.execution import Execution
 from synth.tuning import CompilingLimits
@@ -74,8 +74,8 @@ class CompiledPropagation:
         weights, workers = self._branching.weights, self._execution.workers
         return code.contract(self._read(every), boxes, cutoffs, weights, passes, workers)
 
-    def grow(self, boxes: Boxes, cutoffs: CutoffTables, passes: int, levels: int) -> Subtrees | None:
-        """Tighten and split boxes for some generations; None where no code is compiled.
+    def grow(self, boxes: Boxes, cutoffs: CutoffTables, passes: int, levels: int) -> Growth | None:
+        """Begin to tighten and split boxes for some generations; None where no code is compiled.
 
         Parameters
         ----------
@@ -93,9 +93,12 @@ class CompiledPropagation:
         if code is None:
             return None
         prepared, weights, workers = self._read(False), self._branching.weights, self._execution.workers
-        found = code.subtrees.grow(prepared, self._halves(), boxes, cutoffs, weights, passes, levels, workers)
+        growth = code.subtrees.grow(prepared, self._halves(), boxes, cutoffs, weights, passes, levels, workers)
+        return growth.then(self._counted)
+
+    def _counted(self, found: Subtrees) -> Subtrees:
         self._contracted[False, True] += found.looked
-        self._grown = found.looked
+        self._grown += found.looked
         return found
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes] | None:

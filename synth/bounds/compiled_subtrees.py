@@ -8,16 +8,17 @@ back, and those that are too small to be split.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, room, scored_room
 from synth.bounds.boxes import Boxes, Subtrees
-from synth.compiled.threads import side_by_side
+from synth.compiled.threads import SideBySide, side_by_side
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
@@ -121,6 +122,47 @@ class Halves:
         }
 
 
+class Growth:
+    """Subtrees that grow beside what goes on meanwhile; it has to be ended, by asking for them or without.
+
+    Parameters
+    ----------
+    parts : SideBySide
+        Each gives boxes, which of them are too small to be split, and how many were tightened.
+    read : Any
+        What the parts read by its address.
+    """
+
+    def __init__(self, parts: SideBySide[tuple[Boxes, np.ndarray, int]], read: Any) -> None:
+        self._parts, self._read = parts, read
+        self._next: list[Callable[[Subtrees], Subtrees]] = []
+
+    def then(self, changed: Callable[[Subtrees], Subtrees]) -> Growth:
+        """Let something be done to the subtrees once they are asked for."""
+        self._next.append(changed)
+        return self
+
+    def subtrees(self) -> Subtrees:
+        """Return what has grown.
+
+        Raises
+        ------
+        MemoryError
+            Where the code found no room to work in.
+        """
+        parts = self._parts.results()
+        both = Boxes.joined([own for own, _, _ in parts])
+        too_small = np.concatenate([small for _, small, _ in parts])
+        found = Subtrees(both.take(~too_small), both.take(too_small), sum(contracted for _, _, contracted in parts))
+        for changed in self._next:
+            found = changed(found)
+        return found
+
+    def stop(self) -> None:
+        """Let nothing grow any more."""
+        self._parts.stop()
+
+
 class SubtreeCode:
     """Compiled splitting of boxes, and growth of subtrees.
 
@@ -150,8 +192,8 @@ class SubtreeCode:
         passes: int,
         levels: int,
         workers: int = 1,
-    ) -> Subtrees:
-        """Tighten and split boxes, and what comes of them, for some generations.
+    ) -> Growth:
+        """Begin to tighten and split boxes, and what comes of them, for some generations.
 
         Parameters
         ----------
@@ -167,11 +209,6 @@ class SubtreeCode:
             Generations.
         workers : int
             Threads; the result is the same for any number.
-
-        Raises
-        ------
-        MemoryError
-            Where the code found no room to work in.
         """
         batches, sizes = Batches(prepared, boxes, weights, passes, still=self._read), prepared.sizes
         fixed, numbers = halves.kept | cutoffs.arrays(), {"levels": levels, **cutoffs.numbers()}
@@ -190,10 +227,7 @@ class SubtreeCode:
                 raise MemoryError
             return *_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted)
 
-        parts = side_by_side([partial(grown, first, last) for first, last in ends], workers)
-        both = Boxes.joined([own for own, _, _ in parts])
-        too_small = np.concatenate([small for _, small, _ in parts])
-        return Subtrees(both.take(~too_small), both.take(too_small), sum(contracted for _, _, contracted in parts))
+        return Growth(SideBySide([partial(grown, *own) for own in ends], workers), (halves, fixed))
 
     def split(self, prepared: Prepared, halves: Halves, boxes: Boxes, workers: int = 1) -> tuple[Boxes, Boxes]:
         """Split boxes by their scores.

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.search.branch_and_bound import TreeOutcome, further
+from synth.search.box_steps import BoxStep
+from synth.search.branch_and_bound import TreeOutcome
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
@@ -170,7 +171,7 @@ def best_first(
             idle, least = (idle + 1, least) if closed is None else (0, closed)
             if idle >= limits.patience or len(stuck) > limits.most_stuck:
                 break
-        children, small, seen = further(form, waiting.next(), rule, heuristics, np.inf)
+        children, small, seen = BoxStep(form, waiting.next(), rule, heuristics).finish(np.inf)
         looked += seen
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck

@@ -9,7 +9,7 @@ import numpy as np
 from synth import deadline
 from synth.bounds.bounding import Bounding
 from synth.bounds.boxes import Boxes, Subtrees
-from synth.bounds.compiled_subtrees import CutoffTables
+from synth.bounds.compiled_subtrees import CutoffTables, Growth
 from synth.margins import above
 from synth.search.archive import Archive
 from synth.search.counters import SearchCounters
@@ -151,14 +151,24 @@ class BoxOperations:
             found = self._over_arrays(boxes, values, passes, every_goal)
         return self._without_refused(found)
 
-    def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Subtrees | None:
-        """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
+    def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Growth | None:
+        """Begin to tighten and split boxes, and what comes of them; None where no code is compiled.
 
-        The boxes carry their auxiliary variables and the bounds of the first objectives alone.
+        That goes on beside whatever is done before the subtrees are asked for, and reads nothing that changes by then.
+
+        Parameters
+        ----------
+        boxes : Boxes
+            With their auxiliary variables and the bounds of the first objectives alone.
+        cutoffs : CutoffTables
+        levels : int
+            Generations.
         """
-        found = self.bounding.compiled.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
-        if found is None:
-            return None
+        growth = self.bounding.compiled.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
+        return None if growth is None else growth.then(self._allowed)
+
+    def _allowed(self, found: Subtrees) -> Subtrees:
+        """Return the subtrees without what is refused; count them."""
         self.counters.contracted += found.looked
         return Subtrees(self._without_refused(found.halves), self._without_refused(found.small), found.looked)
 

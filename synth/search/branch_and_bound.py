@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.bounds.boxes import Boxes, Subtrees
+from synth.bounds.boxes import Boxes
 from synth.search.archive import Candidate, rows_of
+from synth.search.box_steps import BoxStep
 from synth.search.budget import Clock
-from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
-from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, of_use, reaches_beyond
+from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, reaches_beyond
 from synth.search.relaxed_boxes import RelaxedBoxes
 
 
@@ -84,88 +84,36 @@ def branch_and_bound(
     boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck, given_up = nothing, [boxes], nothing, False
-    while (len(queue) or fresh) and looked <= node_limit:
-        if not len(queue):
-            queue = _most_open(form, _latest(fresh, tree.generation), rule)
-            if not len(queue):
-                continue
-        clock.check([queue, *fresh, stuck])
-        if enough is not None and len(form.archive) > enough:
-            return TreeOutcome(Boxes.joined([queue, *fresh, stuck]), looked, True)
-        if hopeless(looked, len(queue) + sum(len(b) for b in fresh) + len(stuck)):
-            given_up = True
-            break
-        batch, queue = queue.take(slice(0, at_once)), queue.take(slice(at_once, None))
-        children, small, seen = further(form, batch, rule, heuristics, node_limit - looked, together)
-        looked += seen
-        if len(small):
-            stuck = Boxes.joined([stuck, small])
-        if len(children):
-            fresh.append(children)
-    left = Boxes.joined([queue, *fresh, stuck])
+    steps: list[BoxStep] = []  # the batch at hand, and the next one, which compiled code is at meanwhile
+    try:
+        while (steps or len(queue) or fresh) and looked <= node_limit:
+            if not steps and not len(queue):
+                queue = _most_open(form, _latest(fresh, tree.generation), rule)
+                if not len(queue):
+                    continue
+            opened = [*(s.batch for s in steps), queue, *fresh, stuck]
+            clock.check(opened)
+            if enough is not None and len(form.archive) > enough:
+                return TreeOutcome(Boxes.joined(opened), looked, True)
+            if hopeless(looked, sum(len(b) for b in opened)):
+                given_up = True
+                break
+            while len(queue) and len(steps) < 2 and looked + sum(len(s.batch) for s in steps) <= node_limit:
+                batch, queue = queue.take(slice(0, at_once)), queue.take(slice(at_once, None))
+                steps.append(BoxStep(form, batch, rule, heuristics, together))
+            children, small, seen = steps[0].finish(node_limit - looked)
+            del steps[0]
+            looked += seen
+            if len(small):
+                stuck = Boxes.joined([stuck, small])
+            if len(children):
+                fresh.append(children)
+    finally:
+        for step in steps:
+            step.stop()
+    left = Boxes.joined([*(s.batch for s in steps), queue, *fresh, stuck])
     left = left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0)
     return TreeOutcome(left, looked, given_up=given_up)
-
-
-def further(
-    form: Formulation,
-    batch: Boxes,
-    rule: TabledPruningRule,
-    heuristics: PrimalHeuristics,
-    node_limit: float,
-    together: RelaxedBoxes | None = None,
-) -> tuple[Boxes, Boxes, int]:
-    """Tighten boxes, look for designs in them and split them.
-
-    Parameters
-    ----------
-    form, rule
-        As for :func:`branch_and_bound`.
-    batch : Boxes
-    heuristics : PrimalHeuristics
-    node_limit : float
-        Boxes that may be looked into.
-    together : RelaxedBoxes, optional
-        As for :func:`branch_and_bound`.
-
-    Returns
-    -------
-    tuple
-        What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
-    """
-    looked, none = len(batch), batch.take(slice(0, 0))
-    batch = of_use(form, rule, batch, heuristics.every_goal)
-    if together is not None and len(batch):
-        batch = together.tighten(batch, rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell))
-        batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
-    if not len(batch):
-        return none, none, looked
-    heuristics.look(batch)
-    stuck = []
-    for _ in range(2 if together is None and len(batch) < form.tuning.tree.small_batch else 1):
-        # A small batch costs as much as a larger one, so that it is split twice at once.
-        batch, small = form.boxes.split(batch)
-        if len(small):
-            stuck.append(left_open(form, small, rule, heuristics))
-    alone = together is None and not heuristics.every_goal
-    grown = _grown(form, batch, rule, heuristics, node_limit - looked) if alone else None
-    if grown is not None:
-        looked += grown.looked
-        batch = grown.halves
-        if len(grown.small):
-            stuck.append(left_open(form, grown.small, rule, heuristics))
-    return batch, Boxes.joined(stuck) if stuck else none, looked
-
-
-def _grown(
-    form: Formulation, boxes: Boxes, rule: TabledPruningRule, heuristics: PrimalHeuristics, node_limit: float
-) -> Subtrees | None:
-    """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
-    levels = form.tuning.tree.generations
-    if not len(boxes) or not heuristics.content or len(boxes) << levels > node_limit:
-        return None
-    tables = rule.tables(form)
-    return None if tables is None else form.boxes.grow(boxes, tables, levels)
 
 
 def best(

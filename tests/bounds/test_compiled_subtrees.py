@@ -89,7 +89,7 @@ def test_one_generation_is_a_single_step(kind, grid):
     rule = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, rule, 9)
     assert len(boxes) > 20
-    grown = form.boxes.grow(boxes, rule.tables(form), 1)
+    grown = form.boxes.grow(boxes, rule.tables(form), 1).subtrees()
     halves, small = by_single_steps(form, rule, boxes, 1)
     np.testing.assert_allclose(in_order(grown.halves), in_order(halves), rtol=1e-9)
     np.testing.assert_allclose(in_order(grown.small), in_order(small), rtol=1e-9)
@@ -102,7 +102,7 @@ def test_generations_are_about_those_of_single_steps(kind, grid):
     form = strut_form(grid, AT_ONCE)
     rule = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, rule, 9)
-    grown = form.boxes.grow(boxes, rule.tables(form), 4)
+    grown = form.boxes.grow(boxes, rule.tables(form), 4).subtrees()
     halves, small = by_single_steps(form, rule, boxes, 4)
     # Caps differ in their last digit, and with them what is split of two that blur a box as much.
     assert len(grown.halves) == pytest.approx(len(halves), rel=0.02)
@@ -130,7 +130,7 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     form, rng = strut_form(tuning=at_once(sizes)), np.random.default_rng(3)
     rule = purpose_of(kind, form, rng)
     boxes = after(form, rule, 4)
-    grown = form.boxes.grow(boxes, rule.tables(form), 6)
+    grown = form.boxes.grow(boxes, rule.tables(form), 6).subtrees()
     points, combinations, phi = designs_of(form, rng, 60_000)
     # Of use: better than what is known, by the slack and a little.
     useful = rule.possible_gain(phi) > 10 * TIE
@@ -170,7 +170,7 @@ def test_threads_change_nothing():
         rule = purpose_of("front", form, np.random.default_rng(5))
         boxes = after(form, rule, 9)
         assert len(boxes) > 64
-        found.append(form.boxes.grow(boxes, rule.tables(form), 3))
+        found.append(form.boxes.grow(boxes, rule.tables(form), 3).subtrees())
     one, three = found
     assert one.looked == three.looked > len(boxes)
     for name in ("cell", "low", "high", "bounds", "tag"):
@@ -182,7 +182,7 @@ def test_boxes_carry_the_question_they_belong_to():
     rule = purpose_of("front", form, np.random.default_rng(5))
     boxes = after(form, rule, 6)
     boxes.tag[:] = np.arange(len(boxes))
-    grown = form.boxes.grow(boxes, rule.tables(form), 2)
+    grown = form.boxes.grow(boxes, rule.tables(form), 2).subtrees()
     own = boxes.take(grown.halves.tag)
     assert len(set(grown.halves.tag.tolist())) > 1
     assert np.all(grown.halves.low >= own.low - 1e-9)

@@ -12,7 +12,7 @@ from functools import partial
 import pytest
 
 from synth import deadline
-from synth.compiled.threads import side_by_side
+from synth.compiled.threads import SideBySide, side_by_side
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 8])
@@ -42,6 +42,49 @@ def test_an_error_of_a_part_is_raised_once_nothing_is_under_way_any_more(wrong: 
         side_by_side([partial(part, k) for k in range(20)], 2)
     assert not under_way
     assert len(begun) < 20
+
+
+def test_parts_go_on_beside_the_caller_until_it_asks() -> None:
+    begun, go_on = threading.Event(), threading.Event()
+
+    def part() -> bool:
+        begun.set()
+        return go_on.wait(30.0)
+
+    work = SideBySide([part, lambda: True], 2)
+    assert begun.wait(30.0)  # nobody has asked yet
+    go_on.set()
+    assert work.results() == [True, True]
+
+
+def test_one_thread_alone_begins_when_it_is_asked() -> None:
+    begun = list[int]()
+    work = SideBySide([partial(begun.append, k) for k in range(3)], 1)
+    time.sleep(0.05)
+    assert not begun
+    work.results()
+    assert begun == [0, 1, 2]
+
+
+def test_what_is_stopped_begins_nothing_more_and_leaves_nothing_under_way() -> None:
+    under_way, begun, first = set[int](), list[int](), threading.Event()
+
+    def part(k: int) -> None:
+        begun.append(k)
+        under_way.add(k)
+        first.set()
+        time.sleep(0.05)
+        under_way.discard(k)
+
+    work = SideBySide([partial(part, k) for k in range(50)], 2)
+    assert first.wait(30.0)
+    work.stop()
+    assert not under_way
+    number = len(begun)
+    assert 0 < number < 50
+    time.sleep(0.1)
+    assert len(begun) == number
+    work.stop()  # again: nothing happens
 
 
 def test_several_callers_share_threads_without_waiting_for_each_other_for_ever() -> None:

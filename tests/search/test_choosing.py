@@ -49,8 +49,8 @@ TWO, NARROW, THREE = ["mass", "flexibility"], ["mass", "width"], ["mass", "flexi
     ("objectives", "share", "node_limit", "noted"),
     [
         (TWO, 0.1, 5000, False),
-        (TWO, 0.1, 12_000, True),
-        (TWO, 0.3, 4700, True),
+        (TWO, 0.1, 10_000, True),
+        (TWO, 0.3, 4500, True),
         (NARROW, 1e-6, 1000, True),
         (THREE, 0.8, 2000, False),
     ],
