@@ -20,6 +20,9 @@ from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, 
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.compiled.threads import SideBySide, side_by_side
 
+# At least four times as many boxes as compiled code has at hand at once.
+MOST_AT_HAND = 256
+
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
     "column",
@@ -218,14 +221,16 @@ class SubtreeCode:
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
 
         def grown(first: int, last: int) -> tuple[Boxes, np.ndarray, int]:
-            capacity = sizes.tree_room * (last - first) + sizes.tree_beside
+            count = last - first
+            # No more than all halves of the last generation come back, and there is room for those at hand.
+            capacity = min(sizes.tree_room * count + sizes.tree_beside, (count << levels) + MOST_AT_HAND)
             taken = room(boxes, capacity) | {"too_small": np.empty(capacity, dtype=bool)}
             written = {name: a.ctypes.data for name, a in taken.items()}
             tree = _TreeStructure(capacity=capacity, **numbers, **places, **written)
             kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
             if kept < 0:
                 raise MemoryError
-            return *_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted)
+            return *_taken(taken, kept, boxes.scores.shape[1], len(ends) == 1), int(tree.contracted)
 
         return Growth(SideBySide([partial(grown, *own) for own in ends], workers), (halves, fixed))
 
@@ -260,8 +265,11 @@ class SubtreeCode:
         return both.take(np.tile(~too_small, 2)), boxes.take(too_small)
 
 
-def _taken(taken: dict[str, np.ndarray], kept: int, scores: int) -> tuple[Boxes, np.ndarray]:
-    """Return boxes, and which are too small: copies, so that what is kept holds no room that was there for more."""
-    own = {name.removeprefix("out_"): a[:kept].copy() for name, a in taken.items()}
+def _taken(taken: dict[str, np.ndarray], kept: int, scores: int, alone: bool) -> tuple[Boxes, np.ndarray]:
+    """Return boxes, and which are too small; what is kept holds no room that was there for more.
+
+    ``alone``: nothing is joined with them, which copies them as well.
+    """
+    own = {name.removeprefix("out_"): a[:kept].copy() if alone else a[:kept] for name, a in taken.items()}
     too_small = own.pop("too_small")
     return Boxes(scores=np.ones((kept, scores), dtype=np.float32), **own), too_small

@@ -147,6 +147,9 @@ static int by_place(const void *a, const void *b) {
 /* Puts what comes back into the order of where it comes from, so that it does not depend on what was done together. */
 static int in_order(const Batch *b, Tree *t, const long long *places, long long kept) {
     const long long factors = b->factors;
+    long long sorted = 1;
+    while (sorted < kept && places[sorted - 1] <= places[sorted]) sorted++;
+    if (sorted >= kept) return 1; /* as always after one generation */
     long long *order = malloc((kept + 1) * 2 * sizeof *order);
     double *ends = malloc((kept + 1) * sizeof *ends);
     int *cells = malloc((kept + 1) * (factors + 1) * sizeof *cells);
