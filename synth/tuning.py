@@ -130,7 +130,7 @@ class LevelLimits:
     stays_open: float = 0.5
     first: int = 5_000
     first_of_one: int = 5_000
-    before_looking_at_one: int = 500_000
+    before_looking_at_one: int = 40_000
     before_looking: int = 150_000
     picture: int = 8
     rounds: int = 8
