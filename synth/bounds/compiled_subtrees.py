@@ -20,7 +20,7 @@ from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, 
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.compiled.threads import SideBySide, side_by_side
 
-# At least four times as many boxes as compiled code has at hand at once.
+# Room for the boxes that compiled code takes at once: four registers of eight, both halves of each, and more than that.
 MOST_AT_HAND = 256
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
@@ -132,12 +132,10 @@ class Growth:
     ----------
     parts : SideBySide
         Each gives boxes, which of them are too small to be split, and how many were tightened.
-    read : Any
-        What the parts read by its address.
     """
 
-    def __init__(self, parts: SideBySide[tuple[Boxes, np.ndarray, int]], read: Any) -> None:
-        self._parts, self._read = parts, read
+    def __init__(self, parts: SideBySide[tuple[Boxes, np.ndarray, int]]) -> None:
+        self._parts = parts
         self._next: list[Callable[[Subtrees], Subtrees]] = []
 
     def then(self, changed: Callable[[Subtrees], Subtrees]) -> Growth:
@@ -220,7 +218,8 @@ class SubtreeCode:
         # must not depend on it.
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
 
-        def grown(first: int, last: int) -> tuple[Boxes, np.ndarray, int]:
+        def grown(first: int, last: int, read: Any) -> tuple[Boxes, np.ndarray, int]:
+            """Grow a part; ``read``: what its records have addresses of, which must not end before it does."""
             count = last - first
             # No more than all halves of the last generation come back, and there is room for those at hand.
             capacity = min(sizes.tree_room * count + sizes.tree_beside, (count << levels) + MOST_AT_HAND)
@@ -232,7 +231,7 @@ class SubtreeCode:
                 raise MemoryError
             return *_taken(taken, kept, boxes.scores.shape[1], len(ends) == 1), int(tree.contracted)
 
-        return Growth(SideBySide([partial(grown, *own) for own in ends], workers), (halves, fixed))
+        return Growth(SideBySide([partial(grown, *own, (halves, fixed)) for own in ends], workers))
 
     def split(self, prepared: Prepared, halves: Halves, boxes: Boxes, workers: int = 1) -> tuple[Boxes, Boxes]:
         """Split boxes by their scores.

@@ -46,14 +46,17 @@ class SideBySide(Generic[T]):
             self._run()
         finally:
             self.stop()
+        for other in self._beside:
+            if not other.cancelled():
+                other.result()
         return [self._found[k] for k in range(self._count)]
 
     def stop(self) -> None:
-        """Begin nothing more, and wait for what is under way."""
+        """Begin nothing more, and wait for what is under way, whatever becomes of it."""
         deque(self._waiting, maxlen=0)
         for other in self._beside:
             if not other.cancel():
-                other.result()
+                other.exception()
 
     def _run(self) -> None:
         try:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class BoxStep:
     """A batch of boxes under way; it has to be ended, by finishing it or without.
 
-    What designs must keep to be of use is read when it begins.
+    Where compiled code is at it, it goes by what designs must keep to be of use when it begins.
 
     Parameters
     ----------

@@ -87,6 +87,17 @@ def test_what_is_stopped_begins_nothing_more_and_leaves_nothing_under_way() -> N
     work.stop()  # again: nothing happens
 
 
+def test_what_fails_is_told_to_whoever_asks_and_to_nobody_else() -> None:
+    def part() -> None:
+        raise ValueError("a part")
+
+    for _ in range(20):  # whoever of the two threads takes the part
+        work = SideBySide([part, part, part], 2)
+        work.stop()
+    with pytest.raises(ValueError, match="a part"):
+        SideBySide([part, part, part], 2).results()
+
+
 def test_several_callers_share_threads_without_waiting_for_each_other_for_ever() -> None:
     def inner(k: int) -> int:
         return sum(side_by_side([partial(pow, k, j) for j in range(4)], 2))
