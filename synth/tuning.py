@@ -219,6 +219,9 @@ class TreeLimits:
         To find all designs where fewer are chosen than were asked for, beside what was looked into before.
     first_nodes : int
         For the design that comes first, and for each of the ends that it is measured by.
+    end_nodes : int
+        Boxes for the best in the other objectives among designs that are as good as an end in its own: what such a
+        sliver of everything holds is harder to find.
     first_share : float
         Of its score, by which a design must come nearer to the ideal to be looked for.
     first_gap : float
@@ -272,6 +275,7 @@ class TreeLimits:
     at_gap: float = 2.0
     fill: int = 100_000
     first_nodes: int = 100_000
+    end_nodes: int = 200_000
     first_share: float = 1e-3
     first_gap: float = 1e-4
     tie: int = 2_000

@@ -72,17 +72,17 @@ def first_is_listed(state: FrontState) -> bool:
 
 def _scale(state: FrontState) -> Scale:
     """Return the scale of the front: what is best in each objective, and what the others must cost then."""
-    form, m = state.form, state.task.m
+    form, m, limits = state.form, state.task.m, state.task.limits
     for k in range(m):
-        _least_in(state, k, np.full(len(form.goals), np.inf))
+        _least_in(state, k, np.full(len(form.goals), np.inf), limits.first_nodes)
     polish_extremes(form, m, float(state.rule.tolerance.max()))
     ideal = form.objectives.values_of(form.archive.phi[:, :m]).min(axis=0)
-    worst = _worst_at_ends(state, ideal)  # what comes first at an end is best in the others as well
+    worst = _worst_at_ends(state, ideal, limits.end_nodes)  # what comes first at an end is best in the others as well
     near = nearly(ideal, worst)
-    return Scale(ideal, np.maximum(near, _worst_at_ends(state, near)))
+    return Scale(ideal, np.maximum(near, _worst_at_ends(state, near, limits.first_nodes)))
 
 
-def _worst_at_ends(state: FrontState, ends: np.ndarray) -> np.ndarray:
+def _worst_at_ends(state: FrontState, ends: np.ndarray, node_limit: int) -> np.ndarray:
     """Return the most that each objective must be, for another one to be as good as its end (objectives, in SI)."""
     form, m = state.form, state.task.m
     phi, worst = form.objectives.phi_of(ends[None, :])[0], np.full(m, -np.inf)
@@ -91,11 +91,11 @@ def _worst_at_ends(state: FrontState, ends: np.ndarray) -> np.ndarray:
         cutoffs[k] = max(phi[k], float(form.archive.phi[:, k].min()))
         for j in range(m):
             if j != k:
-                worst[j] = max(worst[j], _least_in(state, j, cutoffs))
+                worst[j] = max(worst[j], _least_in(state, j, cutoffs, node_limit))
     return worst
 
 
-def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
+def _least_in(state: FrontState, k: int, cutoffs: np.ndarray, node_limit: int) -> float:
     """Return the least signed value of an objective that is found within cutoffs, which some known design keeps."""
     form, limits = state.form, state.task.limits
     phi = form.archive.phi
@@ -103,7 +103,7 @@ def _least_in(state: FrontState, k: int, cutoffs: np.ndarray) -> float:
     start = form.archive[int(within[np.argmin(phi[within, k])])]
     beaten = start.phi[k] > phi[:, k].min() or not np.isfinite(cutoffs).any()
     if beaten and not _is_least(state, k, cutoffs, start):
-        start = better_in(state, k, cutoffs, start, limits.first_nodes, limits.first_gap) or start
+        start = better_in(state, k, cutoffs, start, node_limit, limits.first_gap) or start
     return float(form.objectives.signed(k, start.phi[k]))
 
 
