@@ -119,7 +119,7 @@ class LevelLimits:
         where these are few.
     before_looking : int
         For all levels at which designs are to be looked for, before combinations are solved at them: a looking round
-        takes as long as a million.
+        takes as long as some millions.
     picture : int
         Levels of a rough picture of the front, beside so many as designs are asked for.
     rounds : int

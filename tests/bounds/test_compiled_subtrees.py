@@ -9,7 +9,7 @@ from synth.compiled.execution import Execution
 from synth.search.archive import Archive
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.tuning import TUNING, CodeSizes
-from tests.sample_problems.strut import designs_of, strut_form
+from tests.sample_problems.strut import designs_of, lost, strut_form
 from tests.tuned import tuned
 
 TIE = TUNING.tolerances.tie
@@ -109,19 +109,6 @@ def test_generations_are_about_those_of_single_steps(kind, grid):
     assert len(grown.small) == pytest.approx(len(small), rel=0.02)
 
 
-def lost(boxes, points, combinations, form):
-    """Tell which designs no box holds."""
-    held = np.zeros(len(points), dtype=bool)
-    digits = form.instance.combinations.digits(combinations)
-    for k in range(len(boxes)):
-        low, high = boxes.low[k, : form.n] - 1e-9, boxes.high[k, : form.n] + 1e-9
-        inside = np.all((points >= low) & (points <= high), axis=1)
-        for f, tree in enumerate(form.boxes.cells.trees):
-            inside &= np.isin(digits[f], tree.rows(int(boxes.cell[k, f])))
-        held |= inside
-    return ~held
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("room", [CodeSizes().tree_beside, 40])
 @pytest.mark.parametrize("kind", KINDS)
@@ -136,8 +123,8 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     useful = rule.possible_gain(phi) > 10 * TIE
     points, combinations = points[useful], combinations[useful]
     assert len(points) > 20
-    assert not lost(boxes, points, combinations, form).any()
-    assert not lost(Boxes.joined([grown.halves, grown.small]), points, combinations, form).any()
+    assert not lost(form, boxes, points, combinations).any()
+    assert not lost(form, Boxes.joined([grown.halves, grown.small]), points, combinations).any()
     assert len(grown.halves) + len(grown.small) <= len(boxes) * sizes.tree_room + room
 
 

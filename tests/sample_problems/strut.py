@@ -1,5 +1,6 @@
 """A small problem with one of everything, for tests of instances, results and elasticities."""
 
+import numpy as np
 import pandas as pd
 
 import synth
@@ -69,6 +70,18 @@ def designs_of(form, rng, count):
     combinations = rng.integers(form.instance.combinations.count, size=count)
     rows, phi = form.points.feasible_rows(points, combinations)
     return points[rows], combinations[rows], phi[rows]
+
+
+def lost(form, boxes, points, combinations):
+    """Tell which designs no box holds."""
+    held, digits = np.zeros(len(points), dtype=bool), form.instance.combinations.digits(combinations)
+    for k in range(len(boxes)):
+        low, high = boxes.low[k, : form.n] - 1e-9, boxes.high[k, : form.n] + 1e-9
+        inside = np.all((points >= low) & (points <= high), axis=1)
+        for f, tree in enumerate(form.boxes.cells.trees):
+            inside &= np.isin(digits[f], tree.rows(int(boxes.cell[k, f])))
+        held |= inside
+    return ~held
 
 
 def feasible_candidates(form, points, combinations):

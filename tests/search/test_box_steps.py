@@ -16,7 +16,7 @@ from synth.search.budget import Clock
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover
 from synth.tuning import TUNING
-from tests.sample_problems.strut import designs_of, strut_form
+from tests.sample_problems.strut import designs_of, lost, strut_form
 from tests.tuned import tuned
 
 pytestmark = pytest.mark.skipif(compiler.cache_folder() is None or compiler._compiler() is None, reason="no C compiler")
@@ -47,19 +47,11 @@ def cover(form, known=20):
     return EpsilonCover([0, 1], SLACK, np.full(len(form.goals), np.inf), archive)
 
 
-def lost(form, rule, boxes):
+def missed_of_use(form, rule, boxes):
     """Return how many random designs of use no box holds, and how many there are of use."""
     points, combinations, phi = designs_of(form, np.random.default_rng(9), 20_000)
     useful = rule.possible_gain(phi) > 10 * TUNING.tolerances.tie
-    points, combinations = points[useful], combinations[useful]
-    held, digits = np.zeros(len(points), dtype=bool), form.instance.combinations.digits(combinations)
-    for k in range(len(boxes)):
-        low, high = boxes.low[k, : form.n] - 1e-9, boxes.high[k, : form.n] + 1e-9
-        inside = np.all((points >= low) & (points <= high), axis=1)
-        for f, tree in enumerate(form.boxes.cells.trees):
-            inside &= np.isin(digits[f], tree.rows(int(boxes.cell[k, f])))
-        held |= inside
-    return int((~held).sum()), len(points)
+    return int(lost(form, boxes, points[useful], combinations[useful]).sum()), int(useful.sum())
 
 
 def tree(form, rule, clock=None, **more):
@@ -74,7 +66,7 @@ def test_a_tree_that_ends_early_leaves_open_what_may_be_of_use(workers, node_lim
     form = posed(workers)
     rule = cover(form)
     outcome = tree(form, rule, node_limit=node_limit)
-    missed, useful = lost(form, rule, outcome.open)
+    missed, useful = missed_of_use(form, rule, outcome.open)
     assert missed == 0
     assert useful > 20
 
@@ -93,7 +85,7 @@ def test_so_does_one_that_is_given_up(more):
     rule = cover(form)
     outcome = tree(form, rule, **more)
     assert outcome.full or outcome.given_up
-    missed, useful = lost(form, rule, outcome.open)
+    missed, useful = missed_of_use(form, rule, outcome.open)
     assert missed == 0
     assert useful > 0
 
@@ -119,7 +111,7 @@ def test_whatever_stops_a_tree_its_clock_holds_what_is_open_and_nothing_is_under
     monkeypatch.setattr(PrimalHeuristics, "look", look)
     with pytest.raises(Stopped):
         tree(form, rule, clock)
-    missed, useful = lost(form, rule, Boxes.joined(clock.open))
+    missed, useful = missed_of_use(form, rule, Boxes.joined(clock.open))
     assert missed == 0
     assert useful > 20
     assert len(steps) > after
