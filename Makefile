@@ -1,4 +1,4 @@
-# make demo, make check, make test, make thorough, make lint, make mechanics, make picture, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make kernels, make mechanics, make picture, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/operating_system.py
 
-.PHONY: demo check test thorough lint mechanics picture gallery lock clean
+.PHONY: demo check test thorough lint kernels mechanics picture gallery lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -37,6 +37,10 @@ lint: $(DEV)
 	$(BIN)/mypy
 	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32 --follow-imports skip $(DIFFERENT)
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin --follow-imports skip $(DIFFERENT)
+
+# Headers of the C kernels, from the operations in Python; a test compares them.
+kernels: $(DEV)
+	$(BIN)/python -m tests.kernels.headers
 
 # The page of the formulas, from their docstrings; a test compares it.
 mechanics: $(DEV)

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from problems.practice import UNSOURCED
 from synth.declaration import Block, Declaration, Part, Requirement
+
+from .practice import UNSOURCED
 
 UNIT_COST = "unit_cost"
 SQUARE_DECIMETRE = 1e-2  # m2, for which unit_cost of a lining is given
@@ -52,7 +53,7 @@ class LiningCostWeights(CostWeights):
         lower=0,
         upper=1e6,
         symbol="c_lin",
-        text=f"Cost of an area of lining whose relative_cost is 1 ({UNSOURCED})",
+        text=f"Cost of an area of lining whose relative cost is 1 ({UNSOURCED})",
         source=UNSOURCED,
     )
 
@@ -120,7 +121,7 @@ def declare_cost(
             "m2",
             SQUARE_DECIMETRE,
             symbol="A_1",
-            text="Square decimetre, for which unit_cost of a lining is given",
+            text="Square decimetre, for which unit cost of a lining is given",
             source="definition",
         )
         class_of = part.filled("relative_cost", NONE)
@@ -132,7 +133,7 @@ def declare_cost(
         d.advise(
             "cost_class_unknown",
             np.logical_and(class_of <= NONE, own <= NONE),
-            f"cost counts the lining like a moulded one: table {part.table} says neither relative_cost nor unit_cost",
+            f"cost counts the lining like a moulded one: table {part.table} says neither relative cost nor unit cost",
             source=UNSOURCED,
         )
     for one in special:
@@ -148,7 +149,7 @@ def declare_cost(
             "-",
             added,
             symbol=f"C_{one.name}",
-            text=f"What is added for {one.name}, which cost other than plain steel",
+            text=f"What is added for {one.name.replace('_', ' ')}, which cost other than plain steel",
             source=UNSOURCED,
         )
         cost = cost + added

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
 from synth.drawing import Area, Drawable, Line, LineKind, rectangle
+from synth.errors import InputError
 
 MM = 1e3  # from SI
 NEIGHBOURS = "Double-dot-dash lines are neighbours and envelopes: room that the model reckons with, no shapes."
@@ -32,14 +34,21 @@ class Sizes:
         return MM * self.number(name)
 
     def number(self, name: str) -> float:
-        """Return a quantity in SI."""
+        """Return a quantity in SI.
+
+        Raises
+        ------
+        InputError
+            The table of a part has no number there: a user's own may lack what nothing but the drawing reads.
+        """
         slot, _, column = name.partition(".")
         if column:
-            return float(self.design.parts[slot][column])
+            part = self.design.parts[slot]
+            return _there(part.get(column), f"table {part['table']}, row {part}, column {column}")
         for numbers in (self.design.values, self.spec):
             if numbers.get(name) is not None:
                 return float(numbers[name])
-        return float(self.design.steps[name])
+        return _there(self.design.steps[name], name)
 
     def count(self, name: str) -> int:
         """Return a number of things."""
@@ -48,6 +57,13 @@ class Sizes:
     def part(self, slot: str) -> str:
         """Return the designation of the row that fills a slot; empty without such a slot."""
         return str(self.design.parts[slot]) if slot in self.design.parts else ""
+
+
+def _there(value: Any, name: str) -> float:
+    """Return a number that a drawing shows."""
+    if value is None or math.isnan(value):
+        raise InputError(name, None, "a number, which the drawing shows")
+    return float(value)
 
 
 def ring(x0: float, x1: float, inner: float, outer: float, item: int) -> Area:

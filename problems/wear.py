@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from problems.mechanics import wear as wear_formulas
-from problems.sources import DRIVE
 from synth.declaration import Declaration, Part, Requirement
+
+from .mechanics import wear as wear_formulas
+from .sources import DRIVE
 
 WEAR_LIFE = "wear_life"
 DEPTH, RATE = "wearable_depth", "wear_rate"

@@ -8,10 +8,14 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from reports.about import About
-from reports.drawing.files import svg_of
-from reports.front_report import FrontReportRequest, first_design
-from reports.sheet.blocks import (
+from synth.plain_text import counted, printable, words
+from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
+from synth.text.numbers import gap_text, page_text, percent, thousands
+
+from .about import About
+from .drawing.files import svg_of
+from .front_report import FrontReportRequest, first_design
+from .sheet.blocks import (
     Block,
     Bullets,
     Cell,
@@ -27,9 +31,7 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import front_state
-from synth.plain_text import counted, percent, plain_number, printable, thousands, words
-from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
+from .sheet.design_sheet import front_state
 
 AT_WORK = {
     "open": "it waits to be worked at",
@@ -75,7 +77,7 @@ def row_name(batch: BatchRecord, row: BatchRow) -> str:
 
 def short_reason(row: BatchRow) -> str:
     """Return why a row has no design in a few words, where it is told at length elsewhere."""
-    if row.status == "infeasible" and row.causes:
+    if row.status in ("infeasible", "not_found") and row.causes:
         return f"misses {', '.join(map(words, row.causes))}"
     return row.reason
 
@@ -106,7 +108,7 @@ def _state(batch: BatchRecord) -> State:
         return State("open", f"{thousands(found)} of {every} {have}, {thousands(rows - found)} NOT", told)
     if counts.get("feasible"):
         return State("open", f"{'The row' if rows == 1 else 'All rows'} {have}, not all PROVEN", told)
-    gap = percent(float(batch.settings.get("gap") or 0))
+    gap = gap_text(float(batch.settings.get("gap") or 0))
     return State("good", f"{'The row has' if rows == 1 else 'All rows have'} designs, proven to {gap}", told)
 
 
@@ -138,9 +140,7 @@ def _counted(batch: BatchRecord) -> list[Block]:
         values = sorted(x for row in batch.rows if (x := row.objectives[k]) is not None)
         if values:
             told = (values[0], statistics.median(values), values[-1])
-            spread.append(
-                TableRow((_heading(heading), thousands(len(values)), *(plain_number(value) for value in told)))
-            )
+            spread.append(TableRow((_heading(heading), thousands(len(values)), *(page_text(value) for value in told))))
     if spread:
         blocks.append(TableBlock.of("The best design of each row", SPREAD_COLUMNS, spread))
     return blocks
@@ -166,7 +166,7 @@ def _causes(batch: BatchRecord) -> list[Block]:
 
 
 def _way(status: str) -> str:
-    return "limit" if status == "infeasible" else "column"
+    return "limit" if status in ("infeasible", "not_found") else "column"
 
 
 def _heading(text: str) -> str:
@@ -218,7 +218,7 @@ def _size_range(batch: BatchRecord) -> list[Block]:
     serve = "variant serves" if count == 1 else "variants serve"
     sentences: list[Cell] = [f"{thousands(count)} {serve} all rows that have designs."]
     if isinstance(excess, (int, float)):
-        amount = plain_number(float(excess)) + ("" if unit == "-" else f" {unit}")
+        amount = page_text(float(excess)) + ("" if unit == "-" else f" {unit}")
         over = words(str(told.get("objective", "")))
         sentences.append(f"Over each row's own best they exceed the {over} by {amount} in all rows together.")
     proven = "proven" if told.get("fewest_proven") else "not proven to be the fewest"
@@ -237,7 +237,7 @@ def _size_range(batch: BatchRecord) -> list[Block]:
 
 def _told_cell(cell: str) -> str:
     number = _number(cell)
-    return _short(cell, LONGEST_NAME) if number is None else plain_number(number)
+    return _short(cell, LONGEST_NAME) if number is None else page_text(number)
 
 
 def _number(cell: str) -> float | None:
@@ -345,7 +345,7 @@ def _shares(counts: Mapping[str, int], most: int) -> dict[str, int]:
 
 def _asked(batch: BatchRecord) -> list[Block]:
     settings = batch.settings
-    gap, sizes = percent(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
+    gap, sizes = gap_text(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
     told: list[Cell] = []
     if settings.get("objectives"):
         asked = settings["objectives"]
@@ -357,7 +357,7 @@ def _asked(batch: BatchRecord) -> list[Block]:
         f"At most {settings.get('points')} designs per row, gap {gap}, {sizes} sizes, seed {settings.get('seed')}"
     )
     if settings.get("time_limit"):
-        told.append(f"At most {plain_number(float(settings['time_limit']))} s per row: results depend on the machine")
+        told.append(f"At most {page_text(float(settings['time_limit']))} s per row: results depend on the machine")
     versions = ", ".join(f"{name} {version}" for name, version in batch.versions.items())
     digests: list[Cell] = [said(f"{name}: ", Code(_short(value, LONGEST_NAME))) for name, value in batch.hashes.items()]
     return [

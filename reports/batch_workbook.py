@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from reports.about import About
-from reports.batch_report import batch_state
-from reports.excel_sheets import Book
 from synth.results.batch_record import FAILURES, BatchRecord, BatchRow
+
+from .about import About
+from .batch_report import batch_state
+from .excel_sheets import Book
 
 ASKED = "--xlsx"
 LEADING = (("line", 8), ("row", 14), ("family", 22), ("state", 14), ("designs", 9))

@@ -7,14 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from reports.about import About
-from reports.front_plot import front_file
-from reports.numbers import printed, shown
-from reports.reasons import significant
-from reports.sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
-from reports.sheet.design_sheet import program_name
 from synth.plain_text import words
 from synth.results import ParetoFront
+from synth.results.ratings import DesignRating
+from synth.text.numbers import page_text
+
+from .about import About
+from .front_plot import front_file
+from .numbers import in_its_unit, printed
+from .sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
+from .sheet.design_sheet import program_name
 
 CLASS = re.compile(r' class="[a-z]+"')
 LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
@@ -117,13 +119,16 @@ def _ranked(
         Column("family", width=2),
     ]
     columns += [Column(name.replace("_", " "), number=True, width=1.2) for name in content["objectives"]]
+    rated = any(x.get("robust") for x in designs)
+    columns += [Column("over the range", width=1)] if rated else []
     columns.append(Column("note", width=0.8))
     rows = []
     for x in designs:
         family = x["family"]
         place = f"{links[family]}#design-{x['own_rank']}"
         named = Link(f"{titles[family]} #{x['own_rank']}", place)
-        score = "" if x["score"] is None else significant(float(x["score"]), 4)
-        values = [printed(shown(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
-        rows.append(TableRow((f"#{x['rank']}", score, named, *values, words(str(x.get("note") or "")))))
+        score = page_text(x["score"])
+        values = [printed(in_its_unit(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
+        verdict = [str(DesignRating.read(x.get("robust") or {}).verdict or "not rated")] if rated else []
+        rows.append(TableRow((f"#{x['rank']}", score, named, *values, *verdict, words(str(x.get("note") or "")))))
     return TableBlock.of("Designs of all families that no other one beats, the best rank first", columns, rows)

@@ -9,8 +9,9 @@ from collections.abc import Container, Mapping, Sequence
 from datetime import datetime
 from typing import Any, TypeAlias
 
-from reports.extras import needed
 from synth.plain_text import printable
+
+from .extras import needed
 
 Result: TypeAlias = float | str | bool
 

@@ -8,31 +8,34 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from reports.about import About
-from reports.batch_report import batch_report
-from reports.batch_workbook import batch_workbook
-from reports.comparison_report import comparison_report
-from reports.drawing.bodies import glb_of, left_out, round_areas, step_of
-from reports.drawing.files import dxf_of, svg_of
-from reports.explorer.comparison import comparison_record
-from reports.explorer.page import explorer_page
-from reports.explorer.record import explorer_record
-from reports.front_report import FrontReportRequest, front_report
-from reports.sheet.blocks import Document
-from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet, program_name
-from reports.sheet.html import html
-from reports.sheet.pdf import pdf_with_notes
-from reports.sheet.record import sheet_record
-from reports.workbook import live_workbook
-from reports.workbook_front import front_workbook
 from synth.drawing import Drawing
-from synth.errors import InputError
-from synth.results import Design, ParetoFront, foremost
+from synth.errors import ExtraNeededError, InputError
+from synth.results import Design, ParetoFront, foremost, named_designs
 from synth.results.batch_record import BatchRecord
 from synth.results.calculation import Calculation
 
+from .about import About
+from .batch_report import batch_report
+from .batch_workbook import batch_workbook
+from .comparison_report import comparison_report
+from .drawing.bodies import glb_of, left_out, round_areas, step_of
+from .drawing.files import dxf_of, svg_of
+from .explorer.comparison import comparison_record
+from .explorer.page import explorer_page
+from .explorer.record import explorer_record
+from .extras import Formats
+from .front_report import FrontReportRequest, front_report
+from .sheet.blocks import Document
+from .sheet.design_sheet import LENGTHS, SheetRequest, design_sheet, over_range_in_words, program_name
+from .sheet.html import html
+from .sheet.pdf import pdf_with_notes
+from .sheet.record import sheet_record
+from .workbook import live_workbook
+from .workbook_front import front_workbook
+
 FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf", "step", "glb")
 BODIES = {"step": step_of, "glb": glb_of}  # of what is round in drawings
+Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
 MAKERS: Mapping[str, Callable[..., str | bytes]] = {"svg": svg_of, "dxf": dxf_of, **BODIES}  # of drawings
 
 
@@ -85,8 +88,8 @@ class ReportRequest:
     curves: Sequence[str] = ()
 
 
-def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return the files of a report by name, and what else is to be told.
+def report_files(asked: Mapping[str, Any]) -> Made:
+    """Return the files of a report by name, what else is to be told, and which extras lack for more files.
 
     Parameters
     ----------
@@ -96,8 +99,7 @@ def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list
     Raises
     ------
     InputError
-        Something asked is unknown, a design is not on the front, a record differs from its formulas, or an extra is
-        not installed.
+        Something asked is unknown, a design is not on the front, or a record differs from its formulas.
     """
     told = dict(asked)
     about = About.of(told.pop("about", None), told.pop("about_folder", None))
@@ -110,8 +112,8 @@ def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list
     return _Files(request).all()
 
 
-def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return the files of the report of several families, and what else is to be told.
+def comparison_files(asked: Mapping[str, Any]) -> Made:
+    """Return the files of the report of several families, what else is to be told, and which extras lack.
 
     Parameters
     ----------
@@ -122,17 +124,18 @@ def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], 
     about = About.of(asked.get("about"), asked.get("about_folder"))
     content, fronts, links = asked["content"], asked["fronts"], asked["links"]
     document = comparison_report(content, fronts, links, about)
-    files, notes = documents({"report": document}, asked["formats"], asked["fonts"])
+    formats = Formats(asked["formats"])
+    files, notes = documents({"report": document}, formats, asked["fonts"])
     if "explorer" in asked["formats"]:
         beside = {family: file for family, file in links.items() if "explorer" not in file}
         calculations, drawings = asked["calculations"], asked["drawings"]
         record = comparison_record(content, fronts, calculations, about=about, links=beside, drawings=drawings)
         files["explorer.html"] = explorer_page(record)
-    return files, notes
+    return files, notes, formats.lacking
 
 
-def batch_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return the files of the report of a batch, and what else is to be told.
+def batch_files(asked: Mapping[str, Any]) -> Made:
+    """Return the files of the report of a batch, what else is to be told, and which extras lack for more files.
 
     Parameters
     ----------
@@ -142,22 +145,23 @@ def batch_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[
     """
     batch: BatchRecord = asked["batch"]
     about = About.of(asked.get("about"), asked.get("about_folder"))
-    files, notes = documents({"report": batch_report(batch, about)}, asked["formats"], asked["fonts"])
-    if "xlsx" in asked["formats"]:
+    formats = Formats(asked["formats"])
+    files, notes = documents({"report": batch_report(batch, about)}, formats, asked["fonts"])
+    if formats.make("xlsx"):
         files["batch.xlsx"] = batch_workbook(batch, about)
-    return files, notes
+    return files, notes, formats.lacking
 
 
 def documents(
-    made: Mapping[str, Document], formats: Sequence[str], fonts: Sequence[Path]
+    made: Mapping[str, Document], formats: Formats, fonts: Sequence[Path]
 ) -> tuple[dict[str, str | bytes], list[str]]:
     """Return documents as files of the formats asked for, by name without ending, and what else is to be told."""
     files: dict[str, str | bytes] = {}
     notes: list[str] = []
     for name, document in made.items():
-        if "html" in formats:
+        if formats.make("html"):
             files[f"{name}.html"] = html(document)
-        if "pdf" in formats:
+        if formats.make("pdf"):
             files[f"{name}.pdf"], told = pdf_with_notes(document, fonts)
             notes += [note for note in told if note not in notes]
     return files, notes
@@ -165,12 +169,16 @@ def documents(
 
 class _Files:
     def __init__(self, request: ReportRequest) -> None:
-        self.request = request
+        self.request, self.formats = request, Formats(request.formats)
         self.files: dict[str, str | bytes] = {}
         self.notes: list[str] = []
 
-    def all(self) -> tuple[dict[str, str | bytes], list[str]]:
-        request = self.request
+    def all(self) -> Made:
+        self._make()
+        return self.files, self.notes, self.formats.lacking
+
+    def _make(self) -> None:
+        request, formats = self.request, self.formats
         if request.front is None:
             assert request.design is not None
             if "explorer" in request.formats:
@@ -178,12 +186,12 @@ class _Files:
                     "formats", "explorer", "the folder of a front with it: this is one design", ("formats",)
                 )
             self._sheet(request.design, request.name)
-            return self.files, self.notes
+            return
         front = request.front
         width = max(2, len(str(len(front.designs))))
-        chosen = chosen_by(front, request.chosen)
+        chosen = named_designs(front, request.chosen)
         names = {d.rank or 0: f"design_{d.rank:0{width}d}" for d in chosen}
-        kind = "html" if "html" in request.formats else "pdf" if "pdf" in request.formats else ""
+        kind = next((word for word in ("html", "pdf") if formats.make(word)), "")
         sheets = {rank: f"{name}_sheet.{kind}" for rank, name in names.items()} if kind else {}
         document = front_report(
             FrontReportRequest(
@@ -206,11 +214,10 @@ class _Files:
         self._document(document, "report")
         if "explorer" in request.formats:
             self.files["explorer.html"] = self._explorer(front, sheets, names)
-        if "xlsx" in request.formats:
+        if formats.make("xlsx"):
             self.files["designs.xlsx"] = front_workbook(front, request.calculation)
         for design in chosen:
             self._sheet(design, names[design.rank or 0])
-        return self.files, self.notes
 
     def _drawing_files(self, rank: int, name: str) -> dict[str, str]:
         """Return the names of the drawings of a design that are asked for, by what they are."""
@@ -218,7 +225,7 @@ class _Files:
         if drawing is None:
             return {}
         none = () if round_areas(drawing) else BODIES
-        words = [word for word in MAKERS if word in self.request.formats and word not in none]
+        words = [word for word in MAKERS if word not in none and self.formats.make(word)]
         return {word: f"{name}_drawing.{word}" for word in words}
 
     def _explorer(self, front: ParetoFront, sheets: Mapping[int, str], names: Mapping[int, str]) -> str:
@@ -239,7 +246,7 @@ class _Files:
         return explorer_page(record)
 
     def _document(self, document: Document, name: str) -> None:
-        files, notes = documents({name: document}, self.request.formats, self.request.fonts)
+        files, notes = documents({name: document}, self.formats, self.request.fonts)
         self.files |= files
         self.notes += [note for note in notes if note not in self.notes]
 
@@ -252,18 +259,19 @@ class _Files:
         if "json" in request.formats:
             content = sheet_record(request.calculation, design)
             self.files[f"{name}_sheet.json"] = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-        if "xlsx" in request.formats:
+        if self.formats.make("xlsx"):
             proven = "" if request.front is None else request.front.certificate.sentence()
             if design.robust:
-                worst = f"; over the range that scatters the worst limit is {design.robust.worst_limit}"
-                proven += f". NOMINAL POINT ONLY: this workbook does not compute what scatters{worst}"
+                proven += ". NOMINAL POINT ONLY: this workbook does not compute what scatters. "
+                proven += over_range_in_words(design)
             self.files[f"{name}_live.xlsx"] = live_workbook(
                 request.calculation, design, request.rows, request.about, proven
             )
         for word, file in self._drawing_files(design.rank or 0, name).items():
             told = design.frame.title, program_name(request.front), request.about
             self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
-        if drawing is not None and any(word in BODIES for word in request.formats):
+        bodies = [word for word in BODIES if word in request.formats]
+        if drawing is not None and bodies and (not round_areas(drawing) or any(map(self.formats.make, bodies))):
             self._tell_left_out(drawing)
 
     def _picture(self, design: Design, prefix: str = "drawing") -> str:
@@ -279,30 +287,3 @@ class _Files:
         note = f"STEP and glTF are without {names}: only parts that are round about the axis are bodies"
         if names and note not in self.notes:
             self.notes.append(note)
-
-
-def chosen_by(front: ParetoFront, words: Sequence[str]) -> list[Design]:
-    """Return the designs of a front that are named by rank, or as its knee.
-
-    Raises
-    ------
-    InputError
-        There is no such design.
-    """
-    found: dict[int, Design] = {}
-    for word in words:
-        if not front.designs and list(words) == ["1"]:
-            return []  # the default of a front that has none
-        text = str(word).strip()
-        known = {str(d.rank): d for d in front.designs}
-        knee = next((d for d in front.designs if "knee" in d.note), None)
-        known |= {} if knee is None else {"knee": knee}
-        if text not in known:
-            last = front.designs[-1].rank if front.designs else 0
-            right = (
-                f"a rank from 1 to {last}" + (" or knee" if "knee" in known else "") if last else "a front with designs"
-            )
-            raise InputError("design", text, right, ("design",))
-        design = known[text]
-        found[design.rank or 0] = design
-    return list(found.values())

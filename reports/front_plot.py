@@ -10,11 +10,12 @@ from html import escape
 from itertools import combinations, pairwise
 from typing import TypeAlias
 
-from reports.label_spots import Box, label_spots
-from reports.reasons import significant
 from synth.plain_text import printable, words
 from synth.results import Design, ParetoFront
+from synth.text.numbers import page_text
 from synth.units import from_si, unit_text
+
+from .label_spots import Box, label_spots
 
 MOST_PANELS = 3  # of objectives that are drawn in pairs
 LABELLED = 20  # designs up to which every point has its rank beside it
@@ -240,7 +241,7 @@ def _and(names: Sequence[str]) -> str:
 def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[int], linked: bool) -> str:
     columns = [drawn.values(n) for n in pair]
     x_axis, y_axis = (drawn.axis(n) for n in pair)
-    numbers = [significant(tick) for tick in y_axis.ticks]
+    numbers = [page_text(tick) for tick in y_axis.ticks]
     left = max(LEFT, BESIDE + LETTER * max(map(len, numbers)))
     width, height, top = WIDE - left - RIGHT, HIGH - TOP - BOTTOM, above + TOP
 
@@ -253,7 +254,7 @@ def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[i
     for tick in x_axis.ticks:
         x, _ = place(tick, y_axis.low)
         parts.append(_line(x, top, x, top + height))
-        parts.append(_text(x, top + height + 18, significant(tick), "middle"))
+        parts.append(_text(x, top + height + 18, page_text(tick), "middle"))
     for tick, number in zip(y_axis.ticks, numbers, strict=True):
         _, y = place(x_axis.low, tick)
         parts.append(_line(left, y, left + width, y))
@@ -300,7 +301,7 @@ def _ranks(
 
 
 def _said(axis: Axis, value: float) -> str:
-    return f"{axis.name} {significant(value)} {unit_text(axis.unit)}".strip()
+    return f"{axis.name} {page_text(value)} {unit_text(axis.unit)}".strip()
 
 
 def _line(x1: float, y1: float, x2: float, y2: float) -> str:
@@ -349,5 +350,5 @@ def front_in_words(front: ParetoFront) -> str:
         unit = front.frame.units[name]
         values = [float(from_si(d.objectives[name], unit)) for d in front.designs]
         best, worst = (min(values), max(values)) if sense == "min" else (max(values), min(values))
-        told.append(f"{name} from {significant(best)} to {significant(worst)} {unit_text(unit)}".strip())
+        told.append(f"{name} from {page_text(best)} to {page_text(worst)} {unit_text(unit)}".strip())
     return f"{len(front.designs)} designs: {'; '.join(told)}"

@@ -8,12 +8,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from reports.about import About
-from reports.formula.layout import Amount, Letter
-from reports.front_plot import front_in_words, front_svg
-from reports.numbers import printed, shown
-from reports.reasons import BINDING, SIGN_OF, significant, why
-from reports.sheet.blocks import (
+from synth.feasibility import binds, most_used
+from synth.results import Design, ParetoFront, foremost
+from synth.results.calculation import Calculation, NamedQuantity
+from synth.results.plain import finite
+from synth.text.numbers import DIGITS, FULL_DIGITS, MINUS, gap_text, page_text, signed, used_share
+from synth.units import miss_text, unit_text
+
+from .about import About
+from .formula.layout import Amount, Letter
+from .front_plot import front_in_words, front_svg
+from .numbers import in_its_unit, printed
+from .reasons import SIGN_OF, why
+from .sheet.blocks import (
     Block,
     Bullets,
     Cell,
@@ -31,21 +38,17 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import (
+from .sheet.design_sheet import (
     DRAWN,
     DRAWN_ALT,
     front_details,
     front_state,
     next_in_tables,
-    percent,
+    over_range_in_words,
     program_name,
 )
-from synth.results import Design, ParetoFront, foremost
-from synth.results.calculation import Calculation, NamedQuantity
-from synth.results.plain import finite
-from synth.units import unit_text
 
-SCORE = "score"
+SCORE, OVER_RANGE = "score", "over the range"
 PAGE = 86.0  # letters beside each other in a table
 LEFT_OUT = 40  # rows that are told one by one
 NEAR = 20  # near-equal designs that are listed
@@ -150,15 +153,17 @@ class _Report:
         told = self.front.explanation
         if not told:
             return []
-        blocks: list[Block] = [Heading("Why", anchor="why"), Paragraph(str(told.message))]
+        blocks: list[Block] = [Heading("Why", anchor="why"), Paragraph(told.headline)]
         rows = []
         for miss in told.conflicts or ():
             unit = str(miss.unit or "-")
             sides = [
-                Amount(shown(float(side), unit)) if isinstance(side, float) else ""
+                Amount(in_its_unit(float(side), unit, FULL_DIGITS)) if isinstance(side, float) else ""
                 for side in (miss.value, miss.limit_value)
             ]
-            missed = percent(float(miss.missed_by)) if isinstance(miss.missed_by, float) else ""
+            missed = ""
+            if isinstance(miss.value, float) and isinstance(miss.limit_value, float):
+                missed = miss_text(miss.value, miss.limit_value, unit)
             rows.append(TableRow((Code(str(miss.limit)), *sides, missed), mark="bad"))
         if rows:
             blocks.append(TableBlock.of("Limits that the nearest design misses", MISSED_COLUMNS, rows))
@@ -195,7 +200,8 @@ class _Report:
         """Return the columns of the ranked table in groups that a page holds beside each other."""
         first, kinds = self.front.designs[0], self.frame.kinds
         sizes = [n for n, kind in kinds.items() if kind in ("variable", "count") and n not in self.frame.objectives]
-        names = [SCORE, *self.frame.objectives, *sizes, *first.choices, *first.parts]
+        rated = [OVER_RANGE] if any(d.robust for d in self.front.designs) else []
+        names = [SCORE, *rated, *self.frame.objectives, *sizes, *first.choices, *first.parts]
         groups: list[list[str]] = [[]]
         room = PAGE
         for name in names:
@@ -222,13 +228,15 @@ class _Report:
 
     def _ranked_cell(self, design: Design, name: str) -> str:
         if name == SCORE:
-            return "" if design.score is None else significant(design.score, 4)
+            return page_text(design.score)
+        if name == OVER_RANGE:
+            return str(design.robust.verdict or "not rated")
         if name in design.parts:
             return str(design.parts[name])
         if name in design.choices:
             return design.choices[name]
         return printed(
-            shown(design.values[name], "-" if name not in self.frame.units else self.frame.units[name]).bare()
+            in_its_unit(design.values[name], "-" if name not in self.frame.units else self.frame.units[name]).bare()
         )
 
     # -- one design ----------------------------------------------------------------------------
@@ -238,6 +246,8 @@ class _Report:
         blocks: list[Block] = [Heading(f"Design #{rank}", anchor=f"full-{rank}")]
         reason = why(self.front, design)
         blocks.append(Paragraph(reason[:1].upper() + reason[1:] + "."))
+        if design.robust:
+            blocks.append(Paragraph(over_range_in_words(design)))
         if rank in self.request.sheets:
             blocks.append(
                 Paragraph(said("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
@@ -286,7 +296,7 @@ class _Report:
             (
                 self._meaning(name),
                 self._symbol(name),
-                Amount(shown(design.values[name], self.frame.units[name])),
+                Amount(in_its_unit(design.values[name], self.frame.units[name])),
                 remark or Code(name),
             )
         )
@@ -294,20 +304,21 @@ class _Report:
     def _limits(self, design: Design) -> list[TableRow]:
         texts = {x.name: x.text for x in self.calculation.limits}
 
-        def order(name: str) -> tuple[int, float]:
-            used = design.utilisation.get(name)
-            return (0 if name in design.violated else 1 if used is not None else 2, -(used or 0.0))
-
+        known = most_used(design.utilisation)
+        ranked = [*known, *(name for name in design.limits if name not in known)]
         rows = []
-        for name in sorted(design.limits, key=order):
+        for name in sorted(ranked, key=lambda name: name not in design.violated):
             value, limit = design.limits[name]
             used, unit = design.utilisation.get(name), self.frame.limit_units.get(name, "-")
             bad, tight = (
                 name in design.violated,
-                (used or 0) >= BINDING and self.frame.limit_senses.get(name) != "equal",
+                binds(used, self.frame.limit_senses[name]),
             )
             verdict: Cell = Strong("VIOLATED") if bad else "holds" if used is not None else "not checked"
-            sides: list[Cell] = ["", ""] if used is None else [Amount(shown(x, unit)) for x in (value, limit)]
+            digits = FULL_DIGITS if bad else DIGITS
+            sides: list[Cell] = (
+                ["", ""] if used is None else [Amount(in_its_unit(x, unit, digits)) for x in (value, limit)]
+            )
             rows.append(
                 TableRow(
                     (
@@ -315,7 +326,7 @@ class _Report:
                         sides[0],
                         SIGN_OF[self.frame.limit_senses[name]],
                         sides[1],
-                        "" if used is None else percent(used),
+                        "" if used is None else used_share(used),
                         verdict,
                     ),
                     mark="bad" if bad else "tight" if tight else "",
@@ -341,7 +352,7 @@ class _Report:
         if not found:
             return []
         rows = [
-            TableRow((Code(name), Code(objective), f"{slope:+.2g} %"))
+            TableRow((Code(name), Code(objective), f"{_signed(slope)} %"))
             for _, objective, name, slope in found[:ELASTICITIES]
         ]
         return [
@@ -387,22 +398,21 @@ class _Report:
 
         def rows(quantities: Sequence[NamedQuantity]) -> tuple[TableRow, ...]:
             return tuple(
-                TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(values[q.name], q.unit)), Code(q.name)))
+                TableRow(
+                    (q.text or q.name, Letter(q.symbol), Amount(in_its_unit(values[q.name], q.unit)), Code(q.name))
+                )
                 for q in quantities
                 if q.name in values
             )
 
-        groups: list[tuple[str, tuple[TableRow, ...]]] = [("Stated", rows(typed))]
         options = tuple(
             TableRow((name, "", word, "stated" if name in self.frame.options else "default"))
             for name, word in self.calculation.options.items()
         )
-        groups += [("Options", options)] if options else []
-        groups += [("Assumed: defaults of the family", rows(usual))] if usual else []
-        blocks: list[Block] = [
-            Heading("The task", anchor="task"),
-            TableBlock("Requirements", VALUE_COLUMNS, tuple(groups)),
-        ]
+        told = (("Stated", rows(typed)), ("Options", options), ("Assumed: defaults of the family", rows(usual)))
+        groups = tuple(group for group in told if group[1])
+        blocks: list[Block] = [Heading("The task", anchor="task")]
+        blocks.append(TableBlock("Requirements", VALUE_COLUMNS, groups) if groups else Paragraph("No requirements."))
         if self.frame.not_asked:
             blocks.append(Paragraph(f"Not asked: {', '.join(self.frame.not_asked)}.", small=True))
         return blocks
@@ -423,10 +433,8 @@ class _Report:
         ):
             if settings.get(key):
                 told.append(f"{words}: {_in_words(settings[key])}")
-        gap, sizes = 100 * float(settings.get("gap") or 0), "makeable" if settings.get("grid") else "continuous"
-        told.append(
-            f"At most {settings.get('points')} designs, gap {gap:.3g} %, {sizes} sizes, seed {settings.get('seed')}"
-        )
+        gap, sizes = gap_text(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
+        told.append(f"At most {settings.get('points')} designs, gap {gap}, {sizes} sizes, seed {settings.get('seed')}")
         weights = settings.get("weights")
         if weights:
             told.append(f"Weights of the ranking: {_in_words(weights)}")
@@ -474,7 +482,7 @@ class _Report:
     def _again(self) -> list[Block]:
         record = self.front.record or {}
         versions = record.get("versions", {})
-        told: list[Cell] = [said("Checksum of front.json: ", Code(str(record.get("digest", "not saved yet"))))]
+        told: list[Cell] = [said("Checksum of the result: ", Code(self.front.result_digest))]
         told.append(said("Checksum of the calculation: ", Code(self.calculation.digest)))
         if versions:
             told.append("Computed with " + ", ".join(f"{name} {version}" for name, version in versions.items()))
@@ -503,15 +511,19 @@ def _plot_caption(front: ParetoFront) -> str:
     return words + "."
 
 
+def _signed(change: float) -> str:
+    return signed(change, 2).replace("-", MINUS)
+
+
 def _short(x: Any) -> Any:
-    """Return a cell of a table as JSON knows it, numbers in five digits."""
-    return float(f"{x:.5g}") if isinstance(x, float) and math.isfinite(x) else finite(x)
+    """Cell of a table as JSON knows it, numbers in seven digits."""
+    return float(f"{x:.7g}") if isinstance(x, float) and math.isfinite(x) else finite(x)
 
 
 def _near_row(row: Mapping[str, str]) -> TableRow:
     """Return a row of near_equals.csv: in what it differs, and by how much it is worse."""
     changes = [
-        f"{key.removeprefix('change: ').removesuffix(' [%]')} {float(value):+.2g} %"
+        f"{key.removeprefix('change: ').removesuffix(' [%]')} {_signed(float(value))} %"
         for key, value in row.items()
         if key.startswith("change: ") and value
     ]
@@ -523,7 +535,7 @@ def _in_words(value: Any) -> str:
         return ", ".join(f"{key} {_in_words(inner)}" for key, inner in value.items())
     if isinstance(value, (list, tuple)):
         return " and ".join(map(_in_words, value))
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return page_text(value, FULL_DIGITS) if isinstance(value, float) else str(value)
 
 
 def _spec_text(front: ParetoFront) -> str:

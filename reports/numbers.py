@@ -1,60 +1,28 @@
-"""Numbers as people read them: significant digits, powers of ten, units with raised exponents."""
+"""Numbers of reports with the units they are shown in."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from synth.text.numbers import DIGITS, STEP_DIGITS, Shown, shown
 from synth.units import from_si, parse_unit, unit_text
-from synth.units.for_people import RAISED
-
-DIGITS = 5  # significant, of what is shown
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A number: digits, a power of ten, and a unit in the grammar of specs (``N/mm2``; nothing for a bare number)."""
+class ShownQuantity:
+    """Number as it is shown, and its unit in the grammar of specs (``N/mm2``; nothing for a bare number)."""
 
-    text: str
-    exponent: int = 0
+    number: Shown
     unit: str = ""
 
-    def bare(self) -> Shown:
-        """Return it without its unit, which stands somewhere else."""
-        return replace(self, unit="")
+    def bare(self) -> ShownQuantity:
+        """The same without its unit, which stands somewhere else."""
+        return ShownQuantity(self.number)
 
     def plain(self) -> str:
-        """Return it as a line of text."""
-        power = f"e{self.exponent}" if self.exponent else ""
-        return f"{self.text}{power}" + (f" {self.unit}" if self.unit else "")
-
-
-def shown_number(value: float, digits: int = DIGITS, unit: str = "") -> Shown:
-    """Return a number with so many significant digits.
-
-    Examples
-    --------
-    >>> shown_number(1058.8235).text, shown_number(1.2566370614e-6), shown_number(30.0).text
-    ('1058.8', Shown(text='1.2566', exponent=-6, unit=''), '30')
-    """
-    unit = "" if unit == "-" else unit
-    if math.isnan(value):
-        return Shown("–")
-    if math.isinf(value):
-        return Shown("∞" if value > 0 else "-∞", 0, unit)
-    if value == 0:
-        return Shown("0", 0, unit)
-    if float(value).is_integer() and abs(value) < 1e6:
-        return Shown(str(int(value)), 0, unit)
-    mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
-    exponent = int(power)
-    if -4 <= exponent < 6:
-        return Shown(_trimmed(f"{value:.{max(0, digits - 1 - exponent)}f}"), 0, unit)
-    return Shown(_trimmed(mantissa), exponent, unit)
-
-
-def _trimmed(text: str) -> str:
-    return text.rstrip("0").rstrip(".") if "." in text else text
+        """Line of text as specs have it."""
+        return self.number.typed() + (f" {self.unit}" if self.unit else "")
 
 
 @dataclass(frozen=True)
@@ -65,7 +33,7 @@ class UnitIn:
 
     @staticmethod
     def formula(unit: str, in_si: bool = False) -> UnitIn:
-        """Return the unit in which a number is inserted into a formula.
+        """Unit in which a number is inserted into a formula.
 
         Angular speeds are inserted in rad/s and temperatures in K, so that the result is right as it stands.
         """
@@ -78,30 +46,34 @@ class UnitIn:
             return UnitIn("rad/s")
         return UnitIn("K") if read.offset else UnitIn(unit)
 
-    def shown(self, si: float, digits: int = DIGITS) -> Shown:
-        """Return an SI value in this unit."""
+    def shown(self, si: float, digits: int = STEP_DIGITS) -> ShownQuantity:
+        """SI value in this unit."""
         if self.unit in ("", "SI", "K", "rad/s"):
-            return shown_number(si, digits, "" if self.unit == "SI" else self.unit)
-        return shown_number(float(from_si(si, self.unit)), digits, self.unit)
+            return _shown(si, "" if self.unit == "SI" else self.unit, digits)
+        return _shown(float(from_si(si, self.unit)), self.unit, digits)
 
 
-def shown(si: float, unit: str, digits: int = DIGITS) -> Shown:
-    """Return an SI value in its declared unit.
+def in_its_unit(si: float, unit: str, digits: int = DIGITS) -> ShownQuantity:
+    """SI value in its declared unit; one that does not exist has none.
 
     Examples
     --------
-    >>> shown(26.6, "1/min").plain(), shown(0.18, "mm").plain(), shown(353.15, "degC").plain()
-    ('254.01 1/min', '180 mm', '80 degC')
+    >>> in_its_unit(26.6, "1/min").plain(), in_its_unit(0.18, "mm").plain(), in_its_unit(353.15, "degC").plain()
+    ('254 1/min', '180 mm', '80 degC')
     """
-    if unit in ("", "-"):
-        return shown_number(si, digits)
-    return replace(shown_number(float(from_si(si, unit)), digits), unit=unit)
+    return _shown(si, "", digits) if unit in ("", "-") else _shown(float(from_si(si, unit)), unit, digits)
 
 
-def printed(number: Shown) -> str:
-    """Return a number as a line of text for people: with a real minus sign, powers of ten and raised exponents."""
-    text = number.text.replace("-", "−")
-    if number.exponent:
-        text += f"·10{str(number.exponent).translate(RAISED)}"
-    unit = unit_text(number.unit)
-    return text + ("" if not unit else unit if unit == "°" else f" {unit}")
+def _shown(number: float, unit: str, digits: int) -> ShownQuantity:
+    return ShownQuantity(shown(None)) if math.isnan(number) else ShownQuantity(shown(number, digits), unit)
+
+
+def in_step(si: float, unit: str) -> ShownQuantity:
+    """SI value in its declared unit with the digits of calculation steps."""
+    return in_its_unit(si, unit, STEP_DIGITS)
+
+
+def printed(quantity: ShownQuantity) -> str:
+    """Line of text in the characters of sheets: number and unit, exponents raised."""
+    unit = unit_text(quantity.unit)
+    return quantity.number.page() + ("" if not unit else unit if unit == "°" else f" {unit}")

@@ -2,29 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from synth.plain_text import words
 from synth.results import Design, ParetoFront
+from synth.results.design import reached_limits
+from synth.text.numbers import percent
 
-BINDING = 0.999  # a limit used more than this decides something
 SIGN_OF = {"at_most": "≤", "at_least": "≥", "equal": "="}  # of a limit, by its sense
 EQUAL = 1e-9  # relative; objectives closer than this are the same
-
-
-def significant(value: float, digits: int = 5) -> str:
-    """Write a number with so many significant digits and without an exponent where people would not use one.
-
-    Examples
-    --------
-    >>> significant(13394.966), significant(1234567.0), significant(0.25), significant(math.nan)
-    ('13395', '1234567', '0.25', '')
-    """
-    if math.isnan(value):
-        return ""
-    text = f"{value:.{digits}g}"
-    return f"{value:.0f}" if "e" in text and 1 <= abs(value) < 1e12 else text
 
 
 def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
@@ -57,21 +43,12 @@ def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
         nearest = min(others, key=lambda d: _distance(front, design, d))
         clauses.append(f"against #{nearest.rank} next to it {_comparison(design, nearest, list(objectives))}")
     if limits:
-        met = binding(design)
+        met = reached_limits(design)
         clauses.append(f"at the limit of {', '.join(map(words, met))}" if met else "no limit is reached")
     if design.alternatives:
         others_like_it = "1 other" if len(design.alternatives) == 1 else f"{len(design.alternatives)} others"
         clauses.append(f"{others_like_it} with the same objectives")
     return "; ".join(clause for clause in clauses if clause)
-
-
-def binding(design: Design) -> list[str]:
-    """Return the limits that a design reaches."""
-    return [
-        name
-        for name, used in design.utilisation.items()
-        if used is not None and used >= BINDING and design.frame.limit_senses[name] != "equal"
-    ]
 
 
 def dear(design: Design, name: str) -> str:
@@ -109,7 +86,7 @@ def _comparison(design: Design, other: Design, names: Sequence[str]) -> str:
         if abs(difference) <= EQUAL * max(abs(mine), abs(theirs)):
             parts.append(f"the same {words(name)}")
             continue
-        size = f"{significant(100 * abs(difference / theirs), 2)} % " if theirs else ""
+        size = f"{percent(abs(difference / theirs), 2)} " if theirs else ""
         parts.append(f"{size}{'more' if difference > 0 else 'less'} {words(name)}")
     return " and ".join(parts) if len(parts) < 3 else ", ".join(parts)
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from reports.formula.layout import Fraction, Layout, Row, Sign, Typesetter, Word, textbook
-from reports.formula.plain import plain
-from reports.numbers import UnitIn
 from synth.plain_text import words
 from synth.results import Design
 from synth.results.calculation import CalculatedDesign, Calculation, NamedQuantity
 from synth.results.expression import Expression, in_force, names_in, value_of
 from synth.units import in_unit, unit_text
+
+from .formula.layout import Fraction, Layout, Row, Sign, Typesetter, Word, textbook
+from .formula.plain import plain
+from .numbers import UnitIn
 
 TIMES = " x "
 

@@ -10,13 +10,16 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from reports.reasons import binding, why
-from reports.sizing import sizing_line
-from synth.plain_text import alike, words, wrapped
+from synth.plain_text import words, wrapped
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
+from synth.results.design import reached_limits
 from synth.results.rating_tables import rating_row
+from synth.text.numbers import SHARE_DIGITS, column_texts
 from synth.units import finite_from_si, in_unit, unit_text
+
+from .reasons import why
+from .sizing import sizing_line
 
 SHOWN = 10  # designs on one screen
 EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something
@@ -159,11 +162,15 @@ def _number_columns(shown: Sequence[Design], names: Sequence[str], objectives: i
     """Return quantities as columns, behind the objectives the reserve of torque."""
     units = shown[0].frame.units
     columns = [
-        _column(words(n), unit_text(units[n]), alike([finite_from_si(d.values[n], units[n], None) for d in shown]))
+        _column(
+            words(n), unit_text(units[n]), column_texts([finite_from_si(d.values[n], units[n], None) for d in shown])
+        )
         for n in names
     ]
     if any(d.frame.sized_by for d in shown):
-        columns.insert(objectives, _column("torque reserve", "%", alike([_reserve(d) for d in shown], 1)))
+        columns.insert(
+            objectives, _column("torque reserve", "%", column_texts([_reserve(d) for d in shown], SHARE_DIGITS))
+        )
     return columns
 
 
@@ -178,7 +185,7 @@ def _side_by_side(shown: Sequence[Design], columns: Iterable[_Column], width: in
             room = width - ranks.width
         groups[-1].append(column)
         room -= column.width + BETWEEN
-    limits = [", ".join(map(words, binding(d))) or "no limit" for d in shown]
+    limits = [", ".join(map(words, reached_limits(d))) or "no limit" for d in shown]
     if room - BETWEEN < min(NARROWEST, max(map(len, limits))):
         groups.append([ranks])
         room = width - ranks.width

@@ -12,10 +12,12 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 from rich.text import Text
 
-from reports.front_plot import LABELLED, Axis, Drawn
-from reports.label_spots import Box, label_spots
-from synth.plain_text import one_line, plain_number, printable, words
+from synth.plain_text import one_line, printable, words
 from synth.results import Design
+from synth.text.numbers import number_text
+
+from .front_plot import LABELLED, Axis, Drawn
+from .label_spots import Box, label_spots
 
 WIDEST = 100  # characters of the whole plot
 ROWS, FEWEST_ROWS, MOST_ROWS = 16, 13, 19  # of the field: ordinarily, and as far as ticks may ask for others
@@ -100,7 +102,7 @@ def plot_lines(drawn: Drawn, width: int, signs: Signs) -> list[Text]:
     """
     first, second, *_ = drawn.objectives
     x_axis, y_axis = drawn.axis(first), drawn.axis(second)
-    told = [plain_number(tick) for tick in y_axis.ticks]
+    told = [number_text(tick) for tick in y_axis.ticks]
     margin = max(map(len, told)) + 1
     columns = width - margin - 1
     if columns < FEWEST:
@@ -162,7 +164,7 @@ def _below(axis: Axis, columns: int) -> tuple[set[int], str]:
     """Return the columns with ticks, and the line of their numbers from the corner on."""
     ticks, line = set(), ""
     for tick in axis.ticks:
-        column, text = round(axis.share(tick) * (columns - 1)), plain_number(tick)
+        column, text = round(axis.share(tick) * (columns - 1)), number_text(tick)
         # The line begins below the corner, one place left of the field.
         begin = min(max(column + 1 - len(text) // 2, 0), columns + 1 - len(text))
         if not line or begin >= len(line) + 2:

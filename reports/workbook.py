@@ -10,17 +10,19 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from reports.about import About
-from reports.excel_formula import from_si_text, number_text, to_si_text
-from reports.excel_sheets import Book, Sheet, cell
-from reports.workbook_cells import SAME, Cells, Formulas, RowsOffered, change, in_unit, legal_names
-from reports.workbook_limits import WIDTHS as LIMIT_WIDTHS
-from reports.workbook_limits import write_limits
-from reports.workbook_summary import WIDTHS as SUMMARY_WIDTHS
-from reports.workbook_summary import Objective, write_summary
 from synth.results import Design
 from synth.results.calculation import Calculation, NamedQuantity
+from synth.text.numbers import typed_number
 from synth.units import header
+
+from .about import About
+from .excel_formula import from_si_text, number_text, to_si_text
+from .excel_sheets import Book, Sheet, cell
+from .workbook_cells import SAME, Cells, Formulas, RowsOffered, change, in_unit, legal_names
+from .workbook_limits import WIDTHS as LIMIT_WIDTHS
+from .workbook_limits import write_limits
+from .workbook_summary import WIDTHS as SUMMARY_WIDTHS
+from .workbook_summary import Objective, write_summary
 
 ASKED = "--xlsx"
 NAME, SYMBOL, VALUE, UNIT, SI, SOLVED, CHANGE, TEXT, SOURCE, FORMULA = range(10)
@@ -361,4 +363,4 @@ def _title(q: NamedQuantity) -> str:
 
 
 def _short(value: float) -> str:
-    return f"{value:.6g}"
+    return typed_number(value)

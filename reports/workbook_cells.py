@@ -6,12 +6,13 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from reports.excel_formula import may_fail, write
-from reports.excel_names import LegalNames
-from reports.excel_sheets import Sheet, cell_text
 from synth.results.calculation import Calculation, LimitRule, NamedQuantity, part_value
 from synth.results.expression import Expression, names_in, value_of
 from synth.units import from_si
+
+from .excel_formula import may_fail, write
+from .excel_names import LegalNames
+from .excel_sheets import Sheet, cell_text
 
 LONGEST_KEY = 200  # characters; what is sought in a list has at most 255
 SAME = "1E-12"  # relative; a unit that is written out may cost the last digits

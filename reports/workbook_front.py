@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from reports.excel_sheets import BAD, Book, Sheet
-from reports.reasons import SIGN_OF
-from reports.workbook_cells import in_unit
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront, shown_value
 from synth.results.calculation import Calculation, NamedQuantity
+from synth.text.numbers import typed_number
 from synth.units import header
+
+from .excel_sheets import BAD, Book, Sheet
+from .reasons import SIGN_OF
+from .workbook_cells import in_unit
 
 ASKED = "--xlsx"
 UTILISATION = "utilisation: "  # heads these columns of the table of a front; they stand on the sheet of limits
@@ -19,6 +21,7 @@ STATES = {
     Status.OPTIMAL: "proven within the gap asked for",
     Status.FEASIBLE: "feasible, not proven",
     Status.INFEASIBLE: "NOT FEASIBLE: no design meets all limits",
+    Status.NOT_FOUND: "NONE FOUND: no design that meets all limits was found; that there is none is not proven",
     Status.NOT_SOLVED: "NOT SOLVED: the search was stopped before a design was found",
     Status.FAILED: "FAILED",
 }
@@ -105,7 +108,7 @@ def _designs(book: Book, front: ParetoFront) -> None:
         sheet.own.autofilter(3, 0, last - 1, len(heads) - 1)
     elif front.explanation is not None:
         told = front.explanation
-        sheet.text(5, 0, str(told.message or ""), "line")
+        sheet.text(5, 0, told.headline, "line")
         for row, conflict in enumerate(told.conflicts or (), start=6):
             sheet.text(row, 0, str(conflict.get("sentence", "")), "line")
 
@@ -152,7 +155,7 @@ def _words(value: Any) -> str:
         return ", ".join(map(_words, value))
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return typed_number(value) if isinstance(value, float) else str(value)
 
 
 def _parts(book: Book, front: ParetoFront, quantities: Mapping[str, NamedQuantity]) -> None:
@@ -248,7 +251,10 @@ def _certificate(book: Book, front: ParetoFront) -> None:
     row = _pairs(sheet, row, "what it did", [(k, _words(v)) for k, v in front.statistics.items() if v not in ([], {})])
     record = front.record or {}
     versions = record.get("versions") or {}
-    facts = [*((f"version of {name}", text) for name, text in versions.items()), ("checksum", record.get("digest"))]
+    facts = [
+        *((f"version of {name}", text) for name, text in versions.items()),
+        ("checksum of the result", front.result_digest),
+    ]
     _pairs(sheet, row, "record", [(name, text) for name, text in facts if text])
 
 

@@ -6,12 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.excel_formula import from_si_text, number_text
-from reports.excel_sheets import BAD, GOOD, GREY, MARKED, Sheet, cell
-from reports.reasons import SIGN_OF
-from reports.workbook_cells import Formulas, in_unit
-from synth.feasibility import TOLERANCE, holds, residual
+from synth.feasibility import TOLERANCE, holds, most_used, residual
 from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict
+from synth.text.numbers import used_share
+
+from .excel_formula import from_si_text, number_text
+from .excel_sheets import BAD, GOOD, GREY, MARKED, Sheet, cell
+from .reasons import SIGN_OF
+from .workbook_cells import Formulas, in_unit
 
 LIMIT, FOUND, SIGN, ALLOWED, UNIT, USED, VERDICT, SOLVED, TEXT, SOURCE = range(10)
 FOUND_SI, ALLOWED_SI, MISSED, VOID, OWN, HELD, BEHIND, COUNTS = range(10, 18)
@@ -91,8 +93,8 @@ def _governing(calculation: Calculation, found: CalculatedDesign) -> str:
     shares = {k: v for k, (v, sense) in used.items() if v is not None and (sense != "equal" or math.isinf(v))}
     if not shares:
         return NOTHING
-    name = max(shares, key=lambda name: shares[name])
-    return f"{name}: {BEYOND if math.isinf(shares[name]) else f'{round(100 * shares[name], 1):g} %'}"
+    name = most_used(shares)[0]
+    return f"{name}: {BEYOND if math.isinf(shares[name]) else used_share(shares[name])}"
 
 
 def _applies(value: float) -> bool:

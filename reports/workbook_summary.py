@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.excel_sheets import BAD, GOOD, Sheet, cell
-from reports.workbook_cells import change
-from reports.workbook_limits import BEYOND, ENDLESS, NOTHING, VIOLATED, LimitCells
 from synth.results import Design
 from synth.results.calculation import Calculation
+
+from .excel_sheets import BAD, GOOD, Sheet, cell
+from .workbook_cells import change
+from .workbook_limits import BEYOND, ENDLESS, NOTHING, VIOLATED, LimitCells
 
 LABEL, VALUE, UNIT, SOLVED, CHANGE, TEXT = range(6)
 WIDTHS = (22, 18, 12, 18, 12, 74)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TextIO, TypeVar
 
 from synth.errors import InputError
 
@@ -98,6 +98,28 @@ def list_with_points(cell: str) -> str:
     return ", ".join(NAMED_NUMBER.sub(r"\1.\3", item) for item in cell.split("; "))
 
 
+class _CellCount:
+    """Cells of a column, and how many of them are numbers."""
+
+    def __init__(self) -> None:
+        self.cells = self.numbers = 0
+        self.commas = False
+
+    def add(self, cell: str) -> None:
+        """Count a cell; one that is empty says nothing."""
+        if cell:
+            self.cells += 1
+            match = NUMBER.fullmatch(cell)
+            if match is not None:
+                self.numbers += 1
+                self.commas |= "," in match["number"]
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether most of them are numbers, and none has a comma."""
+        return 2 * self.numbers > self.cells and not self.commas
+
+
 @dataclass(frozen=True)
 class CsvStyle:
     """How CSV is written.
@@ -124,24 +146,31 @@ class CsvStyle:
         """
         if self == ENGLISH:
             return plain
-        rows = list(csv.reader(io.StringIO(plain, newline="")))
-        if self.commas and rows:
-            for k in range(len(rows[0])):
-                cells = [row[k] for row in rows[1:] if k < len(row) and row[k]]
-                matches = [NUMBER.fullmatch(cell) for cell in cells]
-                numbers = [match["number"] for match in matches if match]
-                if rows[0][k] in lists:
-                    written = list_with_commas
-                elif 2 * len(numbers) > len(cells) and not any("," in number for number in numbers):
-                    written = with_comma
-                else:
-                    continue
-                for row in rows[1:]:
-                    if k < len(row):
-                        row[k] = written(row[k])
         buffer = io.StringIO()
-        csv.writer(buffer, delimiter=self.delimiter, lineterminator="\n").writerows(rows)
-        return self.mark + buffer.getvalue()
+        self.write(io.StringIO(plain, newline=""), buffer, lists)
+        return buffer.getvalue()
+
+    def write(self, plain: TextIO, file: TextIO, lists: Collection[str] = ()) -> None:
+        """Write the table of one file into another, row by row, as :meth:`text`; the first is read twice."""
+        plain.seek(0)
+        rows = csv.reader(plain)
+        writers: dict[int, Callable[[str], str]] = {}
+        if self.commas:
+            head = next(rows, [])
+            columns = [_CellCount() for _ in head]
+            for row in rows:
+                for column, cell in zip(columns, row, strict=False):
+                    column.add(cell)
+            writers = {k: with_comma for k, column in enumerate(columns) if column.is_numeric}
+            writers |= {k: list_with_commas for k, title in enumerate(head) if title in lists}
+        file.write(self.mark)
+        write = csv.writer(file, delimiter=self.delimiter, lineterminator="\n").writerow
+        plain.seek(0)
+        for number, row in enumerate(csv.reader(plain)):
+            for k, written in writers.items() if number else ():
+                if k < len(row):
+                    row[k] = written(row[k])
+            write(row)
 
     def files(self, files: Mapping[str, Content]) -> dict[str, Content]:
         """Return files by name, the tables among them in this style."""

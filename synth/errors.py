@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import traceback
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
 from numbers import Integral
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 from synth.input_limits import INPUT_LIMITS
 from synth.plain_text import printable
@@ -41,7 +42,7 @@ class InputError(ValueError):
         self.value = value
         self.expected = expected
         self.path = path
-        shown = str(value).lower() if isinstance(value, bool) else repr(value)  # as files have it
+        shown = str(value).lower() if isinstance(value, bool) else _as_text(value, repr)  # as files have it
         got = "is missing" if value is None else f"got {shortened(shown)}"
         # A field names a place in a file: each of the two may be as long as a value.
         place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
@@ -60,7 +61,7 @@ class InputError(ValueError):
         value = self.value
         plain = value is None or isinstance(value, (bool, int)) or (isinstance(value, float) and math.isfinite(value))
         if not plain or (isinstance(value, int) and abs(value) >= EXACT):
-            value = shortened(str(value))
+            value = shortened(_as_text(value, str))
         return {"path": list(self.path), "value": value, "expected": self.expected, "message": str(self)}
 
     def every(self) -> tuple[InputError, ...]:
@@ -90,6 +91,8 @@ class SeveralErrors(InputError):
         first = faults[0]
         super().__init__(first.field, first.value, first.expected, first.path)
         self.args, self.faults = first.args, tuple(faults)
+        for fault in faults[1:]:
+            self.add_note(str(fault))  # so that a traceback shows all
 
     def every(self) -> tuple[InputError, ...]:
         """Return everything that is wrong, one by one."""
@@ -104,6 +107,11 @@ class SeveralErrors(InputError):
     def __reduce__(self) -> tuple[type[SeveralErrors], tuple[tuple[InputError, ...]]]:  # type: ignore[override]
         """Pickle by what is wrong."""
         return type(self), (self.faults,)
+
+
+def first_with_others(faults: Sequence[InputError]) -> InputError:
+    """Return a fault as it is, several as one error that has them all."""
+    return faults[0] if len(faults) == 1 else SeveralErrors(faults)
 
 
 class UnknownOptionError(InputError):
@@ -134,6 +142,50 @@ class ExtraNeededError(InputError):
     def __reduce__(self) -> tuple[type[ExtraNeededError], tuple[str, str]]:  # type: ignore[override]
         """Pickle by what was asked and what it needs."""
         return type(self), (self.option, self.extra)
+
+
+class DeclarationError(TypeError):
+    """A family declares something that cannot be: a fault of the family, never of its user.
+
+    Parameters
+    ----------
+    fault : str
+    line : object, optional
+        Where it stands in the source of the family, as text.
+    """
+
+    def __init__(self, fault: str, line: object = None) -> None:
+        super().__init__(fault if line is None else f"{fault} ({line})")
+        self.line = line
+
+
+class DerivedFileWarning(UserWarning):
+    """A file that is made from a finished result could not be made; the result itself is kept."""
+
+
+Made = TypeVar("Made")
+
+
+def derived(name: str, make: Callable[[], Made]) -> Made | None:
+    """Make a file from a finished result; where that fails warn of it and return None, so that the result is kept.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    make : callable
+    """
+    try:
+        return make()
+    except Exception as error:
+        reason = named_fault(error)
+        warnings.warn(
+            f"{name} could not be made ({reason}); the result it is made from is complete. "
+            "This is a fault of the program: please report it",
+            DerivedFileWarning,
+            stacklevel=2,
+        )
+        return None
 
 
 class Described:
@@ -187,6 +239,19 @@ def shortened(text: str, most: int = INPUT_LIMITS.message) -> str:
     (120, 'load_torque', 'xxxxx ... xxxxxxxxxxxxxxxxxxxxxxxxxxxxxx')
     """
     return _cut(" ".join(_cut(word, INPUT_LIMITS.message) for word in text.split(" ")), most)
+
+
+def named_fault(error: Exception) -> str:
+    """Kind of an error and the first line of what it says."""
+    return f"{type(error).__name__}: {shortened(next(iter(str(error).splitlines()), ''))}"
+
+
+def _as_text(value: object, text: Callable[[object], str]) -> str:
+    """Text of a value; words where Python refuses to write thousands of digits or brackets."""
+    try:
+        return text(value)
+    except (ValueError, RecursionError):
+        return "a value too long to be shown"
 
 
 def _cut(text: str, most: int) -> str:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
 TOLERANCE = 1e-6
-SMALLEST = 1e-9  # SI; smallest size that counts, of limits of which none is told
+SLACK = 2 * TOLERANCE  # by which bounds loosen limits: what holds within the tolerance, and rounding
+SLACKS_PER_GAP = 500
+VANISHING = 1e-3  # share of its terms below which both sides of a limit are next to nothing
+BINDING = 0.999  # a limit that is used by so much decides something
+SMALLEST = 1e-300  # SI; smallest size that counts where none is declared: where all is zero a limit holds
 
 
 class Status(StrEnum):
@@ -16,13 +21,29 @@ class Status(StrEnum):
 
     OPTIMAL = "optimal"  # within the gap that was asked for
     FEASIBLE = "feasible"
-    INFEASIBLE = "infeasible"
+    INFEASIBLE = "infeasible"  # proven: no design can be feasible
+    NOT_FOUND = "not_found"  # no feasible design was found, and that there is none is not proven
     NOT_SOLVED = "not_solved"  # stopped before it was reached
     FAILED = "failed"  # numerical failure
 
 
-def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
-    """Return the signed, scaled violation of a limit; positive = violated.
+def size_of_miss(value: Any, limit: Any, scale: Any) -> Any:
+    """Size that people measure a miss by: the limit, unless that vanishes beside the terms.
+
+    Parameters
+    ----------
+    value, limit : float or array
+        Both sides in SI.
+    scale : float or array
+        Size of the largest term.
+    """
+    return np.maximum(np.maximum(np.abs(value), np.abs(limit)), np.maximum(VANISHING * scale, SMALLEST))
+
+
+def missed_share(value: Any, limit: Any, sense: str, scale: Any) -> Any:
+    """Share by which a limit is missed, comparable between limits; not positive where it holds.
+
+    Of a limit that is missed it is 1 - 1/utilisation where both sides are positive, and finite where they are not.
 
     Parameters
     ----------
@@ -30,10 +51,44 @@ def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
         Both sides in SI.
     sense : {"at_most", "at_least", "equal"}
         Which way the limit points.
-    scale : float
-        Smallest size that counts, in SI.
+    scale : float or array
+        Size of the largest term.
     """
-    size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
+    return residual(value, limit, sense, size_of_miss(value, limit, scale))
+
+
+def slack_for(gap: float) -> float:
+    """Share of its size by which a proof to some gap loosens a limit that something continuous moves.
+
+    What a loosened limit lets in may be better by its price times the slack: far less than the gap, or no tree would
+    close. A limit that nothing continuous moves is always loosened by :data:`SLACK`, as parts and makeable sizes may
+    need the whole tolerance.
+
+    Examples
+    --------
+    >>> [slack_for(gap) for gap in (1e-2, 1e-3, 1e-6)]
+    [2e-06, 2e-06, 2e-09]
+    """
+    return min(SLACK, gap / SLACKS_PER_GAP)
+
+
+def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
+    """Return the signed, scaled violation of a limit; positive = violated.
+
+    A share of its terms where these are larger than the sides: what holds is told by it, but not which of two limits is
+    nearer. That is told by :func:`utilisation`, or :func:`missed_share`.
+
+    Parameters
+    ----------
+    value, limit : float or array
+        Both sides in SI.
+    sense : {"at_most", "at_least", "equal"}
+        Which way the limit points.
+    scale : float or array
+        Smallest size that counts, in SI: that of the terms where the sides do not tell it.
+    """
+    # Where all terms are zero they have no size, and some have none at all: both sides alone tell then.
+    size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), np.fmax(scale, SMALLEST))
     difference = value - limit
     if sense == "at_least":
         difference = -difference
@@ -62,3 +117,33 @@ def utilisation(value: Any, limit: Any, sense: str) -> Any:
     positive = (used > 0) & (allowed > 0)
     ratio = used / np.where(positive, allowed, 1.0)
     return np.where(positive, ratio, np.where(used <= allowed, 0.0, np.inf))
+
+
+def most_used(used: Mapping[str, float | None]) -> list[str]:
+    """Names of limits, those that are used most first; without those of which nothing is known.
+
+    The one order of limits for people.
+
+    Parameters
+    ----------
+    used : mapping
+        Limit -> its utilisation, None where it is not checked.
+
+    Examples
+    --------
+    >>> most_used({"stress": 0.4, "heat": None, "torque": 0.97, "width": 0.4})
+    ['torque', 'stress', 'width']
+    """
+    known = {name: x for name, x in used.items() if x is not None}
+    return sorted(known, key=lambda name: -known[name])
+
+
+def binds(used: float | None, sense: str) -> bool:
+    """Tell whether a limit is reached; an equality always is and says nothing.
+
+    Examples
+    --------
+    >>> binds(0.9995, "at_most"), binds(0.97, "at_least"), binds(1.0, "equal"), binds(None, "at_most")
+    (True, False, False, False)
+    """
+    return used is not None and used >= BINDING and sense != "equal"

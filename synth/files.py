@@ -8,8 +8,10 @@ import io
 import json
 import math
 import os
+import re
 import stat
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
@@ -21,6 +23,7 @@ from synth.plain_text import UNSAFE, csv_cell, escaped, file_text
 if TYPE_CHECKING:
     import pandas as pd
 
+REFERENCE = re.compile(r"[^/\\]+@[0-9]+")  # of a table that is kept elsewhere, as questions name it
 KINDS = {
     stat.S_ISDIR: "a folder",
     stat.S_ISFIFO: "a pipe",
@@ -75,17 +78,18 @@ def read_text(path: str | Path, field: str, right: str = "a file", most: int = I
         raise InputError(field, str(path), f"{right}, in UTF-8") from error
 
 
-def check_file(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> None:
-    """Refuse what ``read_bytes`` would refuse, without reading it.
+def open_bytes(path: str | Path, field: str, right: str = "a file") -> io.BufferedReader:
+    """Open a file of any size that a user has named, to be read little by little.
 
     Raises
     ------
     InputError
+        It is no regular file, or cannot be read.
     """
-    os.close(_opened(path, field, right, most))
+    return os.fdopen(_opened(path, field, right, None), "rb")
 
 
-def _opened(path: str | Path, field: str, right: str, most: int) -> int:
+def _opened(path: str | Path, field: str, right: str, most: int | None) -> int:
     """Return the handle of a regular file that is not too large."""
     shown = str(path)
     try:
@@ -98,10 +102,10 @@ def _opened(path: str | Path, field: str, right: str, most: int) -> int:
         reason = getattr(error, "strerror", None) or "not a possible file name"
         raise InputError(field, shown, f"{right} that can be read ({reason})") from error
     found = os.fstat(handle)
-    if stat.S_ISREG(found.st_mode) and found.st_size <= most:
+    if stat.S_ISREG(found.st_mode) and (most is None or found.st_size <= most):
         return handle
     os.close(handle)
-    if stat.S_ISREG(found.st_mode):
+    if most is not None and stat.S_ISREG(found.st_mode):
         _too_large(field, path, right, most)
     what = next((words for test, words in KINDS.items() if test(found.st_mode)), "something else")
     raise InputError(field, shown, f"{right} that can be read; this is {what}")
@@ -171,6 +175,22 @@ def frame_csv(frame: pd.DataFrame, float_format: str | None = None) -> str:
             plain.isetitem(k, [csv_cell(cell) if isinstance(cell, str) else cell for cell in plain.iloc[:, k]])
     text: str = plain.to_csv(index=False, lineterminator="\n", float_format=float_format)
     return text
+
+
+def named_from(source: str, folder: Path) -> str:
+    """Return the name of a file as files in a folder call it; of what is no path on the same drive, what it was."""
+    if not Path(source).is_absolute():
+        return source
+    with suppress(ValueError):  # on another drive
+        return Path(os.path.relpath(source, folder.resolve())).as_posix()
+    return source
+
+
+def found_from(source: str, folder: Path) -> str:
+    """Return the path of a file that files in a folder call so; a reference (``my_linings@3``) stays what it is."""
+    if Path(source).is_absolute() or REFERENCE.fullmatch(source):
+        return source
+    return str((folder / source).resolve())
 
 
 def yaml_text(content: Any) -> str:

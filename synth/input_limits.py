@@ -30,12 +30,16 @@ class InputLimits:
         Things that scatter at a time.
     columns : int
         Columns of a table of rows.
+    rows : int
+        Rows of such a table: its file is read row by row, so that rows are what costs.
+    row : int
+        Characters of one of them, or of any row of a CSV file.
     families : int
         Families that are compared.
     listed : int
         Near-equal designs, variants or candidates for them.
     file : int
-        Of any file that is read: nobody types more, and nothing of ours that is read again has more.
+        Of any file that is read as a whole: nobody types more, and nothing of ours that is read again has more.
     spec_file : int
         Of a spec, which is written by hand: anything larger is another kind of file.
     workbook : int
@@ -57,6 +61,8 @@ class InputLimits:
     samples: int = 2**20
     scattered: int = 8
     columns: int = 2000
+    rows: int = 2_000_000
+    row: int = 1_000_000
     families: int = 100
     listed: int = 10_000
     file: int = 20_000_000

@@ -1,6 +1,6 @@
 """How closely numbers must agree to be the same, and by how much ends are moved outward against rounding.
 
-Compiled code has :func:`below` and :func:`above` in ``bounds/templates/margins.c``. Not here is what limits may be
+The kernels have :func:`below` and :func:`above` in ``kernels/c/margins.h``. Not here is what limits may be
 missed by (``synth.feasibility``), what the search takes for equal inside that (``synth.tuning.Tolerances``), and what
 verification does, which shares neither (``synth.proof_limits``).
 """

@@ -8,15 +8,11 @@ from __future__ import annotations
 
 import errno
 import os
-import platform
-import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +69,16 @@ def resident(process: int) -> int:
     return 0
 
 
+def processor_time(process: int) -> float:
+    """Time that a process has had on processors, in s; 0 where the system does not tell."""
+    import psutil
+
+    with suppress(psutil.Error, OSError):
+        used = psutil.Process(process).cpu_times()
+        return float(used.user + used.system)
+    return 0.0
+
+
 def bound_memory(size: int) -> None:
     """Let no allocation of this process go beyond a size, where the system can."""
     if sys.platform != "win32":
@@ -107,83 +113,14 @@ def apart() -> dict[str, Any]:
     return {"start_new_session": True}
 
 
-def after_fork(call: Callable[[], object]) -> None:
-    """Have something called in every process that is forked off from this one, where processes are."""
-    if sys.platform != "win32":
-        os.register_at_fork(after_in_child=call)
-
-
-def end_with_all(process: subprocess.Popen[bytes]) -> None:
-    """End a process that was started :func:`apart`, with the programs that it has started, and wait for it."""
-    if process.poll() is not None:
-        return
-    if sys.platform == "win32":
-        end_family(process.pid)
-    else:
-        with suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-
-
-def end_family(process: int) -> None:
-    """End a process and all that descends from it, where the system keeps no group of them."""
-    import psutil
-
-    with suppress(psutil.Error):
-        first = psutil.Process(process)
-        family = [first, *first.children(recursive=True)]
-        for member in family:
-            with suppress(psutil.Error):
-                member.kill()
-
-
-# Compiles in a folder of its own and moves what was made to its place at once; nothing else is left.
-SCRIPT = """
-ulimit -t "$1"; folder=$2 made=$3 place=$4 lock=$5; shift 5
-nice "$@" && mv -f "$made" "$place"
-rm -rf "$folder" "$lock"
-"""
-CAN_LEAVE_BEHIND = sys.platform != "win32"
-
-
-def leave_behind(
-    command: Sequence[str], most: float, folder: Path, made: Path, place: Path, lock: Path, handle: int
-) -> None:
-    """Start a program that goes on where this one ends, and moves what it has made to its place; nobody waits for it.
-
-    Only where :data:`CAN_LEAVE_BEHIND`: Windows hands no lock down to another process.
-
-    Parameters
-    ----------
-    command : sequence
-    most : float
-        How long it may compute, in s.
-    folder : Path
-        Where it works; it goes in the end.
-    made, place : Path
-        What it makes, and where that belongs.
-    lock : Path
-        Of the file that is locked as long as it works.
-    handle : int
-        Of the lock.
-    """
-    process = subprocess.Popen(
-        ["/bin/sh", "-c", SCRIPT, "sh", f"{most:.0f}", folder, made, place, lock, *command],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-        pass_fds=[handle],  # who has it keeps others out, as long as it works
-    )
-    process.returncode = 0  # nobody waits for it
-
-
 # ---- files ----------------------------------------------------------------------------------------------------------
 
 NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # a pipe that nobody writes into would be waited for
 # Not handed to other programs, through no link, and bytes as they are.
 SAFELY = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 AS_BYTES = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+PRIVATE_FOLDER, PRIVATE_FILE = 0o700, 0o600
+NO_ROOM = tuple(getattr(errno, name) for name in ("ENOSPC", "EDQUOT") if hasattr(errno, name))
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
 HELD_PATIENCE = 2.0  # seconds; scanners and indexers of Windows look into a file that is new, for a moment
 HELD_PAUSE = 0.05
@@ -252,6 +189,31 @@ def is_held(path: Path) -> bool:
     except PermissionError:
         return True
     return False
+
+
+def private_folder(folder: Path) -> None:
+    """Make a folder that its owner alone can enter; one that is there is closed to others where it is empty yet.
+
+    Windows leaves it to the rights of the folder above.
+    """
+    try:
+        folder.mkdir(mode=PRIVATE_FOLDER, parents=True)
+    except FileExistsError:
+        if folder.is_dir() and not any(folder.iterdir()):
+            with suppress(OSError):  # it belongs to somebody else, who has given it as it is
+                folder.chmod(PRIVATE_FOLDER)
+
+
+def private_file(file: Path) -> None:
+    """Have a file that its owner alone can read and write: an empty one where there is none.
+
+    One that is there is not opened: to close it would end all locks that this process has on it.
+    """
+    try:
+        os.close(os.open(file, os.O_CREAT | os.O_EXCL | os.O_RDWR | AS_BYTES, PRIVATE_FILE))
+    except FileExistsError:
+        with suppress(OSError):  # it belongs to somebody else, who has given it as it is, or has just gone
+            file.chmod(PRIVATE_FILE)
 
 
 def put_in_place(source: Path, target: Path) -> None:
@@ -323,77 +285,3 @@ def reader_has_gone(error: OSError) -> bool:
     return isinstance(error, BrokenPipeError) or (
         sys.platform == "win32" and error.errno == errno.EINVAL and error.filename is None
     )
-
-
-# ---- the C compiler -------------------------------------------------------------------------------------------------
-
-# In the order of preference. The flags of Linux decide the last digits of results there.
-_COMMON = ("-fno-math-errno", "-std=gnu11")
-if sys.platform == "win32":
-    COMPILERS = ("gcc", "clang", "cc")
-    # No AVX: GCC does not align the stack for its registers on Windows (its bug 54412).
-    COMPILER_FLAGS = ("-O3", "-mtune=native", *_COMMON, "-shared", "-static-libgcc")
-    LIBRARY = ".dll"
-elif sys.platform == "darwin":
-    COMPILERS = ("cc", "clang", "gcc")
-    # Clang knows the very processor of an Apple by the one name, and that of an Intel by the other.
-    COMPILER_FLAGS = (
-        "-O3",
-        "-mcpu=native" if platform.machine() == "arm64" else "-march=native",
-        *_COMMON,
-        "-dynamiclib",
-        "-fPIC",
-    )
-    LIBRARY = ".dylib"
-else:
-    COMPILERS = ("cc", "gcc", "clang")
-    COMPILER_FLAGS = ("-O3", "-march=native", *_COMMON, "-shared", "-fPIC")
-    LIBRARY = ".so"
-TRIED_FOR = 30.0  # seconds that a compiler may take to say what it is
-
-
-def find_compiler() -> str | None:
-    """Return the path of a C compiler whose libraries this Python can load; None where there is none."""
-    found = (shutil.which(name) for name in COMPILERS)
-    return next((path for path in found if path is not None and _suits(path)), None)
-
-
-@cache
-def _suits(compiler: str) -> bool:
-    """Tell whether what stands at a path is there to compile for this Python."""
-    if sys.platform == "darwin" and compiler.startswith("/usr/bin/"):
-        # Without the tools of the command line it is a stand-in, which asks in a window to install them.
-        return _says(["/usr/bin/xcode-select", "-p"]) is not None
-    if sys.platform == "win32":
-        # That of Visual Studio, and LLVM for it, take other flags and export nothing by themselves.
-        target = (_says([compiler, "-dumpmachine"]) or "").lower()
-        machine = {"amd64": "x86_64", "x86": "i686", "arm64": "aarch64"}.get(platform.machine().lower(), "?")
-        return target.startswith(machine) and ("mingw" in target or "windows-gnu" in target)
-    return True
-
-
-def _says(command: Sequence[str]) -> str | None:
-    """Return what a program says, None where it fails."""
-    try:
-        done = subprocess.run(
-            command, capture_output=True, encoding="utf-8", errors="replace", timeout=TRIED_FOR, check=True
-        )
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout
-
-
-def version_of(compiler: str) -> str | None:
-    """Return what a compiler says of itself; None where it does not work."""
-    return _says([compiler, "--version"])
-
-
-@cache
-def processor() -> str:
-    """Return what code for this very processor depends on: a cache folder may be shared between machines."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        lines = [platform.processor()]
-    flags = next((line for line in lines if line.startswith(("flags", "Features"))), "")
-    return "\n".join([platform.machine(), platform.system(), flags])

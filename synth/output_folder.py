@@ -14,7 +14,7 @@ import shutil
 import socket
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
@@ -65,6 +65,7 @@ REPORT_FILES = (
     "design_*_sheet.json",
     "design_*_live.xlsx",
 )
+EXPLANATION_TEXT = "explanation.txt"
 FRONT = ResultKind(
     "run",
     ("front.json", "comparison.json"),
@@ -74,7 +75,7 @@ FRONT = ResultKind(
         "calculation.json",
         "design_*.yaml",
         "robust.csv",
-        "explanation.txt",
+        EXPLANATION_TEXT,
         "comparison.json",
         "families.csv",
         "front.svg",
@@ -145,7 +146,7 @@ def check_not_held(folder: Path, kind: ResultKind) -> None:
 
 def save_result(
     folder: str | Path,
-    files: Mapping[str, str],
+    files: Mapping[str, str] | Callable[[Path], Mapping[str, str]],
     kind: ResultKind,
     stopped: bool,
     supersedes: bool = False,
@@ -157,7 +158,7 @@ def save_result(
     ----------
     folder : path
     files : mapping
-        File name -> text; a name may lie in a folder below.
+        File name -> text; a name may lie in a folder below. A function returns them for the folder they will stand in.
     kind : ResultKind
     stopped : bool
         Whether it was stopped before it was finished.
@@ -182,8 +183,9 @@ def save_result(
         settle(target)
         if stopped and not supersedes:
             target = place_for_stopped(target, kind)
+        texts = files(target) if callable(files) else files
         with replaced(target) as new:
-            for name, text in files.items():
+            for name, text in texts.items():
                 new.write(name, text)
             new.drop([*_left_behind(target, kind), *drop])
     return target
@@ -271,11 +273,6 @@ class Replacement:
             return
         with self.open(name) as file:
             file.write(file_text(name, content))
-
-    def rewrite(self, name: str, text: str) -> None:
-        """Write another text into a file that has been written."""
-        self.names.remove(name)
-        self.write(name, text)
 
     def _place(self, name: str) -> Path:
         """Return where a file is written, below its folder."""

@@ -175,6 +175,7 @@ class Ranking:
     scale: Scale
 
 
+KNEE = "knee"
 AT_A_PRICE = ", whose last 0.5 % costs much"
 
 
@@ -222,9 +223,20 @@ def rank(
             dear = bool(np.any(np.delete(unit[end], k) > 1.0 + DEAR))
             notes[end].append(f"{word} {name}" + (AT_A_PRICE if dear else ""))
         if len(order) > 2 and signed.shape[1] > 1:
-            notes[int(np.argmin(unit.sum(axis=1)))].append("knee")
+            notes[int(np.argmin(unit.sum(axis=1)))].append(KNEE)
     elif signed.shape[1] == 1:
         notes[0].append("optimum")
     elif complete:
         notes[0].append("only non-dominated design")
     return Ranking(order, scores, ["; ".join(n) for n in notes], scale)
+
+
+def knee_of(notes: Sequence[str]) -> int:
+    """Place of the knee among ranked designs by their notes; the first, which comes nearest to the best, if none is.
+
+    Examples
+    --------
+    >>> knee_of(["smallest mass", "knee; largest life"]), knee_of(["optimum"])
+    (1, 0)
+    """
+    return next((place for place, note in enumerate(notes) if KNEE in note), 0)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import csv
-import math
 import re
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from synth.text.numbers import thousands
+
 # Control characters, what turns the direction of writing, separators that are no blank, halves of characters.
-UNSAFE = re.compile(
-    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufff9-\ufffb\ud800-\udfff]|\r(?!\n)"
-)
+_ACTING = r"\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufff9-\ufffb"
+UNSAFE = re.compile(rf"[\x00-\x08\x0b\x0c\x0e-\x1f{_ACTING}\ud800-\udfff]|\r(?!\n)")
+# The same for texts of one line, tabs and ends of lines too, without brackets: as all readers of patterns know it.
+UNSAFE_IN_LINE = rf"\u0000-\u001f{_ACTING}"
 # What programs for tables take for the beginning of a formula, the wide forms of it too.
 FORMULA = re.compile("'*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20]")
 NUMBER = re.compile(r"[-+](?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|inf|nan)")
@@ -42,45 +44,15 @@ def one_line(text: str) -> str:
     return " ".join(printable(text).split())
 
 
-def plain_number(value: float | None, digits: int = 4) -> str:
-    """Return a number as people write it: so many digits, without an exponent, thousands apart.
-
-    Whole parts are not rounded; nothing where there is no number.
-
-    Examples
-    --------
-    >>> [plain_number(x) for x in (14.568237, 21017.3, 0.00082654, 1.0, 1234567.0, -0.25, None)]
-    ['14.57', '21 017', '0.0008265', '1', '1 234 567', '-0.25', '']
-    """
-    if value is None or math.isnan(value):
-        return ""
-    if math.isinf(value):
-        return "unbounded"
-    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0) if value else 0
-    text = f"{value:,.{decimals}f}".replace(",", " ")
-    return text.rstrip("0").rstrip(".") if "." in text else text
-
-
-def thousands(number: int) -> str:
-    """Return a whole number with its thousands apart.
-
-    Examples
-    --------
-    >>> thousands(12000), thousands(999)
-    ('12 000', '999')
-    """
-    return f"{number:,}".replace(",", " ")
-
-
-def counted(number: int, what: str) -> str:
-    """Return a number of things in words.
+def counted(number: int, what: str, several: str = "") -> str:
+    """Return a number of things in words; ``several`` of them are called otherwise than with an s.
 
     Examples
     --------
     >>> counted(1, "row"), counted(12000, "row")
     ('1 row', '12 000 rows')
     """
-    return f"{thousands(number)} {what}{'' if number == 1 else 's'}"
+    return f"{thousands(number)} {what if number == 1 else several or f'{what}s'}"
 
 
 def words(name: str) -> str:
@@ -92,36 +64,6 @@ def words(name: str) -> str:
     'ring outer diameter'
     """
     return name.replace("_", " ")
-
-
-def alike(values: Sequence[float | None], most: int = 15) -> list[str]:
-    """Return the numbers of a column with the same decimals: four digits of the largest, none where all are whole.
-
-    ``most``: at most so many decimals.
-
-    Examples
-    --------
-    >>> alike([14.568, 9.4, None]), alike([12.0, 8.0]), alike([0.0082654, 0.0033])
-    (['14.57', '9.40', ''], ['12', '8'], ['0.008265', '0.003300'])
-    """
-    known = [abs(x) for x in values if x is not None and math.isfinite(x)]
-    whole = all(x == round(x) for x in known)
-    largest = max(known, default=0.0)
-    decimals = 0 if whole or not largest else min(max(3 - math.floor(math.log10(largest)), 0), most)
-    return [
-        plain_number(x) if x is None or not math.isfinite(x) else f"{x:,.{decimals}f}".replace(",", " ") for x in values
-    ]
-
-
-def percent(share: float, digits: int = 3) -> str:
-    """Return a share in per cent.
-
-    Examples
-    --------
-    >>> percent(0.001), percent(16.8)
-    ('0.1 %', '1 680 %')
-    """
-    return f"{plain_number(100 * share, digits)} %"
 
 
 def wrapped(text: str, width: int, first: int = 0, later: int = 0, broken: bool = True) -> list[str]:

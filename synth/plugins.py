@@ -5,6 +5,16 @@ from __future__ import annotations
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 
+FAMILIES = "clutchsynth.problems"  # the group of families
+# Packages inside the installed one that are not the engine; in the sources they are folders beside it.
+SHIPPED_FAMILIES = "synth.problems"
+AROUND_THE_ENGINE = (SHIPPED_FAMILIES, "synth.catalogs", "synth.reports")
+
+
+def family_names() -> list[str]:
+    """Names of all registered families, sorted; none of them is imported."""
+    return sorted({point.name for point in installed(FAMILIES)})
+
 
 @cache
 def installed(group: str) -> tuple[EntryPoint, ...]:

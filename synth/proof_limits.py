@@ -47,6 +47,10 @@ class ProofLimits:
         Designs in the middle of boxes that are looked at in each round, those that most likely refute the claim.
     row_tolerance : float
         Relative. By which a design may miss a limit and still refute a claim: a little more than feasibility allows.
+    cut_tolerance : float
+        Relative. By which limits cut ranges more loosely than that.
+    per_gap : float
+        Both are so many times less than the gap that is proven, for limits that something continuous moves.
     guard_tolerance : float
         The same of a guard, which has no tolerance: for rounding alone.
     pad : float
@@ -63,6 +67,8 @@ class ProofLimits:
         On the scale of a ranking. An end of a front beyond it is told to cost much for little.
     noise : float
         In SI. The same of numbers that are zero but for rounding.
+    rounding : float
+        Relative. The same of numbers that are what is left of larger ones.
     widest_gap : float
         The largest gap that is looked for where the one claimed cannot be proven.
     narrowings : int
@@ -85,6 +91,8 @@ class ProofLimits:
     faint: float = 1e-12
     tries: int = 4
     row_tolerance: float = 1.01 * TOLERANCE
+    cut_tolerance: float = 2e-6
+    per_gap: float = 500.0
     guard_tolerance: float = 1e-12
     pad: float = 1e-10
     snap: float = 1e-9
@@ -93,14 +101,28 @@ class ProofLimits:
     nearly: float = 0.005
     costly: float = 1.1
     noise: float = 1e-15
+    rounding: float = 1e-13
     widest_gap: float = 0.5
     narrowings: int = 3
 
-    def agree(self, a: float | None, b: float) -> bool:
-        """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself."""
+    def share_for(self, gap: float | None) -> float:
+        """Share of the tolerances of limits with which a proof to a gap works; all of them where nothing is listed."""
+        return 1.0 if gap is None else min(1.0, gap / (self.per_gap * self.cut_tolerance))
+
+    def agree(self, a: float | None, b: float, scale: float = 0.0) -> bool:
+        """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself.
+
+        Parameters
+        ----------
+        a, b : float
+            None is not-a-number.
+        scale : float
+            Size of what they are the difference of, where terms cancel: a share of that is rounding.
+        """
         if a is None:
             return math.isnan(b)
-        return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=self.same, abs_tol=self.noise)
+        rounding = max(self.noise, self.rounding * scale)
+        return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=self.same, abs_tol=rounding)
 
     def close(self, a: float, b: float) -> bool:
         """Tell whether two relative differences are the same."""

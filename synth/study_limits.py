@@ -213,9 +213,12 @@ class ComparisonLimits:
     ----------
     rounds : int
         In which every family looks for designs that beat those of the others; mostly two or three are enough.
+    first_look : float
+        In s, of each family before any goes on to its end: most are done by then, and all others have designs.
     """
 
     rounds: int = 6
+    first_look: float = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,8 +227,6 @@ class StudyTexts:
 
     Parameters
     ----------
-    binding : float
-        A limit that is used by more than this share binds.
     lines : int
         Of a drawing; one with more is not read.
     labels, ticks : int
@@ -234,7 +235,6 @@ class StudyTexts:
         Limits that a line names.
     """
 
-    binding: float = 0.999
     lines: int = 7
     labels: int = 12
     ticks: int = 20

@@ -245,7 +245,7 @@ class TreeLimits:
     small_batch : int
         Below which a batch is split twice at once: it costs as much as a larger one.
     generations : int
-        That compiled code grows at once where no designs are to be looked for in between.
+        That the kernel grows at once where no designs are to be looked for in between.
     levels_per_doubling : int
         Levels of how much better than needed a box could be, in a search by levels.
     levels : int
@@ -323,7 +323,7 @@ class PrimalHeuristicLimits:
     families : int
         Known combinations that are tried at all places.
     solved, solved_over_arrays : int
-        Continuous problems of a round: some tens of milliseconds, with compiled code and without.
+        Continuous problems of a round: some tens of milliseconds, with kernels and without.
     rounded_off : int
         Continuous optima of a round around which makeable points are tried.
     solved_again : int
@@ -584,6 +584,39 @@ class JointLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class AscentSettings:
+    """How the worst point of a limit is searched from the worst samples. Nothing is proven by it.
+
+    Parameters
+    ----------
+    rounds : int
+        At most so many.
+    starts : int
+        Samples from which it begins.
+    candidates : int
+        The worst samples among which these are chosen.
+    apart : float
+        Least distance of two starts, as a share of the range.
+    first_step, last_step : float
+        Shares of the range.
+    grow, shrink : float
+        Of the step after success and after failure.
+    strides : tuple of float
+        Steps along the slope, in units of the step along the axes.
+    """
+
+    rounds: int = 60
+    starts: int = 6
+    candidates: int = 512
+    apart: float = 0.15
+    first_step: float = 0.25
+    last_step: float = 1e-9
+    grow: float = 2.0
+    shrink: float = 0.4
+    strides: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0)
+
+
+@dataclass(frozen=True, kw_only=True)
 class RobustLimits:
     """How designs are rated over a range, and how often others are asked for that keep their limits over all of it.
 
@@ -595,17 +628,29 @@ class RobustLimits:
         New points per limit.
     parts : int
         Boxes that a range is cut into, to prove a limit that is not monotone.
+    batch : int
+        Boxes that are bounded at a time.
+    narrowest : float
+        Width of the least box, as a share of the range: where one that small is not decided, none is.
     steep : float
         Relative: a derivative as small as this may have the wrong sign by rounding.
+    pad : float
+        Relative: a bound this close to a limit may lie on the wrong side of it by rounding.
     points : int
         That are evaluated at a time. The result is the same for any number.
+    ascent : AscentSettings
+        Of limits that are not monotone.
     """
 
     searches: int = 5
     scenarios: int = 4
-    parts: int = 48
+    parts: int = 2**14
+    batch: int = 2**8
+    narrowest: float = 1e-12
     steep: float = 1e-12
+    pad: float = 1e-10
     points: int = 2**15
+    ascent: AscentSettings = field(default_factory=AscentSettings)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -662,32 +707,8 @@ class BranchingSettings:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompilingEffort:
-    """How long a compiler may work, and when it is not begun at all.
-
-    Parameters
-    ----------
-    worthwhile : float
-        In s: a time limit shorter than that may be over before anything is compiled. What has such a limit is done
-        without code that is not there yet.
-    most : float
-        In s, after which a compiler is given up.
-    look : float
-        In s, between looks at whether it is done: as long as the end of the time limit may go unnoticed.
-    undisturbed : float
-        In s, that a search waits and does nothing: a search beside the compiler would only slow it down where it is
-        done soon.
-    """
-
-    worthwhile: float = 10.0
-    most: float = 300.0
-    look: float = 0.02
-    undisturbed: float = 2.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class CodeSizes:
-    """How much compiled code does at a time.
+class KernelSizes:
+    """How much a kernel does at a time.
 
     Parameters
     ----------
@@ -706,44 +727,6 @@ class CodeSizes:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompilingLimits:
-    """From when on a question is worth compiling code for, which takes seconds.
-
-    What decides is the question, never what happens to be compiled already: the last digits with and without compiled
-    code differ, and the same question must go the same way.
-
-    Parameters
-    ----------
-    combinations : int
-        Of all questions of a kind, from which code is compiled at once.
-    boxes : float
-        Of a question, after which it is compiled all the same; NumPy does as many in about a tenth of a second.
-    own : float
-        Boxes of all questions of one shape, from which they get code of their own beside the search: what all share
-        takes 0.7 to 1 us longer for each. It gives the same bits, so that the time it takes decides nothing.
-    again : float
-        The same, of programs that have ended and of that which ends: from so many on it is compiled for those to come.
-        A question that is asked once leaves no compiler behind.
-    work : float
-        Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
-    together : int
-        Questions of one search from which on the solver has code of its own at once: they take as much ``work``.
-    sizes : CodeSizes
-    effort : CompilingEffort
-        For the code of boxes; the solver has its own.
-    """
-
-    combinations: int = 5000
-    boxes: float = 20_000
-    own: float = 500_000
-    again: float = 200_000
-    work: float = 150_000_000
-    together: int = 200
-    sizes: CodeSizes = field(default_factory=CodeSizes)
-    effort: CompilingEffort = field(default_factory=CompilingEffort)
-
-
-@dataclass(frozen=True, kw_only=True)
 class DominanceSettings:
     """How designs are sorted to tell which of them cover boxes. The result is the same for any number.
 
@@ -755,18 +738,11 @@ class DominanceSettings:
         Of more objectives: sets of designs that are kept for each order.
     boxes : int
         That are compared over arrays at a time: so few that arrays stay in the cache.
-    compiled_from : int
-        Boxes of a search that are asked about before it is worth compiling code that serves all questions; over arrays
-        they take about as long.
-    effort : CompilingEffort
-        For that code, which is short.
     """
 
     block: float = 0.35
     rows: int = 512
     boxes: int = 1024
-    compiled_from: int = 200_000
-    effort: CompilingEffort = field(default_factory=lambda: CompilingEffort(worthwhile=1.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -791,7 +767,7 @@ class ArraySizes:
 
 @dataclass(frozen=True, kw_only=True)
 class InteriorPointSettings:
-    """The numbers of the interior-point method, over arrays and compiled: the C source defines each in capitals.
+    """The numbers of the interior-point method, over arrays and in the kernel.
 
     Parameters
     ----------
@@ -936,16 +912,12 @@ class NlpSettings:
     edge : float
         Share of max and min by which their edge is rounded off for a first solve: at an optimum on the edge a solver
         finds no way, while a rounded one leads near to it.
-    at_once, compiled_at_once : int
-        Problems, over arrays and by compiled code. The result is the same for any number.
+    at_once, kernel_at_once : int
+        Problems, over arrays and by the kernel. The result is the same for any number.
     lanes : int
         Problems over arrays that take steps together: so many keep arrays in the cache and calls rare.
     refill : float
         Share of the lanes below which new problems come in.
-    step_cost : int
-        Evaluations of code that serves all formulas that take as long as one step over arrays.
-    effort : CompilingEffort
-        For the code of the solver.
     """
 
     method: InteriorPointSettings = field(default_factory=InteriorPointSettings)
@@ -954,11 +926,9 @@ class NlpSettings:
     other_starts: tuple[float, ...] = (0.75, 0.25)
     edge: float = 1e-3
     at_once: int = 6000
-    compiled_at_once: int = 128
+    kernel_at_once: int = 128
     lanes: int = 2048
     refill: float = 0.75
-    step_cost: int = 1000
-    effort: CompilingEffort = field(default_factory=CompilingEffort)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -993,7 +963,7 @@ class Tuning:
     robust : RobustLimits
     branching : BranchingSettings
     nlp : NlpSettings
-    compiling : CompilingLimits
+    kernels : KernelSizes
     arrays : ArraySizes
     dominance : DominanceSettings
     progress : ProgressLimits
@@ -1006,7 +976,7 @@ class Tuning:
     robust: RobustLimits = field(default_factory=RobustLimits)
     branching: BranchingSettings = field(default_factory=BranchingSettings)
     nlp: NlpSettings = field(default_factory=NlpSettings)
-    compiling: CompilingLimits = field(default_factory=CompilingLimits)
+    kernels: KernelSizes = field(default_factory=KernelSizes)
     arrays: ArraySizes = field(default_factory=ArraySizes)
     dominance: DominanceSettings = field(default_factory=DominanceSettings)
     progress: ProgressLimits = field(default_factory=ProgressLimits)

@@ -43,10 +43,11 @@ def instance_of(
     limits: Any = None,
     fix: Any = None,
     grid: bool = True,
+    objectives: Any = None,
     **how: bool,
 ) -> Instance:
     """Return a model with its requirement values and restrictions."""
-    asked = {"parts": parts, "limits": limits, "fix": fix, "grid": grid}
+    asked = {"parts": parts, "limits": limits, "fix": fix, "grid": grid, "objectives": objectives}
     return Instance(Request(problem=problem, requirements=requirements, catalogs=catalogs, **asked), **how)
 
 

@@ -3,11 +3,9 @@
 import gc
 import os
 import signal
-from collections.abc import Iterator
 
 import pytest
 
-from synth.model import registry
 from tests.repetitions import SWITCH
 
 
@@ -47,13 +45,3 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(100_000, 20, 50)
     gc.enable()
-
-
-@pytest.fixture(scope="module")
-def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Compile everything anew, and keep the user's cache folder as it is."""
-    registry._shared.cache_clear()  # families hold what was compiled for them
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-        yield

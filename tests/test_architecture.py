@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import ast
 import re
-import shutil
-import subprocess
 import sys
-import zipfile
-from importlib.metadata import entry_points
+import tomllib
 from pathlib import Path
 
 import pytest
+
+import synth
+from synth.plugins import AROUND_THE_ENGINE
+from tests.shipped import FAMILIES
 
 ROOT = Path(__file__).parents[1]
 
@@ -32,16 +33,29 @@ def sources(package: str) -> list[Path]:
     return found
 
 
-def imported(text: str) -> set[str]:
-    """Return the full dotted names that a source text imports, wherever the import stands."""
+def module_name(path: Path) -> str:
+    """Dotted name by which a source file is imported; that of its package for ``__init__.py``."""
+    steps = path.relative_to(ROOT).with_suffix("").parts
+    steps = steps[:-1] if steps[-1] == "__init__" else steps
+    return ".".join(steps if steps[0] == "synth" else ("synth", *steps))
+
+
+def imported(text: str, package: str) -> set[str]:
+    """Full dotted names that a source text of a package imports, wherever the import stands."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "imports are absolute here"
-            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+            start = package.split(".")[: len(package.split(".")) + 1 - node.level] if node.level else []
+            module = ".".join([*start, *([node.module] if node.module else [])])
+            names |= {f"{module}.{alias.name}" for alias in node.names}
     return names
+
+
+def imported_by(path: Path) -> set[str]:
+    """Full dotted names that a source file imports."""
+    return imported(path.read_text(), module_name(path.parent / "__init__.py"))
 
 
 def strangers(names: set[str], allowed: set[str]) -> list[str]:
@@ -57,23 +71,37 @@ def strangers(names: set[str], allowed: set[str]) -> list[str]:
 def test_imports_are_found_wherever_they_stand() -> None:
     text = (
         "import numpy as np\nfrom typing import TYPE_CHECKING\n"
-        "if TYPE_CHECKING:\n    from reports.table import x\nelse:\n    import problems.friction\n"
-        "def f():\n    from synth import DesignProblem\n"
+        "if TYPE_CHECKING:\n    from ..table import x\nelse:\n    import synth.problems.friction\n"
+        "def f():\n    from synth import DesignProblem\nfrom . import y\nfrom .z import z\n"
     )
-    found = {"numpy", "typing.TYPE_CHECKING", "reports.table.x", "problems.friction", "synth.DesignProblem"}
-    assert imported(text) == found
-    assert strangers(imported(text), {"synth", "numpy"}) == ["problems.friction", "reports.table.x"]
+    found = {"numpy", "typing.TYPE_CHECKING", "synth.reports.table.x", "synth.problems.friction"}
+    found |= {"synth.DesignProblem", "synth.reports.sheet.y", "synth.reports.sheet.z.z"}
+    assert imported(text, "synth.reports.sheet") == found
+    reports = sorted(name for name in found if name.startswith("synth.reports"))
+    assert strangers(found, {"synth.DesignProblem", "synth.problems", "numpy"}) == reports
     assert strangers({"synthetic.x", "synth.units.x"}, {"synth.units"}) == ["synthetic.x"]
+    assert module_name(ROOT / "problems/cone/model.py") == "synth.problems.cone.model"
+    assert module_name(ROOT / "synth/__init__.py") == "synth"
 
 
 # package: what it may import besides the standard library
-FAMILY = {"problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.drawing"}
-FAMILY |= {"synth.errors", "synth.special"}
-REPORT = {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors", "synth.files"}
-REPORT |= {"synth.feasibility", "synth.plain_text", "synth.drawing"}
+FAMILY = {"synth.problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.drawing"}
+GROUND = {"synth.errors", "synth.special", "synth.text"}
+FAMILY |= GROUND
+REPORT = {
+    "synth.reports",
+    "matplotlib",
+    "rich",
+    "pandas",
+    "synth.results",
+    "synth.units",
+    "synth.errors",
+    "synth.files",
+}
+REPORT |= {"synth.files", "synth.feasibility", "synth.plain_text", "synth.text", "synth.ui", "synth.drawing"}
 MAY_IMPORT = {
     **dict.fromkeys(PROBLEMS, FAMILY),
-    "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
+    "problems/mechanics": {"synth.problems.mechanics", "numpy", "pandas", "scipy", *GROUND},
     "catalogs": set(),
     **dict.fromkeys(REPORTS, REPORT),
 }
@@ -81,13 +109,13 @@ MAY_IMPORT = {
 
 @pytest.mark.parametrize("package", MAY_IMPORT)
 def test_packages_around_the_engine_keep_to_its_public_side(package: str) -> None:
-    found = {path.name: strangers(imported(path.read_text()), MAY_IMPORT[package]) for path in sources(package)}
+    found = {path.name: strangers(imported_by(path), MAY_IMPORT[package]) for path in sources(package)}
     assert not {name: names for name, names in found.items() if names}
 
 
 def test_the_engine_imports_no_family_no_catalogue_and_no_report() -> None:
     found = {
-        str(path): [n for n in imported(path.read_text()) if n.split(".")[0] in OURS - {"synth"}]
+        str(path): [n for n in imported_by(path) if n.startswith(AROUND_THE_ENGINE)]
         for package in ENGINE
         for path in sources(package)
     }
@@ -115,7 +143,7 @@ def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
         steps = name.split(".")
         return next((m for k in range(len(steps), 0, -1) if (m := ".".join(steps[:k])) in modules), "")
 
-    graph = {name: {module_of(other) for other in imported(path.read_text())} - {""} for name, path in modules.items()}
+    graph = {name: {module_of(other) for other in imported_by(path)} - {""} for name, path in modules.items()}
     assert len(graph) > 10
     assert "synth.jobs.store" in graph["synth.jobs.batch"]
     assert circles(graph) == set()
@@ -143,9 +171,8 @@ def spoken(tree: ast.AST) -> set[str]:
 
 
 def test_the_engine_names_no_family() -> None:
-    points = entry_points(group="clutchsynth.problems")
-    assert points
-    families = {point.name for point in points} | {point.attr for point in points}
+    assert FAMILIES
+    families = {*FAMILIES, *(type(synth.load(name)).__name__ for name in FAMILIES)}
     # Messages may show a line of a spec that can be typed; nothing else may know a name.
     example = re.compile(r"'family: \w+'")
     for path in (path for package in ENGINE for path in sources(package)):
@@ -178,52 +205,24 @@ def test_tests_stand_in_folders_named_like_what_they_test() -> None:
     assert folders("tests/problems") <= folders("problems")
     assert {path.name for path in (ROOT / "tests").glob("test_*.py")} == {
         "test_architecture.py",
+        "test_figures.py",
         "test_layers.py",
         "test_portability.py",
     }
 
 
-def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_path: Path) -> None:
-    source, wheels = tmp_path / "source", tmp_path / "wheels"
-    source.mkdir()  # a copy: building leaves folders beside what it builds
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source)
-    for package in OURS:
-        shutil.copytree(ROOT / package, source / package, ignore=shutil.ignore_patterns("__pycache__"))
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "pip",
-            "wheel",
-            str(source),
-            "--no-deps",
-            "--no-build-isolation",
-            "--quiet",
-            "--disable-pip-version-check",
-            "--wheel-dir",
-            str(wheels),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    (wheel,) = wheels.glob("clutchsynth-*.whl")
-    with zipfile.ZipFile(wheel) as archive:
-        packed = set(archive.namelist())
-        metadata = next(archive.read(name).decode() for name in packed if name.endswith("/entry_points.txt"))
-    modules = {f"{package}/{path.name}" for package in PACKAGES for path in sources(package)}
-    tables = {f"catalogs/{path.name}" for path in (ROOT / "catalogs").iterdir() if path.suffix in (".csv", ".md")}
-    templates = {path.relative_to(ROOT).as_posix() for path in (ROOT / "synth").rglob("*.c")}
-    examples = {path.relative_to(ROOT).as_posix() for path in (ROOT / "problems").rglob("*.yaml")}
-    assert len(tables) > 2
-    assert len(templates) > 2
-    assert len(examples) > 2
-    assert modules | tables | templates | examples | {"synth/py.typed"} <= packed
-    assert not [name for name in packed if name.startswith(("tests/", "docs/", "examples/"))]
-    assert "clutchsynth = synth.terminal.cli:main" in metadata
+def test_the_list_of_packages_is_that_of_the_folders() -> None:
+    tools = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
+    folders = {path for top in sorted(OURS) for path in (ROOT / top).rglob("__init__.py")}
+    assert tools["packages"] == sorted(map(module_name, folders))
+    assert tools["package-dir"] == {f"synth.{top}": top for top in OURS - {"synth"}}
+    assert set(tools["package-dir"]) == set(AROUND_THE_ENGINE)
+
+
+def test_no_package_has_the_name_of_a_verb() -> None:
+    # Importing synth.batch as a package would replace the function synth.batch.
+    packages = {module_name(path).split(".")[1] for path in (ROOT / "synth").glob("*/__init__.py")}
+    assert not packages & set(synth.__all__)
 
 
 def numbers_of(tree: ast.Module) -> set[str]:

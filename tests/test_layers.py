@@ -1,8 +1,12 @@
-"""Layers of the engine: who may import whom, read from all imports, those of types and inside functions included."""
+"""Layers of the engine: who may import whom.
+
+Read from all imports, those of types and inside functions included, and from texts that name a module.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +16,20 @@ ENGINE = ROOT / "synth"
 # From the ground up; each place, a package or a module, may import what stands in lines before its own.
 LAYERS = (
     ("operating_system",),
-    ("special", "margins", "pareto", "feasibility", "interrupts", "deadline", "file_locks", "native_switch", "plugins"),
+    (
+        "special",
+        "margins",
+        "pareto",
+        "feasibility",
+        "interrupts",
+        "deadline",
+        "file_locks",
+        "plugins",
+        "notices",
+        "kernels",
+        "text",
+        "ui",
+    ),
     ("plain_text", "input_limits", "tuning", "proof_limits", "study_limits", "row_cells"),
     ("errors",),
     ("files", "csv_style"),
@@ -22,7 +39,6 @@ LAYERS = (
     ("declaration",),
     ("model",),
     ("question",),
-    ("compiled",),
     ("proof", "bounds", "nlp"),
     ("robust",),
     ("analysis",),
@@ -33,8 +49,14 @@ LAYERS = (
     ("variants", "client"),
     ("service",),
     ("terminal",),
-    ("__init__",),
+    ("__init__", "__main__"),
 )
+MODULE = re.compile(r"synth(\.\w+)+(:\w+)?")  # as entry points and tables of tasks name a module, or what is in it
+# A kind of job whose home is above the queue that lists it; a method of a front that needs what is above results.
+NAMED_FROM_BELOW = {
+    ("synth.jobs.kinds", "synth.variants.size_range_kind"),
+    ("synth.results.front", "synth.analysis.reporting"),
+}
 LEVELS = {place: level for level, places in enumerate(LAYERS) for place in places}
 
 
@@ -56,13 +78,15 @@ def tree(text: str) -> ast.Module:
 
 
 def imports(text: str, known: set[str]) -> set[str]:
-    """Return the modules that a source text imports, wherever the import stands."""
+    """Modules that a source text imports, wherever the import stands, or names in a text to import them later."""
     names: set[str] = set()
     for node in ast.walk(tree(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and MODULE.fullmatch(node.value):
+            names.add(node.value.partition(":")[0])
     found = set()
     for name in names:
         steps = name.split(".")
@@ -93,13 +117,10 @@ def test_imports_are_found_wherever_they_stand() -> None:
     text = (
         "from typing import TYPE_CHECKING\nfrom synth.a import b, C\n"
         "if TYPE_CHECKING:\n    from synth.d import E\ndef f():\n    import synth.g\n"
+        "TASK = 'synth.h:work'\nTEXT = 'see synth.i for more'\nimport_module('synth.j')\n"
     )
-    assert imports(text, {"synth.a", "synth.a.b", "synth.d", "synth.g"}) == {
-        "synth.a",
-        "synth.a.b",
-        "synth.d",
-        "synth.g",
-    }
+    every = {f"synth.{name}" for name in ("a", "a.b", "d", "g", "h", "i", "j")}
+    assert imports(text, every) == every - {"synth.i"}
 
 
 def test_every_place_has_a_level_and_every_level_a_place() -> None:
@@ -118,17 +139,18 @@ def test_only_results_ask_the_facade() -> None:
 
 def test_imports_point_one_way() -> None:
     wrong = {pair for ends, pairs in arrows().items() if LEVELS[ends[1]] >= LEVELS[ends[0]] for pair in pairs}
-    assert wrong == set()
+    assert wrong == NAMED_FROM_BELOW
 
 
 SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "boxes"}
 SOUND |= {"propagated_nodes", "root_propagation", "sweep_writer", "question_bounds", "propagation", "compiled_rules"}
 SOUND |= {"log_forms", "log_relaxation"}
 STEERING = {"influences", "branching", "relaxed_branching"}
-BOTH = {"box_batches", "box_source", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
-BOTH |= {"box_instructions", "interpreted_boxes"}
+BOTH = {"box_batches", "kernel_boxes", "kernel_subtrees", "kernel_propagation", "bounding", "box_instructions"}
+BOTH |= {"fused_instructions"}
 # What kind of function a formula is: not of the search.
 OF_FORMULAS = {"structure", "shapes", "composition", "log_terms", "feasible_intervals", "curvature", "elementary"}
+OF_FORMULAS |= {"existence"}
 
 
 def test_what_proves_does_not_know_what_steers() -> None:
@@ -154,14 +176,19 @@ def picture() -> str:
     lines = []
     for level, places in enumerate(LAYERS[:-1]):
         for place in places:
-            needs = {end[1] for end in arrows() if end[0] == place}
-            packages = sorted((p for p in needs if (ENGINE / p).is_dir()), key=lambda p: (LEVELS[p], p))
-            if (ENGINE / place).is_dir():
+            needs = {end[1] for end in arrows() if end[0] == place and LEVELS[end[1]] < LEVELS[place]}
+            packages = sorted((p for p in needs if is_drawn(p)), key=lambda p: (LEVELS[p], p))
+            if is_drawn(place):
                 lines.append(f"{level - GROUND:2d}  {place:13s} <- {' '.join(packages) or 'the ground'}")
     return "\n".join(lines)
 
 
+EVERYWHERE = {"text", "ui"}  # packages of the ground that whatever shows something imports
 GROUND = next(level for level, places in enumerate(LAYERS) if (ENGINE / places[0]).is_dir()) - 1
+
+
+def is_drawn(place: str) -> bool:
+    return place not in EVERYWHERE and (ENGINE / place).is_dir()
 
 
 def test_contributing_shows_the_packages_as_they_are() -> None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from problems.centrifugal.body import (
+from .body import (
     Surroundings,
     limit_discs,
     limit_set,
     limit_spring_circle,
 )
-from problems.centrifugal.duty import COMMON, SOURCES, Duty, declare_duty
-from problems.centrifugal.engagement import (
+from .duty import COMMON, SOURCES, Duty, declare_duty
+from .engagement import (
     Contact,
     advise_stop_load,
     declare_band,
@@ -18,7 +18,7 @@ from problems.centrifugal.engagement import (
     declare_full_clamp,
     declare_stop_force,
 )
-from problems.centrifugal.flyweights import (
+from .flyweights import (
     Flyweights,
     Weights,
     advise_gravity,
@@ -26,10 +26,10 @@ from problems.centrifugal.flyweights import (
     declare_weights,
     limit_weight_room,
 )
-from problems.centrifugal.lining import Lining, advise_release_gap, declare_lining, declare_wear
-from problems.centrifugal.rules import LeverRules, Rules, declare_rules
-from problems.centrifugal.size import declare_objectives, declare_size
-from problems.centrifugal.springs import (
+from .lining import Lining, advise_release_gap, declare_lining, declare_wear
+from .rules import LeverRules, Rules, declare_rules
+from .size import declare_objectives, declare_size
+from .springs import (
     SpringSet,
     advise_springs,
     declare_springs,

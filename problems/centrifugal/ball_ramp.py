@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import centrifugal as blocks
-from problems import practice
-from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves
-from problems.centrifugal import state as states
-from problems.mechanics import ball_ramp, centrifugal
-from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
 from synth.declaration import Declaration
+
+from .. import centrifugal as blocks
+from .. import practice
+from ..mechanics import ball_ramp, centrifugal
+from ..sources import NOT_IN_S4, S4
+from . import balls as ball_blocks
+from . import curves
+from . import state as states
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,19 +84,19 @@ class CentrifugalBallRamp(DesignProblem):
         blocks.declare_band(
             d,
             band=ball_ramp.clamp_speed_ratio(at_contact, needed),
-            text="Speed at which required_torque with its reserve is reached, over the contact speed",
+            text="Speed at which required torque with its reserve is reached, over the contact speed",
         )
         # The two clamp forces share their terms, so that a bound of one bounds the other.
         at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
         clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
-        text = "Clamp force at full_torque_speed"
+        text = "Clamp force at full torque speed"
         d.step("full_speed_force", "N", at_full_speed, symbol="F_full", text=text, source=f"{S4}, analysis 1")
         full = d.derive(
             "full_speed_torque",
             "N*m",
             lining.torque(at_full_speed),
             symbol="M_full",
-            text="Torque at full_torque_speed, worn-in lining",
+            text="Torque at full torque speed, worn-in lining",
             source=f"{S4}, analysis 1, eq. (12), corrected",
         )
         d.at_least(
@@ -103,23 +104,23 @@ class CentrifugalBallRamp(DesignProblem):
             full,
             duty.torque_to_carry,
             "N*m",
-            text="At full_torque_speed the clutch carries required_torque with its reserve",
+            text="At full torque speed the clutch carries required torque with its reserve",
             source=f"{S4}, analysis 1, eq. (12), corrected",
         )
         blocks.declare_clamp(
             d,
             lining=lining,
             force=clamp,
-            text="Clamp force at top_speed, the largest",
+            text="Clamp force at top speed, the largest",
             source=f"{S4}, analysis 1, eq. (12), corrected",
         )
         ball_blocks.limit_contact_and_clamp(
-            d, wants=wants, contact_speed=speed, clamp_force=clamp, speed_text=" at top_speed"
+            d, wants=wants, contact_speed=speed, clamp_force=clamp, speed_text=" at top speed"
         )
         blocks.declare_stop_force(
             d,
             force=clamp,
-            text="Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
+            text="Force on the stop at top speed: the friction disc stops the plate, there is no other stop",
             source=f"{S4}, analysis 1",
         )
         d.at_most(
@@ -211,8 +212,8 @@ class CentrifugalBallRamp(DesignProblem):
             The design.
         """
         # Costly to import; searches do without.
-        from problems.centrifugal import ramp_drawing
-        from problems.centrifugal.spring_drawing import return_spring
+        from . import ramp_drawing
+        from .spring_drawing import return_spring
 
         return ramp_drawing.ramp_drawing(
             spec, design, travel="plate_gap", pushed="pressure plate", springs=[return_spring("plate_gap")]

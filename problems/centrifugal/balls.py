@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from problems.centrifugal import Duty, SpringSet
-from problems.mechanics import centrifugal
-from problems.mechanics.contact import contact_modulus
-from problems.sources import DRIVE, NOT_IN_S4, S4, TYPICAL
 from synth.declaration import Block, Declaration, Part, Requirement
+
+from ..mechanics import centrifugal
+from ..mechanics.contact import contact_modulus
+from ..sources import DRIVE, NOT_IN_S4, S4, TYPICAL
+from . import Duty, SpringSet
 
 # Least share of the axial force that friction must leave when the balls come back; at 0 the ramp locks.
 RETURN_SHARE_MIN = 0.2
@@ -144,7 +145,7 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
         0.4,
         2,
         symbol="i",
-        text="Transmission of the ramp dr/dx, the tangent of ramp_angle",
+        text="Transmission of the ramp dr/dx, the tangent of ramp angle",
         source=f"{S4}, tan(alpha)",
     )
     d.derive(
@@ -183,21 +184,21 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
     )
     release_ratio = centrifugal.release_ratio(loss)
     push = centrifugal.ramp_gain(ratio, friction)
-    text = "Share of the force that friction at the balls takes, mu_b (i + sqrt(1 + i**2))"
+    text = "Share of the force that friction at the balls takes"
     d.step("contact_loss", "-", loss, symbol="c_b", text=text, source=NOT_IN_S4)
-    text = "Axial over centrifugal force of balls that move out, i/(1 + c_b)"
+    text = "Axial over centrifugal force of balls that move out"
     d.step("ramp_gain", "-", push, symbol="k_out", text=text, source=NOT_IN_S4)
     d.advise(
         "hysteresis",
         release_ratio < HYSTERESIS_RATIO,
         "friction at the balls makes the clutch let go more than 5 % below the speed at which it takes hold; "
-        "release_speed counts it",
+        "release speed counts it",
         source=NOT_IN_S4,
     )
     d.advise(
         "rests_on_guesses",
         True,
-        "speeds and forces rest on ball_friction, which is a guess, and hertz_pressure on a flat ramp: vary the one, "
+        "speeds and forces rest on ball friction, which is a guess, and hertz pressure on a flat ramp: vary the one, "
         "and measure, before a design is released",
         source=NOT_IN_S4,
     )
@@ -233,14 +234,14 @@ def declare_ball_pressure(d: Declaration, *, duty: Duty, balls: Balls, end_radiu
     modulus = contact_modulus(ball.E, ball.nu, ball.E, ball.nu)
     source = "K. L. Johnson, Contact Mechanics (1985), eq. (4.24)"
     d.step("ball_mass", "kg", one, symbol="m_b", text="One ball", source="geometry")
-    d.step("ramp_force", "N", normal, symbol="Q_b", text="Force of a ball across its ramp at top_speed", source=source)
+    d.step("ramp_force", "N", normal, symbol="Q_b", text="Force of a ball across its ramp at top speed", source=source)
     d.step("contact_modulus", "GPa", modulus, symbol="E_c", text="Modulus of the contact E*", source=source)
     pressure = d.derive(
         "hertz_pressure",
         "GPa",
         centrifugal.ball_pressure(normal, ball.diameter, modulus),
         symbol="p_h",
-        text="Pressure of a ball on a flat ramp of the same steel, at top_speed",
+        text="Pressure of a ball on a flat ramp of the same steel, at top speed",
         source=source,
     )
     d.at_most(
@@ -276,7 +277,7 @@ def limit_contact_and_clamp(
         contact_speed,
         wants.contact_speed_min,
         "1/min",
-        text="The plates touch at contact_speed_min at the earliest",
+        text="The plates touch at contact speed min at the earliest",
         source=DRIVE,
     )
     d.at_most(

@@ -7,20 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, wear
-from problems.mechanics import centrifugal
-from problems.practice import UNSOURCED, Scope, name_boss
-from problems.sources import DRIVE
+from .. import cost, wear
+from ..mechanics import centrifugal
+from ..practice import UNSOURCED, Scope, name_boss
+from ..sources import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from problems.centrifugal.duty import WholeDuty
-    from problems.centrifugal.flyweights import Flyweights
-    from problems.centrifugal.lining import Lining
-    from problems.centrifugal.rules import LeverRules, Rules
-    from problems.centrifugal.springs import SpringSet
     from synth.declaration import Declaration, Part
+
+    from .duty import WholeDuty
+    from .flyweights import Flyweights
+    from .lining import Lining
+    from .rules import LeverRules, Rules
+    from .springs import SpringSet
 
 LEAST_WORK = 1e-3  # friction work with which a driven side without inertia counts [J]
 TOLERANCES = 10  # least preload over the tolerance to which it is set
@@ -124,7 +125,7 @@ def declare_body(
         whole if around.scope.complete else part_mass,
         symbol="m",
         text="The whole clutch: its parts, the friction discs beyond the first with a plate for each, and a boss on "
-        "either shaft; the cover is among the plates of equivalent_plate_thickness"
+        "either shaft; the cover is among the plates of equivalent plate thickness"
         if around.scope.complete
         else counted,
         source="geometry",
@@ -146,7 +147,7 @@ def declare_body(
     d.advise(
         "thin_hub",
         2 * duty.hub_radius < THIN * duty.hub_diameter,
-        "hub_radius is below the hub that shaft_diameter needs: check the hub and its key",
+        "hub radius is below the hub that shaft diameter needs: check the hub and its key",
         source=UNSOURCED,
     )
     wear.declare_wear_life(
@@ -155,8 +156,8 @@ def declare_body(
         area=lining.area,
         depth=wear.depth(pair, around.wear / lining.surfaces),
         work=np.maximum(duty.engagement_energy, LEAST_WORK),
-        text="Engagements, each of the heat of engagement_heat, until the linings are worn by lining_wear together or "
-        "by wearable_depth each",
+        text="Engagements, each of the heat of engagement heat, until the linings are worn by lining wear together or "
+        "by wearable depth each",
     )
     _declare_cost(d, lining=lining, flyweights=flyweights, springs=springs, around=around, mass=whole)
 
@@ -230,7 +231,7 @@ def limit_discs(d: Declaration, *, rules: Rules, lining: Lining, travel: Any) ->
     d.advise(
         "narrow_ring",
         lining.inner_radius > NARROW_RING * lining.outer_radius,
-        "lining_inner_radius is above 0.75 lining_outer_radius: a wider ring has more area for heat and wear",
+        "lining inner radius is above 0.75 lining outer radius: a wider ring has more area for heat and wear",
         source=UNSOURCED,
     )
     if rules.allow_obsolete == "yes":
@@ -258,7 +259,7 @@ def limit_set(d: Declaration, *, rules: Rules, springs: SpringSet, deflection: A
     prefix : str
         What the names of the limits begin with where there is another set.
     """
-    which = f"{springs.part.slot}s"
+    which = f"{springs.part.slot}s".replace("_", " ")
     d.at_least(
         f"{prefix}springs_per_set",
         springs.count,

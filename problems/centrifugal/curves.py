@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import centrifugal, two_spring
+from synth.text.numbers import number_text
+
+from ..mechanics import centrifugal, two_spring
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -287,7 +289,7 @@ def clamp_force_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> 
     frame = pd.DataFrame(columns)
     cap = spec.get("clamp_force_limit")
     frame.attrs = {
-        "title": f"{problem.title}: clamp force for {torque:.4g} N m",
+        "title": f"{problem.title}: clamp force for {number_text(torque)} N m",
         "panels": [{"label": "clamp force [N]", "columns": list(frame.columns[1:]), "log": True}],
         "lines": [] if cap is None else [{"panel": 0, "y": cap, "label": "clamp_force_limit"}],
         "source": "Shigley, Mechanical Engineering Design, disc clutch with uniform wear",

@@ -10,9 +10,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from problems.centrifugal.places import FIRST_SPRING, FLYWEIGHT, TOP, Placed, at, even, places
-from problems.centrifugal.spring_drawing import Spring, spring_view
-from problems.drawing_parts import SHAFT_OUT, Sizes, envelope, ring, shaft_end
 from synth.drawing import (
     XY,
     Area,
@@ -32,6 +29,11 @@ from synth.drawing import (
     diameter,
     disc,
 )
+from synth.text.numbers import typed_number
+
+from ..drawing_parts import SHAFT_OUT, Sizes, envelope, ring, shaft_end
+from .places import FIRST_SPRING, FLYWEIGHT, TOP, Placed, at, even, places
+from .spring_drawing import Spring, spring_view
 
 PLATES, LINING = 1, 2
 FRONT = "Front view"
@@ -114,7 +116,7 @@ def clutch_drawing(
     ]
     for k, spring in enumerate(springs):
         coils = size.number(f"{spring.slot}.total_coils_nt")
-        note = f"{coils:g} coils, two of them closed ends"
+        note = f"{typed_number(coils)} coils, two of them closed ends"
         items.append(Item(FIRST_SPRING + k, spring.name, size.count(spring.counted), size.part(spring.slot), note))
     weights = [
         Weight((PLATES,), ("plates_mass",), "steel_density"),

@@ -5,15 +5,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from problems.mechanics import centrifugal
-from problems.mechanics.shaft import shaft_diameter
-from problems.practice import UNSOURCED, Scope, ShaftRequirements, name_shaft_end
-from problems.sources import DRIVE, TYPICAL, UNIFORM_WEAR
 from synth.declaration import Block, Declaration, Requirement
+
+from ..mechanics import centrifugal
+from ..mechanics.shaft import shaft_diameter
+from ..practice import UNSOURCED, Scope, ShaftRequirements, declare_shaft
+from ..sources import ARCHARD, DRIVE, ISO_76, JOHNSON, SHAFT, SPRINGS, STANDARD_GRAVITY, TYPICAL, UNIFORM_WEAR
 
 SOURCES = (
     "S4: notes on centrifugal and magnetic-powder clutches (in Hungarian), analyses 1 and 2, practices 1 to 3",
     UNIFORM_WEAR,
+    JOHNSON,
+    ISO_76,
+    *SPRINGS,
+    ARCHARD,
+    STANDARD_GRAVITY,
+    *SHAFT,
 )
 
 # What a sheet for several families may state.
@@ -39,7 +46,7 @@ class Load(Block):
     group = "duty"
 
     required_torque = Requirement(
-        "N*m", lower=0.1, upper=1e5, symbol="M_req", text="Torque to transmit from full_torque_speed on", source=DRIVE
+        "N*m", lower=0.1, upper=1e5, symbol="M_req", text="Torque to transmit from full torque speed on", source=DRIVE
     )
     torque_reserve = Requirement(
         "-",
@@ -47,7 +54,7 @@ class Load(Block):
         lower=1,
         upper=5,
         symbol="k_M",
-        text="Torque of the clutch over required_torque",
+        text="Torque of the clutch over required torque",
         source="practice, 1.1 to 2.5",
     )
 
@@ -87,7 +94,7 @@ class Duty(Load):
         lower=1,
         upper=3,
         symbol="S_idle",
-        text="Least release speed (lever types: contact speed) over idle_speed",
+        text="Least release speed (lever types: contact speed) over idle speed",
         source="practice, 1.05 to 1.5",
     )
     contact_speed_max = Requirement(
@@ -113,8 +120,7 @@ class Duty(Load):
         upper=20,
         optional=True,
         symbol="q_A_allow",
-        text="Largest work per engagement and friction area, usually 0.5 to 0.7; takes the place of "
-        "friction_pair.q_single_allow",
+        text="Largest work per engagement and friction area, usually 0.5 to 0.7; takes the place of that of the lining",
         source="practice",
         group="material",
     )
@@ -235,7 +241,7 @@ def declare_duty(d: Declaration, *, scope: Scope) -> Duty:
     """
     if scope.whole:
         whole = d.block(WholeDuty)
-        name_shaft_end(d, whole.shaft_diameter)
+        declare_shaft(d, whole, diameter=whole.shaft_diameter, torque=whole.torque_to_carry)
         duty: Duty = whole
     else:
         duty = d.block(Duty)

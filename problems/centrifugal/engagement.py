@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.mechanics import centrifugal
-from problems.practice import UNSOURCED
-from problems.sources import DRIVE, NOT_IN_S4, S4, UNIFORM_WEAR
+from ..mechanics import centrifugal
+from ..practice import UNSOURCED
+from ..sources import DRIVE, NOT_IN_S4, S4, UNIFORM_WEAR
 
 if TYPE_CHECKING:
-    from problems.centrifugal.duty import Duty
-    from problems.centrifugal.lining import Lining
-    from problems.centrifugal.rules import Rules
     from synth.declaration import Declaration
+
+    from .duty import Duty
+    from .lining import Lining
+    from .rules import Rules
 
 # Remarks only.
 STOP_RATIO = 3.0  # force on the stop over clamp force that is worth a word where stops are sized for what they bear
@@ -70,7 +71,7 @@ def declare_contact(
         release / duty.idle_speed,
         symbol="S_i",
         needs=needs,
-        text="Release speed over idle_speed",
+        text="Release speed over idle speed",
         source="definition",
     )
     d.at_least(
@@ -86,7 +87,7 @@ def declare_contact(
         contact,
         duty.contact_speed_max,
         "1/min",
-        text="The plates touch at contact_speed_max at the latest",
+        text="The plates touch at contact speed max at the latest",
         source=DRIVE,
     )
     return Contact(contact, release)
@@ -148,7 +149,7 @@ def declare_full_clamp(
         torque,
         duty.torque_to_carry,
         "N*m",
-        text="The worn clutch carries required_torque with its reserve",
+        text="The worn clutch carries required torque with its reserve",
         source=UNIFORM_WEAR,
     )
     d.at_most(
@@ -156,7 +157,7 @@ def declare_full_clamp(
         full_clamp_speed,
         duty.full_torque_speed,
         "1/min",
-        text="The clamp force is complete at full_torque_speed",
+        text="The clamp force is complete at full torque speed",
         source=source,
     )
 
@@ -217,13 +218,13 @@ def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any, rules
         d.advise(
             "stop_force_high",
             stop_force > STOP_RATIO * clamp_force,
-            "at top_speed stop_force is more than three times clamp_force: stop, flyweights and pins carry it",
+            "at top speed stop force is more than three times clamp force: stop, flyweights and pins carry it",
             source=UNSOURCED,
         )
         return
     d.advise(
         "stop_bears_more_than_lining",
         stop_force > clamp_force,
-        "at top_speed stop_force is larger than clamp_force: stop, plates and bearings must be sized for it",
+        "at top speed stop force is larger than clamp force: stop, plates and bearings must be sized for it",
         source=NOT_IN_S4,
     )

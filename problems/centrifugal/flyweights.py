@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.mechanics import centrifugal
-from problems.sources import NOT_IN_S4, S4, TYPICAL
+from ..mechanics import centrifugal
+from ..sources import NOT_IN_S4, S4, TYPICAL
 
 if TYPE_CHECKING:
-    from problems.centrifugal.duty import Duty
     from synth.declaration import Declaration
+
+    from .duty import Duty
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from problems import centrifugal as blocks
-from problems import practice
-from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal.lever_clutch import LeverClutch
-from problems.centrifugal.lever_curves import ROD
-from problems.centrifugal.levers import LOADED, RECONSTRUCTED
-from problems.mechanics import centrifugal_levers as formulas
-from problems.sources import NOT_IN_S4, S4
 from synth.declaration import Block, Declaration, Requirement, Variable
+
+from .. import centrifugal as blocks
+from .. import practice
+from ..mechanics import centrifugal_levers as formulas
+from ..sources import NOT_IN_S4, S4
+from . import levers as lever_blocks
+from .lever_clutch import LeverClutch
+from .lever_curves import ROD
+from .levers import LOADED, RECONSTRUCTED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -104,7 +105,7 @@ class CentrifugalLever(LeverClutch):
             d,
             lining=lining,
             force=full,
-            text="Clamp force from full_clamp_speed on, with new linings",
+            text="Clamp force from full clamp speed on, with new linings",
             source=RECONSTRUCTED,
         )
         self._declare_retraction(d, lever=lever, rods=rods, springs=springs)
@@ -165,8 +166,8 @@ class CentrifugalLever(LeverClutch):
             The design.
         """
         # Costly to import; searches do without.
-        from problems.centrifugal import lever_drawing
-        from problems.centrifugal.spring_drawing import CLAMP
+        from . import lever_drawing
+        from .spring_drawing import CLAMP
 
         arms = lever_drawing.Leg("rod_arm", "contact_travel"), lever_drawing.Leg("spring_arm")
         return lever_drawing.lever_drawing(spec, design, arms=arms, pushed="pressure plate", springs=(CLAMP,))
@@ -253,7 +254,7 @@ class CentrifugalLever(LeverClutch):
                 "-",
                 squared,
                 "k_band",
-                "Square of the stop speed over the contact speed, (F2/F1)/((r2/r1)(1 - l_r/l_s))",
+                "Square of the stop speed over the contact speed",
             ),
         ):
             d.step(name, unit, value, symbol=symbol, text=text, source=RECONSTRUCTED)

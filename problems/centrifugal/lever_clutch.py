@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from problems import centrifugal as blocks
-from problems.centrifugal import curves as centrifugal_curves
-from problems.centrifugal import lever_curves
-from problems.centrifugal import state as states
 from synth import DesignProblem
+
+from .. import centrifugal as blocks
+from . import curves as centrifugal_curves
+from . import lever_curves
+from . import state as states
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from problems.centrifugal import curves as centrifugal_curves
-from problems.centrifugal.curves import MM, RPM, SPEED_AXIS
-from problems.centrifugal.levers import RECONSTRUCTED
-from problems.mechanics import centrifugal
-from problems.mechanics.lever_motion import Motion, ReversedLever, RodLever
+from ..mechanics import centrifugal
+from ..mechanics.lever_motion import Motion, ReversedLever, RodLever
+from . import curves as centrifugal_curves
+from .curves import MM, RPM, SPEED_AXIS
+from .levers import RECONSTRUCTED
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,10 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from problems.centrifugal.drawing import Flyweight, clutch_drawing
-from problems.centrifugal.places import FLYWEIGHT
-from problems.centrifugal.spring_drawing import Spring, told_of_springs
-from problems.drawing_parts import Sizes
 from synth.drawing import (
     XY,
     Angle,
@@ -25,6 +21,11 @@ from synth.drawing import (
     View,
     rectangle,
 )
+
+from ..drawing_parts import Sizes
+from .drawing import Flyweight, clutch_drawing
+from .places import FLYWEIGHT
+from .spring_drawing import Spring, told_of_springs
 
 JOINT = 0.025  # of the longest arm: circles at pivot and joints, which are no sizes
 

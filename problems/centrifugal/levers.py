@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import centrifugal as blocks
-from problems.mechanics import centrifugal
-from problems.mechanics import centrifugal_levers as formulas
-from problems.sources import NOT_IN_S4, S4, TYPICAL
+from synth.text.numbers import typed_number
+
+from .. import centrifugal as blocks
+from ..mechanics import centrifugal
+from ..mechanics import centrifugal_levers as formulas
+from ..sources import NOT_IN_S4, S4, TYPICAL
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from problems.practice import Scope
     from synth.declaration import Declaration
+
+    from ..practice import Scope
 
 RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
 # Range of the stop angle [rad] and of the rest radius [mm]; refusals reason with them.
@@ -122,7 +125,7 @@ def declare_lever(d: Declaration, *, duty: blocks.Duty, stop_text: str) -> Lever
     d.refuse(
         "stop_angle_out_of_range",
         weights.angle_limit < STOP_ANGLE_MIN,
-        f"a lever_angle_limit of at least {STOP_ANGLE_MIN:g} rad, the least angle of the stop",
+        f"a lever_angle_limit of at least {typed_number(STOP_ANGLE_MIN)} rad, the least angle of the stop",
     )
     d.at_most(
         "lever_angle",
@@ -154,8 +157,8 @@ def limit_contact(d: Declaration, *, lever: Lever, plate_arm: Any, longest: floa
     d.refuse(
         "travel_unreachable",
         lever.worn_travel > lever.weights.angle_limit * longest / 1000,
-        f"a contact_travel with lining_wear of at most lever_angle_limit times {longest:g} mm, the longest {name}; no "
-        "lever closes more",
+        f"a contact_travel with lining_wear of at most lever_angle_limit times {typed_number(longest)} mm, the "
+        f"longest {name}; no lever closes more",
     )
     d.at_most(
         "stop_after_contact",
@@ -231,7 +234,7 @@ def refuse_room(d: Declaration, *, duty: blocks.Duty, least_leg: Any, name: str)
         "no_room_for_lever",
         duty.hub_radius + least_leg >= REST_RADIUS_MAX / 1000,
         f"a hub_radius that leaves room for the lever: with the least {name} that closes the gap it must stay below "
-        f"{REST_RADIUS_MAX:g} mm, the largest rest_radius",
+        f"{typed_number(REST_RADIUS_MAX)} mm, the largest rest_radius",
     )
     if duty.outer_diameter_limit is not None:
         d.refuse(
@@ -324,15 +327,15 @@ def advise_lever(
     stop_force = blocks.declare_stop_force(
         d,
         force=pull - stop_pull,
-        text="Force of all levers on their stops at top_speed, at flyweight_arm",
+        text="Force of all levers on their stops at top speed, at flyweight arm",
         source=RECONSTRUCTED,
     )
     d.advise(
         "assumed_values",
         True,
-        "the figure of this lever is lost: speeds, forces and stop_force rest on an arrangement of its arms that is "
-        "reconstructed from words; outer_diameter, mass and inertia rest on hub_radius, wall_thickness, weight_width "
-        "and equivalent_plate_thickness, engagement_heat rests on driven_inertia, all travels on contact_travel: "
+        "the figure of this lever is lost: speeds, forces and stop force rest on an arrangement of its arms that is "
+        "reconstructed from words; outer diameter, mass and inertia rest on hub radius, wall thickness, weight width "
+        "and equivalent plate thickness, engagement heat rests on driven inertia, all travels on contact travel: "
         "their defaults are typical values, not those of your drive",
         source=RECONSTRUCTED,
     )

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.mechanics import centrifugal, heat, ring
-from problems.practice import lining_conditions
+from ..mechanics import centrifugal, heat, ring
+from ..practice import lining_conditions
 
 if TYPE_CHECKING:
-    from problems.centrifugal.duty import Duty
-    from problems.centrifugal.rules import Rules
     from synth.declaration import Declaration, Part
+
+    from .duty import Duty
+    from .rules import Rules
 
 # Remarks only.
 RELEASE_GAP_MIN = 0.3e-3  # clearance that a released friction surface wants [m]
@@ -126,7 +127,7 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | No
     for name, unit, value, symbol, text in (
         ("lining_area", "cm2", lining.area, "A_l", "All linings"),
         ("friction_radius", "mm", lining.friction_radius, "r_f", "Friction radius of the worn-in lining"),
-        ("engagement_energy", "J", duty.engagement_energy, "Q_e", "Heat of one engagement, J_load omega_full**2/2"),
+        ("engagement_energy", "J", duty.engagement_energy, "Q_e", "Heat of one engagement"),
     ):
         d.step(name, unit, value, symbol=symbol, text=text, source="geometry" if unit != "J" else "energy balance")
     allowed = duty.engagement_heat_limit
@@ -135,13 +136,13 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | No
         heat.single_heat(duty.engagement_energy, lining.area),
         pair.optional("q_single_allow") if allowed is None else allowed,
         "J/mm2",
-        text="The lining stands the heat of bringing driven_inertia up to full_torque_speed, without a load torque",
+        text="The lining stands the heat of bringing driven inertia up to full torque speed, without a load torque",
         source="energy balance",
     )
     d.advise(
         "bad_ring",
         inner >= outer,
-        "lining_inner_radius is not below lining_outer_radius: this is no lining, and its other figures mean nothing",
+        "lining inner radius is not below lining outer radius: this is no lining, and its other figures mean nothing",
         source="geometry",
     )
     return lining

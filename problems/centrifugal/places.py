@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from problems.centrifugal.spring_drawing import Spring
-from problems.drawing_parts import Sizes
 from synth.drawing import XY
+
+from ..drawing_parts import Sizes
+from .spring_drawing import Spring
 
 FLYWEIGHT, FIRST_SPRING = 3, 4  # numbers in the parts list
 TOP = math.pi / 2  # where the first flyweight stands [rad]

@@ -6,11 +6,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from problems.centrifugal.drawing import Flyweight, clutch_drawing
-from problems.centrifugal.places import FLYWEIGHT
-from problems.centrifugal.spring_drawing import Spring, told_of_springs
-from problems.drawing_parts import Sizes
 from synth.drawing import Angle, Area, Circle, Dimension, Drawable, Drawing, Line, LineKind, View, disc
+
+from ..drawing_parts import Sizes
+from .drawing import Flyweight, clutch_drawing
+from .places import FLYWEIGHT
+from .spring_drawing import Spring, told_of_springs
 
 OVER = 0.5  # of a ball: how far ramp and face are drawn beyond it
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import centrifugal as blocks
-from problems import practice
-from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal.lever_clutch import LeverClutch
-from problems.centrifugal.lever_curves import REVERSED
-from problems.centrifugal.levers import LOADED, RECONSTRUCTED
-from problems.mechanics import centrifugal_levers as formulas
-from problems.sources import NOT_IN_S4
+from .. import centrifugal as blocks
+from .. import practice
+from ..mechanics import centrifugal_levers as formulas
+from ..sources import NOT_IN_S4
+from . import levers as lever_blocks
+from .lever_clutch import LeverClutch
+from .lever_curves import REVERSED
+from .levers import LOADED, RECONSTRUCTED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -87,7 +87,7 @@ class CentrifugalReversed(LeverClutch):
             d,
             lining=lining,
             force=clamp,
-            text="Clamp force from full_clamp_speed on, with new linings",
+            text="Clamp force from full clamp speed on, with new linings",
             source=RECONSTRUCTED,
         )
         self._declare_springs(d, lever=lever, leg=leg, springs=springs, lift=lift)
@@ -156,8 +156,8 @@ class CentrifugalReversed(LeverClutch):
             The design.
         """
         # Costly to import; searches do without.
-        from problems.centrifugal import lever_drawing
-        from problems.centrifugal.spring_drawing import CLAMP, return_spring
+        from . import lever_drawing
+        from .spring_drawing import CLAMP, return_spring
 
         arms = (lever_drawing.Leg("plate_arm", "contact_travel"),)
         springs = (CLAMP, return_spring("contact_travel"))
@@ -215,7 +215,7 @@ class CentrifugalReversed(LeverClutch):
         d.step("stop_spring_force", "N", push, symbol="F_2", text=text, source=RECONSTRUCTED)
         text = "Force of the return springs at contact"
         d.step("contact_force", "N", back, symbol="F_1", text=text, source=RECONSTRUCTED)
-        text = "Square of the stop speed over the contact speed, (F_2/F_1)/k_radius"
+        text = "Square of the stop speed over the contact speed"
         d.step("band_squared", "-", band_squared, symbol="k_band", text=text, source=RECONSTRUCTED)
         worn = push - back - (springs.rate + leg.springs.rate) * lever.wear
         blocks.declare_contact(d, duty=duty, contact=contact)

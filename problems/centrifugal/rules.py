@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
-from problems import wear
-from problems.friction.duty import Duty as FrictionDuty
-from problems.practice import UNSOURCED, Scope
 from synth.declaration import Block, Requirement
+
+from .. import wear
+from ..friction.duty import Duty as FrictionDuty
+from ..practice import UNSOURCED, Scope
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from problems import wear
-from problems.centrifugal.body import Surroundings, declare_body
-from problems.centrifugal.duty import WholeDuty
-from problems.mechanics import centrifugal
-from problems.sources import DRIVE
+from .. import wear
+from ..mechanics import centrifugal
+from ..sources import DRIVE
+from .body import Surroundings, declare_body
+from .duty import WholeDuty
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from problems.centrifugal.duty import Duty
-    from problems.centrifugal.flyweights import Flyweights
-    from problems.centrifugal.lining import Lining
-    from problems.centrifugal.springs import SpringSet
-    from problems.practice import Scope
     from synth.declaration import Declaration
+
+    from ..practice import Scope
+    from .duty import Duty
+    from .flyweights import Flyweights
+    from .lining import Lining
+    from .springs import SpringSet
 
 # Remarks only.
 RIM_STRESS_MAX = 100e6  # hoop stress from which on the bursting of a rim is worth a calculation [Pa]
@@ -71,7 +72,7 @@ def declare_size(
     d.step("end_radius", "mm", flyweights.end_radius, symbol="r_end", text=end_text, source="geometry")
     d.step("plates_mass", "kg", plates, symbol="m_d", text="All plates as one steel ring", source="geometry")
     d.step("spring_mass", "kg", spring_mass, symbol="m_s", text="All springs", source="geometry")
-    counted = "Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs"
+    counted = "Plates (as a steel ring of equivalent plate thickness), flyweights and springs"
     if isinstance(duty, WholeDuty):
         declare_body(
             d,
@@ -116,7 +117,7 @@ def declare_size(
     d.advise(
         "fast_rim",
         centrifugal.rim_stress(duty.steel_density, diameter / 2, duty.top_speed) > RIM_STRESS_MAX,
-        "at top_speed the hoop stress of the rim is above 100 N/mm2: calculate the speed at which it bursts",
+        "at top speed the hoop stress of the rim is above 100 N/mm2: calculate the speed at which it bursts",
         source="hoop stress of a thin ring",
     )
 

@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from problems.drawing_parts import Sizes
 from synth.drawing import Area, Dimension, Drawable, Line, LineKind, View
+
+from ..drawing_parts import Sizes
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.mechanics import centrifugal
-from problems.sources import NOT_IN_S4, S4
+from ..mechanics import centrifugal
+from ..sources import NOT_IN_S4, S4
 
 if TYPE_CHECKING:
-    from problems.centrifugal.duty import Duty
     from synth.declaration import Declaration, Part
+
+    from .duty import Duty
 
 # Remarks only.
 ZIMMERLI_AMPLITUDE = 241e6  # shear stress amplitude that unpeened spring wire lasts at [Pa]
@@ -177,7 +178,7 @@ def advise_springs(
     d.advise(
         f"{part.slot}_bows",
         load > centrifugal.spring_force(part.rate_R, preload + travel),
-        f"at top_speed the centrifugal force of the coils of {what} is larger than their spring force: they bow "
+        f"at top speed the centrifugal force of the coils of {what} is larger than their spring force: they bow "
         "outwards and rub unless they sit in pockets or on guides",
         source=NOT_IN_S4,
     )

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.centrifugal import lever_curves
-from problems.centrifugal.curves import MM, RPM, S4, SPEED_AXIS, Path
-from problems.centrifugal.levers import RECONSTRUCTED
-from problems.mechanics import centrifugal
 from synth.declaration import Setting
+
+from ..mechanics import centrifugal
+from . import lever_curves
+from .curves import MM, RPM, S4, SPEED_AXIS, Path
+from .levers import RECONSTRUCTED
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from problems.mechanics.lever_motion import ReversedLever, RodLever
+    from ..mechanics.lever_motion import ReversedLever, RodLever
 
 OPERATING_POINT: Mapping[str, Setting] = {"speed": Setting("speed of the driving side", unit="1/min")}
 UP, DOWN = "speeding up", "slowing down"

@@ -6,15 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems import centrifugal as blocks
-from problems import practice
-from problems.centrifugal import balls as ball_blocks
-from problems.centrifugal import curves
-from problems.centrifugal import state as states
-from problems.mechanics import centrifugal, two_spring
-from problems.sources import NOT_IN_S4, S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Declaration
+
+from .. import centrifugal as blocks
+from .. import practice
+from ..mechanics import centrifugal, two_spring
+from ..sources import NOT_IN_S4, S4, TYPICAL
+from . import balls as ball_blocks
+from . import curves
+from . import state as states
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -159,7 +160,7 @@ class CentrifugalTwoSpring(DesignProblem):
         load = blocks.declare_stop_force(
             d,
             force=two_spring.stop_load(push, way.stop_force),
-            text="Force on the stop of the tension disc at top_speed",
+            text="Force on the stop of the tension disc at top speed",
             source=ANALYSIS,
         )
         blocks.declare_size(
@@ -230,8 +231,8 @@ class CentrifugalTwoSpring(DesignProblem):
             The design.
         """
         # Costly to import; searches do without.
-        from problems.centrifugal import lever_drawing, ramp_drawing
-        from problems.centrifugal.spring_drawing import CLAMP, return_spring
+        from . import lever_drawing, ramp_drawing
+        from .spring_drawing import CLAMP, return_spring
 
         pushed, springs = "tension disc", (return_spring("plate_travel"), CLAMP)
         if self.option("mechanism") == "ball_ramp":
@@ -325,13 +326,13 @@ class CentrifugalTwoSpring(DesignProblem):
         for name, unit, value, symbol, text in (
             ("return_preload", "N", way.return_preload, "F_10", "Force of the return springs at rest"),
             ("clamp_preload", "N", way.clamp_preload, "F_20", "Force of the clamp springs at rest"),
-            ("contact_force", "N", way.contact_force, "F_a", "Force of the return springs at contact, F_10 + s_1 a"),
+            ("contact_force", "N", way.contact_force, "F_a", "Force of the return springs at contact"),
             (
                 "stop_spring_force",
                 "N",
                 way.stop_force,
                 "F_b",
-                "Force of the clamp springs at the stop, F_20 + s_2 (b - a)",
+                "Force of the clamp springs at the stop",
             ),
             ("start_travel", "mm", way.start_travel, "x_s", "Travel of the tension disc until the plate moves"),
             (
@@ -339,7 +340,7 @@ class CentrifugalTwoSpring(DesignProblem):
                 "mm",
                 way.contact_travel,
                 "x_c",
-                "Travel of the tension disc at contact, a + (F_a - F_20)/s_2",
+                "Travel of the tension disc at contact",
             ),
             ("return_rate", "N/mm", way.return_rate, "s_1", "Rate of the return springs"),
             ("clamp_rate", "N/mm", way.clamp_rate, "s_2", "Rate of the clamp springs"),
@@ -390,7 +391,7 @@ class CentrifugalTwoSpring(DesignProblem):
             "-",
             weights.arm / arm,
             symbol="i_l",
-            text="Transmission of the levers dr/dx, l_c/l_a",
+            text="Transmission of the levers dr/dx",
             source=f"{S4}, practice 2",
         )
         angle = way.stop_travel / arm
@@ -409,7 +410,7 @@ class CentrifugalTwoSpring(DesignProblem):
             "levers_reconstructed",
             True,
             "the drawings of the levers are lost: their arms and the room they need are a reconstruction, and "
-            "mechanism_efficiency is a typical value",
+            "mechanism efficiency is a typical value",
             source=NOT_IN_S4,
         )
         return Drive(

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from problems import wear
-from problems.cone import formulas as cone
-from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup
-from problems.mechanics import plates
-from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
-from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Option, Requirement
+
+from .. import wear
+from ..friction.duty import Duty, Size
+from ..friction.engagement import Pair, Startup
+from ..mechanics import plates
+from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
+from ..sources import DRIVE
+from . import formulas as cone
 
 USUAL_ANGLES = "Shop Practice vol. 2, requirements of clutches: cones of 8 to 18 degrees"
 LITTLE_WEDGE = 1.5  # normal force over spring force; a disc with two surfaces has 2 at the same diameter
@@ -54,7 +55,7 @@ class ConeBodyRequirements(ShaftRequirements):
         lower=5,
         upper=1000,
         symbol="e_sp",
-        text="Energy that a spring stores per mass: tau**2/(4 G rho) of a round wire at 600 N/mm2",
+        text="Energy that a spring stores per mass: a round wire at 600 N/mm2",
         source=f"energy of a wire in torsion; stress: {UNSOURCED}",
     )
     gap_normal = Requirement(
@@ -72,7 +73,7 @@ class ConeBodyRequirements(ShaftRequirements):
         lower=0.01,
         upper=50,
         symbol="d_w_max",
-        text="Wear of the lining before it is replaced, where less than its wearable_depth (eight car discs: 1.0 mm)",
+        text="Wear of the lining before it is replaced, where less than its wearable depth (eight car discs: 1.0 mm)",
         source=UNSOURCED,
     )
 
@@ -86,8 +87,8 @@ class ConeRules(Block):
         ("forced", "self"),
         "forced",
         symbol="rel",
-        text="forced: a lever or spring pulls the cones apart, and release_pull_max limits with what force; self: they "
-        "come apart by themselves, with locking_margin",
+        text="forced: a lever or spring pulls the cones apart, and release pull max limits with what force; self: they "
+        "come apart by themselves, with locking margin",
         source=UNSOURCED,
     )
     cone_angle_min = Requirement(
@@ -114,7 +115,7 @@ class ConeRules(Block):
         lower=0,
         upper=5,
         symbol="k_pull",
-        text=f"Largest force that pulls the engaged cones apart over the spring force; with cone_release forced "
+        text=f"Largest force that pulls the engaged cones apart over the spring force; with cone release forced "
         f"({UNSOURCED})",
         source=UNSOURCED,
     )
@@ -160,7 +161,7 @@ class ConeRules(Block):
         lower=0,
         upper=1,
         symbol="u_p_min",
-        text="Least share of p_allow that is used while the cones engage (linings of car discs: 0.35 to 0.5)",
+        text="Least share of the allowed pressure that is used while the cones engage (car discs: 0.35 to 0.5)",
         source=UNSOURCED,
     )
     wear_life_min = replace(wear.LEAST_LIFE, text="Least engagements until the lining is worn")
@@ -186,7 +187,7 @@ class ConeBody:
 def declare_body_requirements(d: Declaration, *, required: Any) -> ConeBodyRequirements:
     """Declare the requirements of the complete clutch, whose shaft carries the sizing torque M_req [N m]."""
     wants = d.block(ConeBodyRequirements, shaft_diameter=shaft_for(required))
-    name_shaft_end(d, wants.shaft_diameter)
+    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=required)
     return wants
 
 

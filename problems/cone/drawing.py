@@ -9,7 +9,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes, envelope, shaft_end
 from synth.drawing import (
     XY,
     Angle,
@@ -26,6 +25,8 @@ from synth.drawing import (
     View,
     diameter,
 )
+
+from ..drawing_parts import SHAFT_OUT, Sizes, envelope, shaft_end
 
 INNER, LINING, OUTER = 1, 2, 3
 

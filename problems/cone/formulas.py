@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
 from synth.special import special
+
+from ..mechanics import Quantity
 
 
 def wedge_factor(half_angle: Quantity, mu: Quantity) -> Quantity:

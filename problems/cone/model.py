@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, friction, practice, wear
-from problems.cone import body as cone_body
-from problems.cone import formulas as cone
-from problems.cone.body import Cone
-from problems.friction import startup_curves
-from problems.mechanics import heat, plates
-from problems.sources import S1, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
+from synth.text.numbers import number_text, typed_number
+
+from .. import cost, friction, practice, wear
+from ..friction import startup_curves
+from ..mechanics import heat, plates
+from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
+from . import body as cone_body
+from . import formulas as cone
+from .body import Cone
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -73,7 +75,7 @@ class Wants(Block):
         lower=1,
         upper=10,
         symbol="k_seat",
-        text="Largest pressure after seating over p_allow of the lining",
+        text="Largest pressure after seating over the allowed pressure of the lining",
         source="premise of the cone model",
         group="model",
     )
@@ -110,7 +112,11 @@ class ConeClutch(DesignProblem):
     sources = (
         "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat); cone formulas derived again",
         "Shigley, Mechanical Engineering Design, cone clutch: uniform pressure and uniform wear",
-        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+        NEALE,
+        LIST_S0,
+        ARCHARD,
+        "Shop Practice vol. 2, requirements of clutches",
+        *SHAFT,
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "steel_specific_heat", "temperature_rise_limit")
@@ -124,7 +130,7 @@ class ConeClutch(DesignProblem):
                 "cooling_not_counted",
                 True,
                 "the heat that a cone gives off is not computed: cooling decides only which hourly heat of the lining "
-                "counts, heat_transfer nothing",
+                "counts, heat transfer nothing",
                 source="premise of the cone model",
             )
         required = friction.sizing_torque(duty)
@@ -162,6 +168,7 @@ class ConeClutch(DesignProblem):
             required=required,
             torque_low=torque(grip_low),
             torque_high=torque(grip_high),
+            source=f"{S1}, cone clutch; formula lost in print, derived",
             overload=seated_torque,
         )
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
@@ -173,6 +180,7 @@ class ConeClutch(DesignProblem):
             area=shape.area,
             rubbing_area=shape.area,
             pressure=grip_low / low / shape.area,
+            pressure_source=f"{S1}, cone clutch; formula lost in print, derived",
             rubbing_radius=shape.largest_diameter / 2,
         )
         self._declare_seating(
@@ -207,9 +215,8 @@ class ConeClutch(DesignProblem):
             size=size,
             mass_of="The whole clutch"
             if scope.complete
-            else "Both shells and the lining, times the mass_factor of the layout",
+            else "Both shells and the lining, times the mass factor of the layout",
             outside="Outside of the outer cone",
-            across="dm + l_g sin(alpha) + 2 (t_s + t_lining)",
             along=f"{along}, with both webs" if scope.complete else along,
         )
         if body is not None:
@@ -228,7 +235,7 @@ class ConeClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the engaged cones."""
-        from problems.cone import drawing as cone_drawing  # costly to import; searches do without
+        from . import drawing as cone_drawing  # costly to import; searches do without
 
         return cone_drawing.cone_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
@@ -262,7 +269,7 @@ class ConeClutch(DesignProblem):
             d.advise(
                 "locking_allowed",
                 wants.locking_margin < 1,
-                "locking_margin below 1 lets the cones lock: they must be pulled apart, with more than release_force "
+                "locking margin below 1 lets the cones lock: they must be pulled apart, with more than release force "
                 "says where the friction at rest is the higher one",
                 source=f"{S1}, release by an outer force",
             )
@@ -387,7 +394,7 @@ class ConeClutch(DesignProblem):
                 "-",
                 cone.mean_radius_factor(shape.ratio, shape.angle),
                 "k_r",
-                "Friction radius at uniform pressure over dm/2, 1 + c**2 sin(alpha)**2/3",
+                "Friction radius at uniform pressure over the mean radius",
             ),
             ("wide_end_diameter", "mm", shape.largest_diameter, "d_wide", "Friction face at its wide end"),
             ("narrow_end_diameter", "mm", across, "d_narrow", "Friction face at its narrow end"),
@@ -399,7 +406,7 @@ class ConeClutch(DesignProblem):
                 "-",
                 cone.wedge_factor(shape.angle, high),
                 symbol="k_w_max",
-                text="Axial over normal force, engaging, with mu_max",
+                text="Axial over normal force, engaging, with the greatest friction",
                 source=DERIVED,
             )
 
@@ -420,7 +427,7 @@ class ConeClutch(DesignProblem):
             "N*m",
             torque,
             symbol="M_seat",
-            text="Torque after vibration has seated the cones under the same spring (worst_case: with mu_max)",
+            text="Torque after vibration has seated the cones under the same spring (worst case: greatest friction)",
             source="derived, N = F/sin(alpha)",
         )
         seated = d.derive(
@@ -443,8 +450,8 @@ class ConeClutch(DesignProblem):
             d.advise(
                 "seating",
                 cone.seating_factor(shape.angle, pair.mu_high) > 2,
-                "seated by vibration the clutch slips only at more than twice its torque: reckon with seated_torque "
-                "for shafts and drive; overload_torque limits it",
+                "seated by vibration the clutch slips only at more than twice its torque: reckon with seated torque "
+                "for shafts and drive; overload torque limits it",
                 source=f"{S1}, clutch as safety element; derived",
             )
 
@@ -465,7 +472,7 @@ class ConeClutch(DesignProblem):
             "N",
             force,
             symbol="F_rel",
-            text="Force with which the cones push apart; negative: they must be pulled (worst_case: with mu_max)",
+            text="Force with which the cones push apart; negative: they must be pulled (worst case: greatest friction)",
             source=DERIVED,
         )
         static = pair.part.mu_static
@@ -480,9 +487,9 @@ class ConeClutch(DesignProblem):
             source=DERIVED,
         )
         pull_max = None if rules is None else rules.pull_max
-        kept, keeps = cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)), "locking_margin"
+        kept, keeps = cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)), "locking margin"
         if pull_max is not None:
-            kept, keeps = np.maximum(cone.pull_angle(static, pair.mu_low, pull_max), 0.0), "release_pull_max"
+            kept, keeps = np.maximum(cone.pull_angle(static, pair.mu_low, pull_max), 0.0), "release pull max"
         d.step("kept_angle", "deg", kept, symbol="alpha_kept", text=f"Half angle that keeps {keeps}", source=DERIVED)
         if pull_max is None:
             d.at_least(
@@ -491,7 +498,7 @@ class ConeClutch(DesignProblem):
                 wants.locking_margin * static,
                 "-",
                 text="The cones come apart by themselves",
-                source=f"{DERIVED}: tan(alpha) >= mu_static",
+                source=DERIVED,
             )
         if rules is not None:
             self._declare_pull(d, shape=shape, static=static, mu=pair.mu_low, most=pull_max)
@@ -536,8 +543,8 @@ class ConeClutch(DesignProblem):
         d.advise(
             "sticks",
             seated > 1,
-            "seated by vibration the cones need more than the spring force to come apart (seated_pull): a larger "
-            "cone_angle_min or a smaller release_pull_max helps, or a lining with less friction at rest",
+            "seated by vibration the cones need more than the spring force to come apart (seated pull): a larger "
+            "cone angle min or a smaller release pull max helps, or a lining with less friction at rest",
             source=DERIVED,
         )
 
@@ -563,7 +570,7 @@ class ConeClutch(DesignProblem):
             d.advise(
                 "bearing_thrust",
                 layout.force_closed < 0.5,
-                "the spring loads the shaft bearings with bearing_force as long as the clutch is engaged; an inner "
+                "the spring loads the shaft bearings with bearing force as long as the clutch is engaged; an inner "
                 "cone does not",
                 source=f"{S1}, cone and inner-cone clutch",
             )
@@ -604,8 +611,8 @@ class ConeClutch(DesignProblem):
         d.advise(
             "lining_temperature",
             rise > pair.part.optional("temp_max") - duty.ambient_temperature,
-            "one engagement makes the shell hotter than the lining stands, even from ambient_temperature; a thicker "
-            "shell helps, or a lower temperature_rise_limit",
+            "one engagement makes the shell hotter than the lining stands, even from ambient temperature; a thicker "
+            "shell helps, or a lower temperature rise limit",
             source="Neale, Tribology Handbook, Table 7.4",
         )
         d.advise(
@@ -659,13 +666,13 @@ class ConeClutch(DesignProblem):
         frame = pd.DataFrame({"half angle [deg]": degrees, **engaging, **releasing})
         required = friction.sizing_torque_of(spec)
         frame.attrs = {
-            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {required:.4g} N m)",
+            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {number_text(required)} N m)",
             "panels": [
                 {"label": "engaging force dm/(2M) [-]", "columns": list(engaging)},
                 {"label": "releasing force dm/(2M) [-]", "columns": list(releasing)},
             ],
             "marks": [
-                {"x": float(np.degrees(cone.locking_angle(mu))), "label": f"self-locking below, {mu:g}"}
+                {"x": float(np.degrees(cone.locking_angle(mu))), "label": f"self-locking below, {typed_number(mu)}"}
                 for mu in FRICTION_SHOWN
             ],
             "lines": [{"panel": 1, "y": 0.0, "label": "below: must be pulled apart"}],
@@ -717,7 +724,8 @@ class ConeClutch(DesignProblem):
         if spec["overload_torque"] is not None:
             lines.append({"panel": 1, "y": spec["overload_torque"], "label": "overload_torque"})
         frame.attrs = {
-            "title": f"Cone clutch: forces over the half angle for {value['torque']:.4g} N m, {pair['designation']}",
+            "title": f"Cone clutch: forces over the half angle for {number_text(value['torque'])} N m, "
+            f"{pair['designation']}",
             "panels": [
                 {"label": "axial force [N]", "columns": by_unit["[N]"]},
                 {"label": "torque [N*m]", "columns": by_unit["[N*m]"]},

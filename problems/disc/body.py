@@ -7,15 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from problems import wear
-from problems.disc.pack import DiscPack, DiscRequirements
-from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup
-from problems.friction.ring import Ring
-from problems.mechanics import disc, plates
-from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
-from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Requirement
+
+from .. import wear
+from ..friction.duty import Duty, Size
+from ..friction.engagement import Pair, Startup
+from ..friction.ring import Ring
+from ..mechanics import disc, plates
+from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
+from ..sources import DRIVE
+from .pack import DiscPack, DiscRequirements
 
 FEW_STARTS = 20_000  # engagements: what lasts less is remarked
 RUNOUT = "run-out limit of a disc 0.7 mm (Mazda), 0.6 mm (Porsche 911 SC)"
@@ -31,7 +32,7 @@ class DiscBodyRequirements(ShaftRequirements):
         lower=0.01,
         upper=50,
         symbol="d_w_max",
-        text="Wear of one lining before it is replaced, where less than its wearable_depth (eight car discs: 1.0 mm)",
+        text="Wear of one lining before it is replaced, where less than its wearable depth (eight car discs: 1.0 mm)",
         source="Porsche 964, drive plate wear: 1.0 to 0.3 mm",
     )
 
@@ -66,7 +67,7 @@ class DiscRules(Block):
         lower=0,
         upper=1,
         symbol="u_p_min",
-        text="Least share of p_allow that is used (linings of car discs: 0.35 to 0.5)",
+        text="Least share of the allowed pressure that is used (linings of car discs: 0.35 to 0.5)",
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
@@ -120,7 +121,7 @@ def declare_body_requirements(d: Declaration, *, required: Any, wear_depth_limit
         Symbols of the block.
     """
     wants = d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=wear_depth_limit)
-    name_shaft_end(d, wants.shaft_diameter)
+    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=required)
     return wants
 
 
@@ -250,7 +251,7 @@ def declare_body(
             "kg",
             body.spring,
             symbol="m_sp",
-            text="Diaphragm spring, three quarters of a disc of 0.9 r_out",
+            text="Diaphragm spring, three quarters of a disc of 0.9 of the outer radius",
             source=UNSOURCED,
         )
     life = wear.declare_wear_life(

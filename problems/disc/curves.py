@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import friction
-from problems.mechanics import disc
-from problems.mechanics import ring as ring_formulas
-from problems.sources import S1
+from synth.text.numbers import number_text
+
+from .. import friction
+from ..mechanics import disc
+from ..mechanics import ring as ring_formulas
+from ..sources import S1
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +54,7 @@ def diameter_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.
         lines.append({"panel": 0, "y": room, "label": "outer_diameter_limit less cover_gap"})
     frame = pd.DataFrame(columns)
     frame.attrs = {
-        "title": f"{problem.title}: outer diameter of the friction ring for {required:.4g} N m",
+        "title": f"{problem.title}: outer diameter of the friction ring for {number_text(required)} N m",
         "panels": [{"label": "ring outer diameter [mm]", "columns": names}],
         "lines": lines,
         "source": f"{S1}, sizing for pressure",

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, ring, shaft_end
 from synth.drawing import (
     Balloon,
     Detail,
@@ -24,6 +23,8 @@ from synth.drawing import (
     Weight,
     diameter,
 )
+
+from ..drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, ring, shaft_end
 
 CORE, LINING, PLATE, HUB = 1, 2, 3, 4
 

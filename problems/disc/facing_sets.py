@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from problems.disc.pack import Facing
-from problems.friction.bought import declare_bought
-from problems.friction.engagement import Pair
 from synth.declaration import Declaration, Part
+
+from ..friction.bought import declare_bought
+from ..friction.engagement import Pair
+from .pack import Facing
 
 TABLE = "facing_sets"
 NO_RIVETS = 0.05  # m, more than any facing is thick: what is glued wears by its thickness

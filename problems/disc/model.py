@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import cost, friction, practice, wear
-from problems.disc import body as disc_body
-from problems.disc import curves as disc_curves
-from problems.disc import facing_sets
-from problems.disc import pack as disc_pack
-from problems.friction import startup_curves
-from problems.mechanics import ring as ring_formulas
-from problems.sources import S1
 from synth import DesignProblem
 from synth.declaration import Declaration
+
+from .. import cost, friction, practice, wear
+from ..friction import startup_curves
+from ..mechanics import ring as ring_formulas
+from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, S1, SHAFT, SHIGLEY_DISC
+from . import body as disc_body
+from . import curves as disc_curves
+from . import facing_sets
+from . import pack as disc_pack
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,9 +32,14 @@ class DiscClutch(DesignProblem):
     name = "disc_clutch"
     title = "Disc clutch"
     sources = (
-        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
-        "Shigley, Mechanical Engineering Design, disc clutch: uniform pressure and uniform wear",
-        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+        LIST_S1,
+        SHIGLEY_DISC,
+        NEALE,
+        LIST_S0,
+        ARCHARD,
+        DISC_WEAR,
+        DISC_RUN_OUT,
+        *SHAFT,
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
@@ -79,7 +85,13 @@ class DiscClutch(DesignProblem):
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
 
         torques = friction.declare_torque(
-            d, duty=duty, pair=pair, required=required, torque_low=torque(pair.mu_low), torque_high=torque(pair.mu_high)
+            d,
+            duty=duty,
+            pair=pair,
+            required=required,
+            torque_low=torque(pair.mu_low),
+            torque_high=torque(pair.mu_high),
+            source=f"{S1}, sizing",
         )
         disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
@@ -92,6 +104,7 @@ class DiscClutch(DesignProblem):
             area=area,
             rubbing_area=area,
             pressure=force / ring.area,
+            pressure_source=f"{S1}, p",
             rubbing_radius=ring.outer_radius,
         )
         if facings is not None:
@@ -110,7 +123,6 @@ class DiscClutch(DesignProblem):
             size=size,
             mass_of=f"{mass_of}, without flywheel" + ("" if scope.complete else ", springs and cover"),
             outside="Outside of the cover",
-            across="2 (r2 + s_cover)",
             along=f"{along}, without flywheel" + ("" if scope.complete else ", springs and cover"),
         )
         if body is not None:
@@ -140,7 +152,7 @@ class DiscClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the released discs, with their hubs where the whole clutch is counted."""
-        from problems.disc import drawing as disc_drawing  # costly to import; searches do without
+        from . import drawing as disc_drawing  # costly to import; searches do without
 
         return disc_drawing.disc_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 

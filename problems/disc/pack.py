@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching, declare_heated_body
-from problems.friction.ring import Ring
-from problems.mechanics import disc, heat, plates
-from problems.mechanics import ring as ring_formulas
-from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Declaration, Requirement
+
+from ..friction.duty import Duty, Size
+from ..friction.engagement import Pair, Startup, Torques, advise_frequent_switching, declare_heated_body
+from ..friction.ring import Ring
+from ..mechanics import disc, heat, plates
+from ..mechanics import ring as ring_formulas
+from ..sources import S0, S1, TYPICAL
 
 
 class DiscRequirements(Block):
@@ -209,7 +210,7 @@ def declare_worn_torque(
         "N*m",
         ring_formulas.worn_torque(pack.surfaces, pair.mu_low, force, ring.mean_diameter),
         symbol="M_worn",
-        text="Capacity with worn-in lining, pressure times radius constant (worst_case: with mu_min)",
+        text="Capacity with worn-in lining, pressure times radius constant (worst case: least friction)",
         source="Shigley, Mechanical Engineering Design, uniform wear",
     )
     d.step(
@@ -258,7 +259,7 @@ def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, 
     core = disc.core_inertia(
         duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
     )
-    text = "Both linings of a disc, rho t pi (r2**4 - r1**4)"
+    text = "Both linings of a disc"
     d.step("lining_inertia", "kg*m2", lining, symbol="J_lin", text=text, source="geometry")
     d.step("core_inertia", "kg*m2", core, symbol="J_core", text="Core of a disc", source="geometry")
     d.derive(

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.electromagnetic import formulas as pot_magnet
-from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS, CoilDrawings
-from problems.sources import S4
+from synth.text.numbers import number_text
+
+from ..magnet import coil_curves
+from ..magnet.coil_curves import POINTS, CoilDrawings
+from ..sources import S4
+from . import formulas as pot_magnet
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -101,7 +103,7 @@ def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataF
         From no current to half as much again as the design has.
     """
     body, value = built(spec, coil.design), coil.design.values
-    turned = coil.currents * coil.design.steps["window_turns"]
+    turned = coil.currents * coil.design.values["turns"]
     flux_density = body.flux_density(turned)
     force = body.force(flux_density)
     share = turned / value["ampere_turns"]
@@ -163,7 +165,7 @@ def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
         }
     )
     frame.attrs = {
-        "title": f"{problem.title}: pull over the gap at {value['current']:.3g} A",
+        "title": f"{problem.title}: pull over the gap at {number_text(value['current'], 3)} A",
         "panels": [{"label": "pull [N]", "columns": list(frame.columns[1:]), "log": True}],
         "marks": [{"x": engaged * 1e3, "label": "engaged"}, {"x": released * 1e3, "label": "released"}],
         "lines": [

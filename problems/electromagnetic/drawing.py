@@ -9,9 +9,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from problems.disc import drawing as discs_drawn
-from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
-from problems.multi_plate.drawing import (
+from synth.drawing import (
+    Area,
+    Balloon,
+    Detail,
+    Dimension,
+    Drawable,
+    Drawing,
+    Hatch,
+    Item,
+    Line,
+    LineKind,
+    View,
+    Weight,
+    diameter,
+)
+
+from ..disc import drawing as discs_drawn
+from ..drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
+from ..multi_plate.drawing import (
     BORES,
     DRUM,
     END,
@@ -27,21 +43,6 @@ from problems.multi_plate.drawing import (
     pack_diameters,
     pack_items,
     pack_names,
-)
-from synth.drawing import (
-    Area,
-    Balloon,
-    Detail,
-    Dimension,
-    Drawable,
-    Drawing,
-    Hatch,
-    Item,
-    Line,
-    LineKind,
-    View,
-    Weight,
-    diameter,
 )
 
 BOSS = 7

@@ -4,7 +4,7 @@ Every function takes floats, arrays or CasADi symbols.
 
 Sources: the pull of an electromagnet in place of clamp springs is an idea of the notes on centrifugal clutches (S4,
 figure 2-27); geometry and circuit are derived (section 6.6 there). Circuit, winding and heat: see
-:mod:`problems.mechanics.magnetics`.
+:mod:`synth.problems.mechanics.magnetics`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from problems.mechanics import Quantity, magnetics
+from ..mechanics import Quantity, magnetics
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from problems.electromagnetic import formulas as pot_magnet
-from problems.friction.duty import Duty
-from problems.magnet import coil as coil_blocks
-from problems.mechanics import heat, magnetics, plates
-from problems.practice import UNSOURCED
-from problems.sources import S0, S4, TYPICAL
 from synth.declaration import Block, Declaration, Option, Requirement
+
+from ..friction.duty import Duty
+from ..magnet import coil as coil_blocks
+from ..mechanics import heat, magnetics, plates
+from ..practice import UNSOURCED
+from ..sources import S0, S4, TYPICAL
+from . import formulas as pot_magnet
 
 HOLDS = "magnet_overcomes_springs"
 STICKING_GAP = 0.3e-3  # m, least of the typical gaps
@@ -94,7 +95,7 @@ class MagnetRules(coil_blocks.CoilRules):
         lower=0,
         upper=10000,
         symbol="t_r_min",
-        text=f"Least ramp_time: no armature is faster ({UNSOURCED}; four units)",
+        text=f"Least ramp time: no armature is faster ({UNSOURCED}; four units)",
         source=UNSOURCED,
     )
 
@@ -358,10 +359,10 @@ def _name_shape(d: Declaration, *, shape: pot_magnet.PotMagnet, circuit: pot_mag
             "r_4",
             "Outside of the outer pole, whose area is that of the inner",
         ),
-        ("outer_pole_width", "mm", shape.outer_pole_width, "w_o", "Radial width r_4 - r_3 of the outer pole"),
-        ("pole_section", "cm2", shape.pole_section, "q_p", "Area A_p of one pole over pi, r_2**2 - r_b**2"),
-        ("pole_area", "cm2", shape.pole_area, "A_p", "Area of one pole; F_m is B**2 A_p/mu_0"),
-        ("disc_section", "cm2", shape.disc_section, "q_d", "Section of yoke and of armature over pi, r_4**2 - r_b**2"),
+        ("outer_pole_width", "mm", shape.outer_pole_width, "w_o", "Radial width of the outer pole"),
+        ("pole_section", "cm2", shape.pole_section, "q_p", "Area of one pole over pi"),
+        ("pole_area", "cm2", shape.pole_area, "A_p", "Area of one pole"),
+        ("disc_section", "cm2", shape.disc_section, "q_d", "Section of yoke and of armature over pi"),
         ("iron_path", "mm", shape.iron_path, "l_fe", "Mean length of the flux in iron"),
         ("yoke_ratio", "-", pot_magnet.yoke_flux_ratio(shape), "k_y", "Flux density of the yoke over that of the pole"),
         ("iron_flux_density", "T", densest, "B_fe", "Flux density of the iron that has most"),
@@ -451,7 +452,7 @@ def _declare_remarks(d: Declaration, *, magnet: Magnet) -> None:
     d.advise(
         "armature_sticks",
         wants.residual_gap < magnet.sticking_gap,
-        "with a residual_gap below 0.3 mm, or three quarters of its default with rules of practice, the remanence of "
+        "with a residual gap below 0.3 mm, or three quarters of its default with rules of practice, the remanence of "
         "the iron may hold the armature after the current is off",
         source=f"{S4}, section 6.6",
     )
@@ -464,7 +465,7 @@ def _declare_remarks(d: Declaration, *, magnet: Magnet) -> None:
     d.advise(
         "magnet_model",
         True,
-        "the magnet is sized by a circuit with typical figures (leakage_factor, residual_gap, iron curve) that no "
+        "the magnet is sized by a circuit with typical figures (leakage factor, residual gap, iron curve) that no "
         "source gives: confirm its force by a field calculation or a test",
         source=f"{S4}, section 6.6",
     )

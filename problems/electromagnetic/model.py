@@ -5,22 +5,35 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import cost, friction, practice, wear
-from problems.disc import body as disc_body
-from problems.disc import curves as disc_curves
-from problems.disc import pack as disc_pack
-from problems.electromagnetic import curves as magnet_curves
-from problems.electromagnetic import magnet as magnet_blocks
-from problems.friction import startup_curves
-from problems.mechanics import magnetics
-from problems.mechanics import ring as ring_formulas
-from problems.multi_plate import body as plate_body
-from problems.multi_plate import curves as pack_curves
-from problems.multi_plate import pack as plate_pack
-from problems.multi_plate.requirements import MadePackOptions, PackBodyRequirements, PackRules
-from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
+
+from .. import cost, friction, practice, wear
+from ..disc import body as disc_body
+from ..disc import curves as disc_curves
+from ..disc import pack as disc_pack
+from ..friction import startup_curves
+from ..mechanics import magnetics
+from ..mechanics import ring as ring_formulas
+from ..multi_plate import body as plate_body
+from ..multi_plate import curves as pack_curves
+from ..multi_plate import pack as plate_pack
+from ..multi_plate.requirements import MadePackOptions, PackBodyRequirements, PackRules
+from ..sources import (
+    ARCHARD,
+    DISC_RUN_OUT,
+    DISC_WEAR,
+    LIST_S0,
+    LIST_S1,
+    NEALE,
+    PLATES_IN_USE,
+    S1,
+    S4,
+    SHAFT,
+    SHIGLEY_DISC,
+)
+from . import curves as magnet_curves
+from . import magnet as magnet_blocks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,10 +56,16 @@ class ElectromagneticClutch(DesignProblem):
     title = "Electromagnetic clutch"
     sources = (
         "S4: notes on centrifugal clutches, figure 2-27: an electromagnet instead of clamp springs",
-        "S0: B. Szoke, Engagement and release of the multi-plate clutch (in Hungarian), 1966; appendix by I. Lipka",
-        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        LIST_S0,
+        LIST_S1,
         "Ampere's law, Maxwell's force, Froehlich's saturation curve, steady heat balance",
-        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+        NEALE,
+        SHIGLEY_DISC,
+        ARCHARD,
+        *PLATES_IN_USE,
+        DISC_WEAR,
+        DISC_RUN_OUT,
+        *SHAFT,
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap")
@@ -129,7 +148,7 @@ class ElectromagneticClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through pack, armature and pot, with details of a lining and of the gap."""
-        from problems.electromagnetic import drawing as magnet_drawing  # costly to import; searches do without
+        from . import drawing as magnet_drawing  # costly to import; searches do without
 
         complete = self.option("mass_scope") == "complete"
         if self.option("pack") == "disc":
@@ -156,7 +175,7 @@ class ElectromagneticClutch(DesignProblem):
                 shaft_diameter=practice.shaft_for(required),
                 wear_depth_limit=0.2 if lubrication == "oil" else WEAR_AT_MAGNET,
             )
-            practice.name_shaft_end(d, body_wants.shaft_diameter)
+            practice.declare_shaft(d, body_wants, diameter=body_wants.shaft_diameter, torque=required)
         if scope.rules:
             oil = lubrication == "oil"
             rules = d.block(PackRules, friction_surfaces_max=12 if oil else 8, release_gap_min=0.05 if oil else 0.3)
@@ -170,28 +189,20 @@ class ElectromagneticClutch(DesignProblem):
             d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
         )
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
-        plate_pack.refuse_impossible_pack(
-            d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
-        )
-        torque = plate_pack.declare_pack_torque(
-            d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=magnet.actuation_force
-        )
-        needs = ("guide_jams", magnet_blocks.HOLDS)
-        torques = friction.declare_torque(
-            d, duty=duty, pair=pair, required=required, torque_low=torque.low, torque_high=torque.high, needs=needs
-        )
-        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
-        area = pack.surfaces * ring.area
-        rubbing = pack.aid.area_factor * area
-        friction.declare_surface_loads(
+        torque, torques = plate_pack.declare_pack_torques(
             d,
             duty=duty,
+            options=options,
+            wants=wants,
+            ring=ring,
             pair=pair,
-            start=start,
-            area=area,
-            rubbing_area=rubbing,
-            pressure=torque.pressure,
-            rubbing_radius=ring.outer_radius,
+            pack=pack,
+            required=required,
+            force=magnet.actuation_force,
+            needs=(magnet_blocks.HOLDS,),
+        )
+        start, area = plate_pack.declare_pack_start(
+            d, duty=duty, ring=ring, pair=pair, pack=pack, torque=torque, torques=torques, ramp_time=ramp_time
         )
         size = plate_pack.pack_size(duty, wants, ring, pair, pack)
         plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size, rules=scope.rules)
@@ -275,7 +286,14 @@ class ElectromagneticClutch(DesignProblem):
 
         low, high = torque(pair.mu_low), torque(pair.mu_high)
         torques = friction.declare_torque(
-            d, duty=duty, pair=pair, required=required, torque_low=low, torque_high=high, needs=(magnet_blocks.HOLDS,)
+            d,
+            duty=duty,
+            pair=pair,
+            required=required,
+            torque_low=low,
+            torque_high=high,
+            source=f"{S1}, sizing",
+            needs=(magnet_blocks.HOLDS,),
         )
         disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
@@ -288,6 +306,7 @@ class ElectromagneticClutch(DesignProblem):
             area=area,
             rubbing_area=area,
             pressure=force / ring.area,
+            pressure_source=f"{S1}, p",
             rubbing_radius=ring.outer_radius,
         )
         size = disc_pack.disc_size(duty, ring, pair, pack)
@@ -344,7 +363,6 @@ class ElectromagneticClutch(DesignProblem):
             size=size,
             mass_of="The whole clutch" if scope.complete else "Pack and magnet with armature and coil",
             outside="Outside of pack or magnet",
-            across="the larger of both",
             along="The whole clutch" if scope.complete else "Released pack and engaged magnet",
         )
         friction.declare_envelope(

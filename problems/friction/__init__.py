@@ -6,7 +6,7 @@ so that one thing has one name, one text and one formula everywhere.
 
 from __future__ import annotations
 
-from problems.friction.duty import (
+from .duty import (
     COMMON,
     Duty,
     DutyOfDiscs,
@@ -19,7 +19,7 @@ from problems.friction.duty import (
     sizing_torque,
     sizing_torque_of,
 )
-from problems.friction.engagement import (
+from .engagement import (
     Pair,
     Startup,
     Torques,
@@ -30,7 +30,7 @@ from problems.friction.engagement import (
     declare_surface_loads,
     declare_torque,
 )
-from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring, declare_ring
+from .ring import RING_OUTER_DIAMETER_MAX, Ring, declare_ring
 
 __all__ = [
     "COMMON",

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.mechanics import plates, startup
-from problems.mechanics import ring as ring_formulas
-from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Declaration, Option, Requirement
 from synth.errors import InputError
+
+from ..mechanics import plates, startup
+from ..mechanics import ring as ring_formulas
+from ..sources import S0, S1, TYPICAL
 
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
@@ -49,13 +50,14 @@ class Duty(Block):
         ("nominal", "worst_case"),
         "nominal",
         symbol="basis",
-        text="nominal: mu_dynamic everywhere; worst_case: mu_min where much friction is needed, mu_max where it harms",
+        text="nominal: dynamic friction everywhere; worst_case: the least where much friction is needed, the greatest "
+        "where it harms",
         source="scatter band of the friction pair",
     )
     cooling = Option(
         table="cooling_options",
         symbol="cool",
-        text="How heat leaves the clutch; gives the default of heat_transfer",
+        text="How heat leaves the clutch; gives the default of heat transfer",
         source=f"{S0}, cooling of the plates",
     )
     allow_obsolete = Option(
@@ -105,7 +107,7 @@ class Duty(Block):
         upper=1e6,
         optional=True,
         symbol="T_start",
-        text="Torque to which the actuator is limited during start-up; above load_torque",
+        text="Torque to which the actuator is limited during start-up; above that of the load",
         source=f"{S1}, start-up with 1080 N m",
     )
     overload_torque = Requirement(
@@ -375,7 +377,7 @@ class Size:
     length: Any
 
 
-def declare_size(d: Declaration, *, size: Size, mass_of: str, outside: str, across: str, along: str) -> None:
+def declare_size(d: Declaration, *, size: Size, mass_of: str, outside: str, along: str) -> None:
     """Declare mass, outer diameter, length and volume.
 
     Parameters
@@ -384,10 +386,10 @@ def declare_size(d: Declaration, *, size: Size, mass_of: str, outside: str, acro
         Takes the declarations.
     size : Size
         What is declared.
-    mass_of, outside, across, along : str
-        What the mass is of, what is outermost and by which formula, and what the length runs over; for the reader.
+    mass_of, outside, along : str
+        What the mass is of, what is outermost, and what the length runs over; for the reader.
     """
-    d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source=f"geometry, {across}")
+    d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source="geometry")
     d.derive("length", "mm", size.length, symbol="L", text=along, source="geometry")
     d.derive(
         "volume",
@@ -395,6 +397,6 @@ def declare_size(d: Declaration, *, size: Size, mass_of: str, outside: str, acro
         plates.cylinder_volume(size.diameter, size.length),
         symbol="V",
         text="Enveloping cylinder",
-        source="geometry, pi D**2 L/4",
+        source="geometry",
     )
     d.derive("mass", "kg", size.mass, symbol="m", text=mass_of, source="geometry")

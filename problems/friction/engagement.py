@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.friction.duty import Duty
-from problems.mechanics import heat, plates, startup
-from problems.practice import lining_conditions
-from problems.sources import PRACTICE, S0, S1
+from ..mechanics import heat, plates, startup
+from ..practice import lining_conditions
+from ..sources import PRACTICE, S0, S1
+from .duty import Duty
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
@@ -109,6 +109,7 @@ def declare_torque(
     required: Any,
     torque_low: Any,
     torque_high: Any,
+    source: str,
     overload: Any = None,
     needs: tuple[str, ...] = (),
 ) -> Torques:
@@ -126,6 +127,8 @@ def declare_torque(
         Sizing torque M_req [N m].
     torque_low, torque_high : symbol
         Built capacity M_k with the friction counted on and with the friction feared [N m].
+    source : str
+        Of the formula of the built capacity, which is that of the family.
     overload : symbol, optional
         Torque that must stay below overload_torque; by default torque_high [N m].
     needs : tuple of str
@@ -141,7 +144,7 @@ def declare_torque(
         "N*m",
         required,
         symbol="M_req",
-        text="Sizing torque n M_load/(c_m c_v c_z)",
+        text="Sizing torque",
         source=f"{S1}, sizing",
     )
     d.derive(
@@ -150,8 +153,8 @@ def declare_torque(
         torque_low,
         symbol="M_k",
         needs=needs,
-        text="Built capacity with new lining (worst_case: with mu_min)",
-        source=f"{S0}, eq. (5); {S1}, sizing",
+        text="Built capacity with new lining (worst case: least friction)",
+        source=source,
     )
     if duty.friction_basis == "worst_case":
         d.step(
@@ -160,7 +163,7 @@ def declare_torque(
             torque_high,
             symbol="M_k_max",
             text="Built capacity with the friction that is feared",
-            source=f"{S0}, eq. (5); {S1}, sizing",
+            source=source,
         )
     given = duty.startup_torque
     torques = Torques(
@@ -173,7 +176,7 @@ def declare_torque(
         "N*m",
         torques.ramp_low,
         symbol="T_k",
-        text="Torque at the end of the ramp in start-up: torque, or startup_torque when given",
+        text="Torque at the end of the ramp in start-up: torque, or startup torque when given",
         source=f"{S1}, start-up",
     )
     d.at_least(
@@ -182,7 +185,7 @@ def declare_torque(
         required,
         "N*m",
         text="The clutch carries the sizing torque",
-        source=f"{S1}, sizing; {S0}, eq. (5)",
+        source=f"{S1}, sizing",
     )
     if given is not None:
         d.at_least(
@@ -280,7 +283,7 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
         startup.peak_slip_power(*high),
         symbol="P_peak",
         needs="never_starts",
-        text="Greatest friction power (worst_case: with mu_max)",
+        text="Greatest friction power (worst case: greatest friction)",
         source=f"{S1}, start-up; closed form",
     )
     _name_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
@@ -288,7 +291,7 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
         "jerk",
         "rad/s3",
         startup.torque_rate_per_inertia(torques.ramp_high, duty.driven_inertia, ramp_time),
-        text="Jerk of the driven side during the ramp (worst_case: with mu_max)",
+        text="Jerk of the driven side during the ramp (worst case: greatest friction)",
         source=f"{S1}, equation of motion",
     )
     acceleration = d.derive(
@@ -297,7 +300,7 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
         (startup.lock_torque(*high) - duty.load_torque) / duty.driven_inertia,
         symbol="acc",
         needs="never_starts",
-        text="Greatest acceleration, at the end of the ramp or of slip (worst_case: with mu_max)",
+        text="Greatest acceleration, at the end of the ramp or of slip (worst case: greatest friction)",
         source=f"{S1}, alpha_2C",
     )
     d.at_most(
@@ -332,13 +335,13 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
             "hard_start",
             ramp_time < slip_time / 10,
             "the ramp lasts less than a tenth of the slip, nearly a step: the driven side is jerked into motion; "
-            "jerk_limit asks for a soft start",
+            "jerk limit asks for a soft start",
             source=f"{S1}, soft start",
         )
     d.advise(
         "locks_in_ramp",
         slip_time < ramp_time,
-        "lock-up comes before the ramp ends: ramp_torque is not reached in start-up, and slip is longer than the "
+        "lock-up comes before the ramp ends: ramp torque is not reached in start-up, and slip is longer than the "
         "torque would allow",
         source=f"{S1}, omega2C <= omega1",
     )
@@ -354,25 +357,25 @@ def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: An
     def name(name: str, unit: str, value: Any, symbol: str, text: str) -> None:
         d.step(name, unit, value, symbol=symbol, text=text, source=source)
 
-    name("excess_torque", "N*m", low - load, "M_ex", "Torque that the load leaves for acceleration, T_k - M_load")
+    name("excess_torque", "N*m", low - load, "M_ex", "Torque that the load leaves for acceleration")
     energy = startup.kinetic_energy(inertia, speed)
-    name("kinetic_energy", "J", energy, "E_kin", "Energy of the driven side after lock-up, J2 omega1**2/2")
+    name("kinetic_energy", "J", energy, "E_kin", "Energy of the driven side after lock-up")
     waiting = startup.ramp_work(load, speed, ramp_time)
-    name("ramp_work", "J", waiting, "W_ramp", "Work against the load in half the ramp, M_load omega1 t_r/2")
+    name("ramp_work", "J", waiting, "W_ramp", "Work against the load in half the ramp")
     slip_speed = speed
     if duty.load_kind == "reactive":
         share = startup.excess_share(low, load)
-        name("excess_share", "-", share, "x_ex", "Share of the torque that accelerates, (T_k - M_load)/T_k")
+        name("excess_share", "-", share, "x_ex", "Share of the torque that accelerates")
         work = startup.run_up_work(low, load, energy)
-        name("run_up_work", "J", work, "W_run", "Friction work of a step of torque, E_kin T_k/(T_k - M_load)")
+        name("run_up_work", "J", work, "W_run", "Friction work of a step of torque")
         relief = startup.ramp_relief(low, load, inertia, ramp_time)
-        text = "Work that the load, moved in the ramp, takes over, M_load (T_k - M_load)**3 t_r**2/(24 J2 T_k**2)"
+        text = "Work that the load, moved in the ramp, takes over"
         name("ramp_relief", "J", relief, "W_rel", text)
         length = startup.catch_up_time(low, inertia, speed, ramp_time)
         name("catch_up_time", "s", length, "t_up", "Time from the start of the load to lock-up, if inside the ramp")
     else:
         bend = startup.driven_back_work(low, load, inertia, ramp_time)
-        text = "Work that the load, moved in the ramp, adds, M_load (4 M_load - T_k) t_r**2/(24 J2)"
+        text = "Work that the load, moved in the ramp, adds"
         name("driven_back_work", "J", bend, "W_back", text)
         locked = startup.active_lock_in_ramp(low, load, inertia * speed, ramp_time)
         name("ramp_lock_time", "s", locked, "t_lock", "Time until lock-up, if inside the ramp")
@@ -382,7 +385,7 @@ def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: An
         text = "Torque that the load leaves for acceleration with the friction that is feared"
         name("greatest_excess_torque", "N*m", high - load, "M_ex_max", text)
     root = startup.peak_power_root(high, load, inertia, slip_speed, ramp_time)
-    text = "Root of the greatest friction power inside the ramp, M_load + sqrt(M_load**2 + 6 T_k J2 omega/t_r)"
+    text = "Root of the greatest friction power inside the ramp"
     name("peak_power_root", "N*m", root, "M_root", text)
 
 
@@ -395,6 +398,7 @@ def declare_surface_loads(
     area: Any,
     rubbing_area: Any,
     pressure: Any,
+    pressure_source: str,
     rubbing_radius: Any,
 ) -> None:
     """Declare pressure, heat, power and sliding speed of the friction surfaces with their limits.
@@ -413,6 +417,8 @@ def declare_surface_loads(
         All friction surfaces, whole and as far as they rub [m2].
     pressure : symbol
         Largest pressure [Pa].
+    pressure_source : str
+        Of its formula, which is that of the family.
     rubbing_radius : symbol
         Outermost radius that rubs [m].
     """
@@ -456,7 +462,7 @@ def declare_surface_loads(
         pressure,
         symbol="p_s",
         text="Largest pressure on a friction surface",
-        source=f"{S1}, p; {S0}, eq. (3)",
+        source=pressure_source,
     )
     d.at_most(
         "surface_pressure",
@@ -472,7 +478,7 @@ def declare_surface_loads(
         pair.hourly_allow,
         "J/(mm2*h)",
         text="The lining stands the hourly heat",
-        source=f"{S1}, w <= w_allow",
+        source=f"{S1}, w",
     )
     d.at_most(
         "engagement_heat",

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from problems.mechanics import ring as ring_formulas
-from problems.sources import S0, S1
 from synth.declaration import Block, Declaration, Requirement, Variable
+
+from ..mechanics import ring as ring_formulas
+from ..sources import S0, S1
 
 # Largest friction ring offered to the search [mm]; the refusal torque_above_guide_limit reasons with it.
 RING_OUTER_DIAMETER_MAX = 800.0
@@ -127,7 +128,7 @@ def declare_ring(
     d.advise(
         "bad_ring",
         inner >= outer,
-        "ring_inner_diameter is not below ring_outer_diameter: this is no ring, and its other figures mean nothing",
+        "ring inner diameter is not below ring outer diameter: this is no ring, and its other figures mean nothing",
         source=S0,
     )
     d.at_least(

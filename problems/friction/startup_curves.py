@@ -13,16 +13,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import heat, motors, startup
-from problems.mechanics import ring as ring_formulas
 from synth.declaration import Setting
 from synth.errors import InputError
+from synth.text.numbers import number_text, typed_number
+
+from ..mechanics import heat, motors, startup
+from ..mechanics import ring as ring_formulas
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from problems.mechanics.startup_simulation import StartupRun
     from synth import DesignProblem
+
+    from ..mechanics.startup_simulation import StartupRun
 
 SETTINGS: Mapping[str, Setting] = {
     "motor": Setting("asynchronous motor that drives, with Kloss's torque curve", table="motors_iec"),
@@ -104,7 +107,7 @@ def simulate_duty(problem: DesignProblem, spec: Mapping[str, Any], design: Any, 
     StartupRun
         The start-up in time.
     """
-    from problems.mechanics.startup_simulation import simulate_startup  # scipy is not needed to declare
+    from ..mechanics.startup_simulation import simulate_startup  # scipy is not needed to declare
 
     pair = design.parts["friction_pair"]
     static = pair.get("mu_static")
@@ -145,7 +148,7 @@ def _driver(spec: Mapping[str, Any]) -> dict[str, Any]:
     if ratio < 0 or synchronous < spec["driver_speed"] * (1 - 1e-12):
         most = motor["synchronous_speed"] / spec["driver_speed"]
         raise InputError(
-            "settings: gear_ratio", ratio, f"above 0 and at most {most:.6g}, so that it reaches driver_speed"
+            "settings: gear_ratio", ratio, f"above 0 and at most {typed_number(most)}, so that it reaches driver_speed"
         )
     slip = motor["breakdown_slip"]
     curve = partial(
@@ -165,21 +168,22 @@ def _frame(problem: DesignProblem, spec: Mapping[str, Any], run: StartupRun, mor
     frame.attrs["title"] = f"{problem.title}, start-up: {run.headline()}{more}"
     inertia = run.question.driver_inertia
     motor = spec.get("motor")
-    driver = "at constant speed" if math.isinf(inertia) else f"of {inertia:.4g} kg m² at the clutch"
+    driver = "at constant speed" if math.isinf(inertia) else f"of {number_text(inertia)} kg m² at the clutch"
     if motor is not None:
-        driver = f"{motor['designation']} (Kloss), {inertia:.4g} kg m² at the clutch"
+        driver = f"{motor['designation']} (Kloss), {number_text(inertia)} kg m² at the clutch"
     elif not math.isinf(inertia):
-        driver += f" with {spec['driver_torque']:.4g} N m"
+        driver += f" with {number_text(spec['driver_torque'])} N m"
     load = problem.option("load_kind")
     frame.attrs["source"] = (
-        f"Load {spec['load_torque']:.4g} N m, {load}; driven inertia {spec['driven_inertia']:.4g} kg m²; "
+        f"Load {number_text(spec['load_torque'])} N m, {load}; "
+        f"driven inertia {number_text(spec['driven_inertia'])} kg m²; "
         f"driver {driver}. Equations of motion integrated (S1, eq. (1), (2))."
     )
     return frame
 
 
 def _temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun) -> pd.DataFrame:
-    from problems.mechanics.startup_simulation import simulate_switching
+    from ..mechanics.startup_simulation import simulate_switching
 
     capacity, surface = design.steps["heat_capacity"], design.steps["cooled_area"]
     switching = simulate_switching(run, spec["engagements_per_hour"], capacity, spec["heat_transfer"], surface)
@@ -253,7 +257,7 @@ def startup_over_torque(problem: DesignProblem, spec: Mapping[str, Any], design:
         "panels": panels,
         "marks": marks,
         "lines": [{"panel": 1, "y": spec["slip_time_limit"], "label": "slip_time_limit"}],
-        "source": f"Load {load:.4g} N m, {kind}; driven inertia {inertia:.4g} kg m²; driver at constant speed. "
-        "Closed forms of the start-up (S1).",
+        "source": f"Load {number_text(load)} N m, {kind}; driven inertia {number_text(inertia)} kg m²; driver at "
+        "constant speed. Closed forms of the start-up (S1).",
     }
     return frame

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from problems.mechanics import magnetics
-from problems.practice import UNSOURCED
-from problems.sources import S4, TYPICAL
 from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 
-WHOLE = 1e-9  # of a turn: what is so little beyond a whole number is rounding
+from ..mechanics import magnetics
+from ..practice import UNSOURCED
+from ..sources import S4, TYPICAL
+
+WHOLE = 1e-9  # of a turn: what lacks no more to a whole number is rounding
 
 
 class CoilRequirements(Block):
@@ -140,7 +141,7 @@ class CoilRules(Block):
         lower=0,
         upper=1,
         symbol="u_U_min",
-        text=f"Least share of coil_voltage_limit that the coil takes: it is wound for its supply ({UNSOURCED})",
+        text=f"Least share of coil voltage limit that the coil takes: it is wound for its supply ({UNSOURCED})",
         source=UNSOURCED,
     )
 
@@ -162,7 +163,7 @@ class CoilUnknowns(Block):
         0.02,
         1.6,
         symbol="B",
-        text="Flux density in the working gap; ampere_turns follow from it",
+        text="Flux density in the working gap; ampere turns follow from it",
         source=f"{S4} [P4], section 8",
     )
     winding_wire = Slot("winding_wire", symbol="wire", text="Enamelled copper wire", source="table winding_wire")
@@ -260,20 +261,20 @@ def declare_winding(
     window = unknowns.coil_length * unknowns.coil_height
     # Of one row of the table alone, so that it is known per wire.
     copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
-    turns = d.step(
+    filled = d.step(
         "window_turns",
         "-",
         magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
         symbol="N_fill",
-        text="Turns that fill the window, as current and flux are computed with them",
+        text="Turns that fill the window, as its heat is computed with them",
         source=f"{S4} [P6]",
     )
-    d.derive(
+    turns = d.derive(
         "turns",
         "-",
-        np.ceil(turns - WHOLE),
+        np.maximum(np.floor(filled + WHOLE), 1.0),
         symbol="N_t",
-        text="Turns to wind: what fills the window, up to the next whole one",
+        text="Turns to wind: whole ones that the window holds",
         source=f"{S4} [P6]",
     )
     ampere_turns = d.derive(
@@ -285,7 +286,7 @@ def declare_winding(
         text="Ampere-turns of the circuit: gaps and iron",
         source=f"{S4} [P4]",
     )
-    current = d.derive(
+    d.derive(
         "current",
         "A",
         ampere_turns / turns,
@@ -308,7 +309,8 @@ def declare_winding(
     )
     runaway = magnetics.runaway_loss(around.heat_transfer, around.surface)
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
-    brushes = around.brush_drop * current
+    # As all heat by the turns that fill the window: whole ones jump from size to size, and proofs take much longer.
+    brushes = around.brush_drop * ampere_turns / filled
     heat = around.other_heat + brushes
     _name_heat(d, wants=wants, unknowns=unknowns, turns=turns, bore_radius=bore_radius, around=around)
     if not isinstance(around.brush_drop, float):
@@ -327,10 +329,10 @@ def declare_winding(
     resistance_rise = magnetics.resistance_rise(cold, runaway, ratio, heat)
     section = copper_share * window
     for name, unit, value, symbol, text in (
-        ("copper_share", "-", copper_share, "k_cu", "Copper over the area of the window, k_wind a_w/d_o**2"),
+        ("copper_share", "-", copper_share, "k_cu", "Copper over the area of the window"),
         ("copper_section", "mm2", section, "A_cu", "Copper of all turns"),
         ("coil_density", "kg/m3", magnetics.COPPER_DENSITY * copper_share, "rho_coil", "Copper over room of the coil"),
-        ("cold_copper_loss", "W", cold, "P_20", "Copper loss at 20 degC, rho_e 2 pi r_c NI**2/(k_cu h_c l_m)"),
+        ("cold_copper_loss", "W", cold, "P_20", "Copper loss at 20 degC"),
         ("runaway_loss", "W", runaway, "P_run", "Copper loss at 20 degC at which the coil heats up without end"),
         ("ambient_ratio", "-", ratio, "k_amb", "Resistance at ambient temperature over that at 20 degC"),
         ("resistance_rise", "-", resistance_rise, "k_rise", "Rise of the resistance by heating, over that at 20 degC"),
@@ -410,7 +412,7 @@ def declare_winding(
     )
     d.at_least(
         "turns",
-        turns,
+        filled,
         1.0,
         "-",
         text="The window holds the wire at least once",
@@ -444,14 +446,21 @@ def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, lin
     text = "Loss of the hot copper over the square of the ampere-turns"
     d.step("unit_loss", "W/A2", winding.unit_loss, symbol="p_NI", text=text, source=f"{S4} [P7]")
     text = "Flux of the coil over its ampere-turns"
-    d.step("linkage", "V*s/A", linkage, symbol="Phi_NI", text=text, source="L of the circuit over N**2; derived")
+    d.step(
+        "linkage",
+        "V*s/A",
+        linkage,
+        symbol="Phi_NI",
+        text=text,
+        source="inductance over the square of the turns; derived",
+    )
     rise = d.derive(
         "rise_time",
         "s",
         magnetics.current_rise_time(magnetics.time_constant(linkage, winding.unit_loss), rules.over_excitation),
         symbol="t_rise",
         needs=("iron_saturation", "thermal_stability"),
-        text="Current of the hot coil up to its steady value, with over_excitation",
+        text="Current of the hot coil up to its steady value, with over excitation",
         source="L/R of the circuit; derived",
     )
     d.objective("rise_time", default=False)
@@ -558,7 +567,7 @@ def _name_heat(
         "A",
         wants.current_density_limit * unknowns.winding_wire.copper_area,
         symbol="I_max",
-        text="Current at current_density_limit",
+        text="Current at current density limit",
         source=f"{S4}, section 6.1",
     )
     mean_radius = bore_radius + unknowns.coil_height / 2

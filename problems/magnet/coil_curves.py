@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import magnetics
+from synth.text.numbers import number_text
+
+from ..mechanics import magnetics
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +23,10 @@ ZERO_CELSIUS = 273.15  # [K]
 
 @dataclass(frozen=True)
 class Warmth:
-    """What heats and cools the body of one design, all in SI; ``limited_by`` says whose limit it is."""
+    """What heats and cools the body of one design, all in SI; ``limited_by`` says whose limit it is.
+
+    ``share`` is turns to wind over turns that fill the window: as much heat as in a filled one, like the design itself.
+    """
 
     conductance: float
     ambient: float
@@ -30,16 +35,24 @@ class Warmth:
     other_heat: float
     brush_drop: float
     resistance: float
+    share: float
 
     def copper_loss(self, current: Any, temperature: Any) -> Any:
         """Return the copper loss at a temperature of the coil [W]."""
-        return current**2 * self.resistance * magnetics.resistance_ratio(temperature)
+        return self._cold(current) * magnetics.resistance_ratio(temperature)
+
+    def other_loss(self, current: Any) -> Any:
+        """Return what heats the body beside its copper [W]."""
+        return self.other_heat + self.share * self.brush_drop * current
+
+    def _cold(self, current: Any) -> Any:
+        """Return the copper loss at 20 degC [W]."""
+        return self.share * current**2 * self.resistance
 
     def rise(self, current: Any) -> Any:
         """Return the steady temperature rise under constant current; not-a-number beyond thermal runaway [K]."""
-        cold = current**2 * self.resistance
+        cold, other = self._cold(current), self.other_loss(current)
         runaway = self.conductance / magnetics.COPPER_COEFFICIENT
-        other = self.other_heat + self.brush_drop * current
         ratio = magnetics.resistance_ratio(self.ambient)
         with np.errstate(divide="ignore"):
             return np.where(cold < runaway, magnetics.coil_temperature_rise(cold, runaway, ratio, other), np.nan)
@@ -68,6 +81,7 @@ def warmth(spec: Mapping[str, Any], design: Any, limited_by: str) -> Warmth:
         other_heat=step["coil_other_heat"],
         brush_drop=step["coil_brush_drop"],
         resistance=step["coil_resistance"],
+        share=design.values["turns"] / step["window_turns"],
     )
 
 
@@ -197,13 +211,13 @@ class CoilDrawings:
         frame = pd.DataFrame(
             {
                 "coil temperature [degC]": temperature - ZERO_CELSIUS,
-                "constant voltage [N*m]": self.torque_of(current * self.design.steps["window_turns"]),
+                "constant voltage [N*m]": self.torque_of(current * value["turns"]),
                 "constant current [N*m]": np.full_like(temperature, value["torque"]),
                 "constant voltage [A]": current,
             }
         )
         frame.attrs = {
-            "title": f"{self.problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
+            "title": f"{self.problem.title}: torque over temperature at {number_text(value['coil_voltage'], 3)} V",
             "panels": [
                 {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
                 {"label": "current [A]", "columns": ["constant voltage [A]"]},
@@ -227,16 +241,15 @@ class CoilDrawings:
         import pandas as pd
 
         value, heat, temperature = self.design.values, self.heat, self.heat.temperatures
-        other = heat.other_heat + heat.brush_drop * value["current"]
         frame = pd.DataFrame(
             {
                 "temperature [degC]": temperature - ZERO_CELSIUS,
-                "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
+                "heat made [W]": heat.copper_loss(value["current"], temperature) + heat.other_loss(value["current"]),
                 "heat given off [W]": heat.conductance * (temperature - heat.ambient),
             }
         )
         frame.attrs = {
-            "title": f"{self.problem.title}: steady heat at {value['current']:.3g} A",
+            "title": f"{self.problem.title}: steady heat at {number_text(value['current'], 3)} A",
             "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
             "marks": heat.marks(self.design.steps["coil_temperature"]),
             "source": self.source,

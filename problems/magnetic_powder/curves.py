@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS, CoilDrawings
-from problems.magnetic_powder import formulas as powder
-from problems.sources import S4
+from synth.text.numbers import number_text
+
+from ..magnet import coil_curves
+from ..magnet.coil_curves import POINTS, CoilDrawings
+from ..sources import S4
+from . import formulas as powder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,7 +98,7 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
         columns[f"poles of {length * 1e3:.0f} mm [kPa]"] = needed / powder.torque(1.0, radius, length) / 1e3
     frame = pd.DataFrame(columns)
     frame.attrs = {
-        "title": f"{problem.title}: shear stress for {needed:.4g} N m",
+        "title": f"{problem.title}: shear stress for {number_text(needed)} N m",
         "panels": [{"label": "shear stress [kPa]", "columns": list(frame.columns[1:]), "log": True}],
         "source": f"{S4} [P5]",
     }
@@ -145,7 +147,7 @@ def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataF
         From no current to half as much again as the design has.
     """
     body = built(spec, coil.design)
-    flux_density = body.flux_density(coil.currents * coil.design.steps["window_turns"])
+    flux_density = body.flux_density(coil.currents * coil.design.values["turns"])
     iron = body.circuit.iron(flux_density)
     return coil.torque_over_current(
         {

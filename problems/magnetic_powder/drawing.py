@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
 from synth.drawing import (
     Area,
     Balloon,
@@ -25,6 +24,9 @@ from synth.drawing import (
     diameter,
     rectangle,
 )
+from synth.text.numbers import number_text
+
+from ..drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
 
 ROTOR, POWDER, BODY, COIL, DRUM = 1, 2, 3, 4, 5
 
@@ -128,7 +130,7 @@ def powder_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> D
         remarks=(
             "The rotor stands in the middle of the body, its web in the middle of the rotor: the model knows the "
             "thickness of the web, not its place, and counts it as a full disc.",
-            f"Powder is drawn in the whole gap; it fills {size.number('fill_factor'):.3g} of it.",
+            f"Powder is drawn in the whole gap; it fills {number_text(size.number('fill_factor'), 3)} of it.",
         ),
         weights=tuple(weights),
     )

@@ -16,9 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from problems.mechanics import Quantity, magnetics
-from problems.mechanics.magnetics import gap_field
 from synth.special import special
+
+from ..mechanics import Quantity, magnetics
+from ..mechanics.magnetics import gap_field
 
 IRON_DENSITY = 7870.0  # of solid iron [kg/m3]
 # What closes a powder clutch and carries it: proportions of practice, of no source that could be opened.

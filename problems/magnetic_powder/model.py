@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, practice
-from problems.magnet import coil as coil_blocks
-from problems.magnetic_powder import curves as powder_curves
-from problems.magnetic_powder import formulas as powder
-from problems.mechanics import magnetics
-from problems.practice import UNSOURCED
-from problems.sources import S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
+
+from .. import cost, practice
+from ..magnet import coil as coil_blocks
+from ..mechanics import magnetics
+from ..practice import UNSOURCED
+from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
+from . import curves as powder_curves
+from . import formulas as powder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +58,7 @@ class Wants(Block):
         lower=1,
         upper=5,
         symbol="k_M",
-        text="Torque at full current over required_torque",
+        text="Torque at full current over required torque",
         source=f"{S4}, section 6.1",
     )
     driver_speed = Requirement(
@@ -113,7 +114,7 @@ class Wants(Block):
         lower=0,
         upper=100,
         symbol="h_rot",
-        text=f"W/(m2 K) per (m/s)**0.8 of the rim of a rotating coil body ({TYPICAL})",
+        text=f"W/(m2 K) per 0.8th power of the speed of the rim in m/s, of a rotating coil body ({TYPICAL})",
         source=f"{S4} [P7]",
         group="model",
     )
@@ -234,7 +235,7 @@ class PowderRules(coil_blocks.CoilRules):
         lower=0.01,
         upper=1000,
         symbol="k_pow",
-        text="Largest mass of powder over required_torque (makers take 1.2 to 2.5)",
+        text="Largest mass of powder over required torque (makers take 1.2 to 2.5)",
         source=UNSOURCED,
     )
     powder_load_limit = Requirement(
@@ -270,6 +271,8 @@ class MagneticPowderClutch(DesignProblem):
         "S4: notes on centrifugal clutches, powder clutch (coil about 50 W, 60 to 100 cm3 of carbonyl iron powder)",
         "Chen, Tian et al., Smart Mater. Struct. 22 (2013) 115036: form of the shear curve",
         "Ampere's law, Froehlich's saturation curve, steady heat balance",
+        STANDARD_GRAVITY,
+        *SHAFT,
     )
     understands = (
         "required_torque",
@@ -285,11 +288,11 @@ class MagneticPowderClutch(DesignProblem):
         scope = practice.declare_scope(d)
         wants = d.block(Wants)
         if scope.rules:
-            shaft = d.block(
-                practice.ShaftSize, shaft_diameter=practice.shaft_for(wants.torque_reserve * wants.required_torque)
-            )
-            practice.name_shaft_end(d, shaft.shaft_diameter)
+            torque = wants.torque_reserve * wants.required_torque
+            shaft = d.block(practice.ShaftSize, shaft_diameter=practice.shaft_for(torque))
             bore = d.block(Bore, shaft_radius=shaft.shaft_diameter / 2)
+            thinnest = np.minimum(shaft.shaft_diameter, 2 * bore.shaft_radius)
+            practice.declare_shaft(d, shaft, diameter=thinnest, torque=torque)
         else:
             bore = d.block(Bore)
         iron = coil_blocks.declare_coil_requirements(d)
@@ -361,14 +364,14 @@ class MagneticPowderClutch(DesignProblem):
             "W",
             wants.required_torque * wants.slip_speed,
             symbol="P_slip",
-            text="Heat of continuous slip under required_torque",
+            text="Heat of continuous slip under required torque",
             source=f"{S4} [P9]",
         )
         moving = magnetics.heat_transfer_in_motion(
             iron.still_heat_transfer, wants.rotating_heat_transfer, wants.driver_speed, layout.outer_radius
         )
         transfer = coil.select({"stationary": iron.still_heat_transfer, "rotating": moving})
-        text = "Surface coefficient of a turning body, h_still + h_rot (omega R_out)**0.8 with the speed in m/s"
+        text = "Surface coefficient of a turning body"
         d.step("moving_heat_transfer", "W/(m2*K)", moving, symbol="h_mov", text=text, source=f"{S4} [P7]")
         text = "Surface coefficient of the body"
         d.step("coil_heat_transfer", "W/(m2*K)", transfer, symbol="h_c_body", text=text, source=f"{S4} [P7]")
@@ -436,7 +439,7 @@ class MagneticPowderClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through rotor, gaps, body and coil; of a complete clutch shields and shaft as well."""
-        from problems.magnetic_powder import drawing as powder_drawing  # costly to import; searches do without
+        from . import drawing as powder_drawing  # costly to import; searches do without
 
         return powder_drawing.powder_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
@@ -467,7 +470,7 @@ class MagneticPowderClutch(DesignProblem):
 
 def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
-    text = "Shear stress of the powder, tau_sat/(1 + (B_h/B)**2)"
+    text = "Shear stress of the powder"
     d.step("shear_stress", "N/mm2", stress, symbol="tau_p", text=text, source=f"{S4} [P1]")
     torque = d.derive(
         "torque",
@@ -536,9 +539,9 @@ def _declare_circuit(
     field = magnetics.froehlich_field(found.densest, circuit.iron_reluctance, circuit.iron_saturation)
     for name, unit, value, symbol, text in (
         ("pole_area", "cm2", area, "A_p", "Area of one pole face"),
-        ("powder_excitation", "A/T", turns, "theta_p", "Ampere-turns of twice the powder over B, 2 g/(mu_0 mu_r)"),
-        ("air_excitation", "A/T", air, "theta_a", "Ampere-turns of twice the air gap over B, 2 g_a k_a/mu_0"),
-        ("yoke_flux", "T", found.yoke, "B_y", "Flux density of the yoke outside the coil, leak B A_p/(2 pi r t_y)"),
+        ("powder_excitation", "A/T", turns, "theta_p", "Ampere-turns of twice the powder over the flux density"),
+        ("air_excitation", "A/T", air, "theta_a", "Ampere-turns of twice the air gap over the flux density"),
+        ("yoke_flux", "T", found.yoke, "B_y", "Flux density of the yoke outside the coil"),
         ("rotor_flux", "T", found.rotor, "B_r", "Flux density in the rim of the rotor"),
         ("iron_flux_density", "T", found.densest, "B_fe", "Flux density of the iron that has most"),
         ("iron_flux_ratio", "-", circuit.iron(1.0).densest, "k_fe", "Flux density of that iron over B"),
@@ -556,13 +559,13 @@ def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
         ("drum_radius", "mm", layout.drum_radius, "r_d", "Outside of the drum"),
         ("body_bore", "mm", layout.bore, "r_b", "Bore of the body around the coil"),
         ("outer_radius", "mm", layout.outer_radius, "R_out", "Outside of the yoke"),
-        ("face_length", "mm", layout.face_length, "l_f", "Length of rotor and powder gap, 2 l_p + l_m"),
+        ("face_length", "mm", layout.face_length, "l_f", "Length of rotor and powder gap"),
         (
             "rim_section_width",
             "mm",
             rim,
             "w_rim",
-            "Section of the rim of the rotor over its circumference, t (1 - t/(2 r_g))",
+            "Section of the rim of the rotor over its circumference",
         ),
         ("rim_radius", "mm", layout.gap_radius - layout.thickness, "r_rim", "Inside of the rim of the rotor"),
         ("yoke_ratio", "-", layout.yoke_ratio, "k_y", "Mean radius of the yoke over that of the powder gap"),
@@ -683,7 +686,7 @@ def _declare_size(
             "mm",
             layout.length,
             symbol="L_pk",
-            text="Length of the body, 2 l_p + l_m + 2 t_y",
+            text="Length of the body",
             source="geometry",
         )
     length = d.derive(
@@ -691,7 +694,7 @@ def _declare_size(
         "mm",
         layout.length + (2 * powder.SHIELD_THICKNESS if scope.complete else 0.0),
         symbol="L",
-        text="Length of the body with its shields" if scope.complete else "Length of the body, 2 l_p + l_m + 2 t_y",
+        text="Length of the body with its shields" if scope.complete else "Length of the body",
         source="geometry",
     )
     d.derive(
@@ -756,7 +759,7 @@ def _declare_rules(
         "g/(N*m)",
         sized.powder / wants.required_torque,
         symbol="q_pow",
-        text="Powder over required_torque",
+        text="Powder over required torque",
         source="definition",
     )
     d.at_most(
@@ -778,7 +781,7 @@ def _declare_rules(
     d.advise(
         "powder_load",
         load > rules.powder_load_limit,
-        "the slip heats the powder more than powder_load_limit: its life is short, unless forced air cools the clutch",
+        "the slip heats the powder more than powder load limit: its life is short, unless forced air cools the clutch",
         source=f"{UNSOURCED}; {S4} [P9]",
     )
 
@@ -788,7 +791,7 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
     d.advise(
         "powder_calibration",
         True,
-        "torque, flux density and coil power rest on the shear curve of the powder (tau_sat, half_flux_density), an "
+        "torque, flux density and coil power rest on the shear curve of the powder (saturation, half flux density), an "
         "unverified calibration: put measured values into table powders before the design is released",
         source=f"{S4} [P1], section 10",
     )

@@ -10,13 +10,13 @@
   was wrong is corrected at once and stands there under "Changes that alter numbers".
 * Public is what ``__all__`` of this package and of its modules names. What is not public starts with an underscore.
 
-A name belongs to its module, and ``from problems.mechanics import ring`` is the way in: ``contact_force`` is one thing
-in :mod:`problems.mechanics.guide_friction` and another in :mod:`problems.mechanics.two_spring`. Modules are imported
-when they are asked for; none imports CasADi.
+A name belongs to its module, and ``from synth.problems.mechanics import ring`` is the way in: ``contact_force`` is one
+thing in :mod:`synth.problems.mechanics.guide_friction` and another in :mod:`synth.problems.mechanics.two_spring`.
+Modules are imported when they are asked for; none imports CasADi.
 
 Examples
 --------
->>> from problems.mechanics import ring
+>>> from synth.problems.mechanics import ring
 >>> radius = ring.friction_radius(0.206488499, 0.25)
 >>> ring.friction_torque(0.1, 13394.966, radius, 10)
 1411.76

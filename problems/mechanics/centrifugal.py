@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
 from synth.special import special
+
+from . import Quantity
 
 __all__ = [
     "COVER",
@@ -726,7 +727,7 @@ def lining_pressure(force: Quantity, inner_radius: Quantity, outer_radius: Quant
     References
     ----------
     Shigley, Mechanical Engineering Design, disc clutch with uniform wear; the same as
-    :func:`problems.mechanics.ring.worn_peak_pressure`, with each radius named less often.
+    :func:`synth.problems.mechanics.ring.worn_peak_pressure`, with each radius named less often.
 
     Examples
     --------
@@ -798,7 +799,7 @@ def force_for_torque(torque: Quantity, friction: Quantity, surfaces: Quantity, f
 
     Examples
     --------
-    Computed here, the inverse of :func:`problems.mechanics.ring.friction_torque`:
+    Computed here, the inverse of :func:`synth.problems.mechanics.ring.friction_torque`:
 
     >>> force_for_torque(105.0, 0.35, 2, 0.075)
     2000.0
@@ -884,7 +885,7 @@ def ball_pressure(normal_force: Quantity, ball_diameter: Quantity, contact_modul
     ball_diameter : scalar, array or symbol
         d_b = 2 R [m].
     contact_modulus : scalar, array or symbol
-        E* [Pa], of :func:`problems.mechanics.contact.contact_modulus`.
+        E* [Pa], of :func:`synth.problems.mechanics.contact.contact_modulus`.
 
     Returns
     -------

@@ -16,7 +16,7 @@ only; the relations are derived from them.
 
 from __future__ import annotations
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "band_squared",
@@ -328,7 +328,7 @@ def travel_angle(
     -------
     scalar, array or symbol
         phi [rad]. Singular at the snap limit; a design program takes phi as the parameter and the speed that a force
-        belongs to (:func:`problems.mechanics.centrifugal.speed_for_force`).
+        belongs to (:func:`synth.problems.mechanics.centrifugal.speed_for_force`).
 
     References
     ----------

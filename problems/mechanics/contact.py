@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "barrel_contact_pressure",

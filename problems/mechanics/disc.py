@@ -1,7 +1,7 @@
 """Disc clutch: mass, inertia, length and pressure of one or two lined discs between pressure plates.
 
-Torque, ring integrals and sizing are those of :mod:`problems.mechanics.ring`. Every function takes floats, arrays or
-CasADi symbols.
+Torque, ring integrals and sizing are those of :mod:`synth.problems.mechanics.ring`. Every function takes floats, arrays
+or CasADi symbols.
 
 Sources: S1 (lecture on friction clutches), disc clutch and its use in motor cars; Shigley (Mechanical Engineering
 Design), uniform wear; geometry.
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "COVER_LEAST",

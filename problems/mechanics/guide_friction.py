@@ -28,10 +28,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from problems.mechanics import Quantity
-from problems.mechanics.ring import friction_radius, mean_diameter, ring_ratio
 from synth.errors import InputError
 from synth.special import special
+from synth.text.numbers import typed_number
+
+from . import Quantity
+from .ring import friction_radius, mean_diameter, ring_ratio
 
 __all__ = [
     "GUIDE_SERIES",
@@ -802,7 +804,9 @@ def guide_number_of_effectiveness(effectiveness: float, surfaces: float, series:
 
     low, high = np.log(1e-10), np.log(1e10)
     if excess(low) < 0 or excess(high) > 0:
-        raise InputError("effectiveness", effectiveness, f"a value that {surfaces:g} surfaces of series {series} reach")
+        raise InputError(
+            "effectiveness", effectiveness, f"a value that {typed_number(surfaces)} surfaces of series {series} reach"
+        )
     return float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
 
 
@@ -951,11 +955,13 @@ def _solve_grip(unknown: str, series: str, known: dict[str, float]) -> float:
     if unknown == "inner_radius":
         given = known["outer_radius"]
         if not 2 * given / 3 <= radius <= given:
-            raise InputError("outer_radius", given, f"a radius between {radius:g} and {1.5 * radius:g} m")
+            raise InputError(
+                "outer_radius", given, f"a radius between {typed_number(radius)} and {typed_number(1.5 * radius)} m"
+            )
     else:
         given = known["inner_radius"]
         if radius < given:
-            raise InputError("inner_radius", given, f"a radius of at most {radius:g} m")
+            raise InputError("inner_radius", given, f"a radius of at most {typed_number(radius)} m")
     # x**2 + x (given - 1.5 r) + given**2 - 1.5 r given = 0, from 2/3 (r1**2 + r1 r2 + r2**2)/(r1 + r2) = r
     half = (given - 1.5 * radius) / 2
     return float(-half + np.sqrt(half**2 - given**2 + 1.5 * radius * given))
@@ -978,7 +984,11 @@ def _solve_guides(unknown: str, series: str, known: dict[str, float]) -> float:
         raise InputError(other_name, known[other_name], f"a larger radius: with this one no {unknown} loses so little")
     found = 1 / inverse
     if unknown == "inner_spline_radius" and found >= known["inner_radius"]:
-        raise InputError("inner_radius", known["inner_radius"], f"a radius above the spline radius {found:g} m")
+        raise InputError(
+            "inner_radius", known["inner_radius"], f"a radius above the spline radius {typed_number(found)} m"
+        )
     if unknown == "outer_spline_radius" and found <= known["outer_radius"]:
-        raise InputError("outer_radius", known["outer_radius"], f"a radius below the spline radius {found:g} m")
+        raise InputError(
+            "outer_radius", known["outer_radius"], f"a radius below the spline radius {typed_number(found)} m"
+        )
     return float(found)

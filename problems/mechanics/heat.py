@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
 from synth.special import special
+
+from . import Quantity
 
 __all__ = [
     "adiabatic_rise",

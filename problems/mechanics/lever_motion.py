@@ -5,7 +5,7 @@ from them. So a lever that snaps is drawn as it is: its speed falls while it swi
 in a jump.
 
 Source: S4 (notes on centrifugal clutches), figures 2-24 to 2-26; the relations are derived, see
-:mod:`problems.mechanics.centrifugal_levers`.
+:mod:`synth.problems.mechanics.centrifugal_levers`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from problems.mechanics import Quantity, centrifugal
-from problems.mechanics import centrifugal_levers as levers
+from . import Quantity, centrifugal
+from . import centrifugal_levers as levers
 
 __all__ = [
     "CLAMP",

@@ -13,9 +13,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from problems.mechanics import Quantity
 from synth.errors import InputError
 from synth.special import special
+
+from . import Quantity
 
 __all__ = [
     "COPPER_COEFFICIENT",

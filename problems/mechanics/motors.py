@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "breakdown_slip",

@@ -24,9 +24,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from problems.mechanics import Quantity
 from synth.errors import InputError
 from synth.special import special
+
+from . import Quantity
 
 __all__ = [
     "LOAD_KINDS",

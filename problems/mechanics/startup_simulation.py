@@ -1,7 +1,7 @@
 """Start-up of a driven inertia through a slipping clutch, integrated in time.
 
-What the closed forms of :mod:`problems.mechanics.startup` leave out is here: a driver of finite inertia with a motor
-curve, any course of the ramp, lock-up that is lost again, a driver that stalls, heat that piles up.
+What the closed forms of :mod:`synth.problems.mechanics.startup` leave out is here: a driver of finite inertia with a
+motor curve, any course of the ramp, lock-up that is lost again, a driver that stalls, heat that piles up.
 
 Equations of motion (S1, lecture): M1 - M_k = J1 domega1/dt (1) and M_k - M2 = J2 domega2/dt (2). While the clutch
 slips, M_k is what the ramp gives, in the direction of slip; locked, it is what both sides need to keep one speed.
@@ -22,8 +22,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
-from problems.mechanics.startup import LOAD_KINDS
 from synth.errors import InputError
+from synth.text.numbers import number_text, typed_number
+
+from .startup import LOAD_KINDS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -257,12 +259,12 @@ class StartupRun:
     def headline(self) -> str:
         """Return the outcome in words."""
         if math.isnan(self.slip_time):
-            return "the driver stalls" if self.outcome == "stalled" else f"no lock-up within {self.end:.4g} s"
-        text = f"lock-up after {self.slip_time:.4g} s"
+            return "the driver stalls" if self.outcome == "stalled" else f"no lock-up within {number_text(self.end)} s"
+        text = f"lock-up after {number_text(self.slip_time)} s"
         if self.outcome == "locked" and not self.keeps_load:
             return f"{text}, but the driver cannot hold the load"
         ends = {"stalled": ", then the driver stalls", "slipping": ", then slip again"}
-        return f"{text}{ends.get(self.outcome, f', friction work {self.friction_work:.5g} J')}"
+        return f"{text}{ends.get(self.outcome, f', friction work {number_text(self.friction_work)} J')}"
 
     def _rows(self, piece: _Piece, number: int) -> list[list[float]]:
         question, mode = self.question, piece.mode
@@ -740,7 +742,8 @@ class SwitchingRun:
         if limit is not None:
             lines.append({"panel": 0, "y": limit, "label": "allowed rise"})
         frame.attrs = {
-            "title": f"Repeated switching: every {self.cycle_time:.4g} s, peak {self.peak_rise:.4g} K over ambient",
+            "title": f"Repeated switching: every {number_text(self.cycle_time)} s, "
+            f"peak {number_text(self.peak_rise)} K over ambient",
             "x": "time [min]",
             "panels": [{"label": "temperature rise [K]", "columns": ["temperature_rise [K]"]}],
             "lines": lines,
@@ -793,7 +796,7 @@ def simulate_switching(
     References
     ----------
     S1 (lecture), repeated switching; lumped heat balance. With the work as a sudden step it is
-    :func:`problems.mechanics.heat.peak_temperature_rise`.
+    :func:`synth.problems.mechanics.heat.peak_temperature_rise`.
 
     Examples
     --------
@@ -808,7 +811,7 @@ def simulate_switching(
     cycle = 1 / _positive("switching_rate", switching_rate, "1/s")
     if run.slip_time >= cycle:
         raise InputError(
-            "switching_rate", switching_rate, f"less than {1 / run.slip_time:.6g} 1/s, so that slip can end"
+            "switching_rate", switching_rate, f"less than {typed_number(1 / run.slip_time)} 1/s, so that slip can end"
         )
     capacity = _positive("heat_capacity", heat_capacity, "J/K")
     loss = _positive("heat_transfer", heat_transfer, "W/(m2 K)") * _positive("cooled_area", cooled_area, "m2")

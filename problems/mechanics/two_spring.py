@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "clamp_force",

@@ -5,7 +5,7 @@ Every function takes floats, arrays or CasADi symbols.
 
 from __future__ import annotations
 
-from problems.mechanics import Quantity
+from . import Quantity
 
 __all__ = [
     "wear_life",

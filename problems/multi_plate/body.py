@@ -10,14 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from problems import wear
-from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup
-from problems.friction.ring import Ring
-from problems.mechanics import heat, plates
-from problems.mechanics import ring as ring_formulas
-from problems.multi_plate.pack import Pack, PackSize
-from problems.multi_plate.requirements import (
+from synth.declaration import Declaration
+
+from .. import wear
+from ..friction.duty import Duty, Size
+from ..friction.engagement import Pair, Startup
+from ..friction.ring import Ring
+from ..mechanics import heat, plates
+from ..mechanics import ring as ring_formulas
+from ..practice import UNSOURCED, declare_shaft, name_boss, shaft_for
+from ..sources import DRIVE
+from .pack import Pack, PackSize
+from .requirements import (
     FLATNESS,
     BodyRequirements,
     PackBodyRequirements,
@@ -25,9 +29,6 @@ from problems.multi_plate.requirements import (
     PackRules,
     PistonPackRules,
 )
-from problems.practice import UNSOURCED, name_boss, name_shaft_end, shaft_for
-from problems.sources import DRIVE
-from synth.declaration import Declaration
 
 PARTS = {  # symbol and meaning of the masses around a pack
     "end_plate_mass": ("m_end", "What the end plates are thicker than the cores"),
@@ -85,7 +86,7 @@ def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any
         actuator_pressure=1.4 if oil else 0.55,
         wear_depth_limit=0.2 if oil else 1.0,
     )
-    name_shaft_end(d, wants.shaft_diameter)
+    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=required)
     return wants
 
 
@@ -347,8 +348,8 @@ def declare_body(
     d.advise(
         "inner_inertia",
         inertia > INERTIA_COUNTS * duty.driven_inertia,
-        "what turns with the inner plates has more than 5 % of driven_inertia: where they are on the driven side, add "
-        "inner_inertia to it",
+        "what turns with the inner plates has more than 5 % of driven inertia: where they are on the driven side, add "
+        "inner inertia to it",
         source=UNSOURCED,
     )
 
@@ -471,7 +472,7 @@ def declare_rules(
     d.advise(
         "film_breaks",
         pack_wants.released_speed(duty) * ring.mean_diameter / 2 > FILM_BREAKS,
-        "above 8 m/s an oil film takes in air, and the drag is less than computed: state drag_speed, at which it is to "
+        "above 8 m/s an oil film takes in air, and the drag is less than computed: state drag speed, at which it is to "
         "be judged",
         source=UNSOURCED,
     )

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import guide_friction
-from problems.sources import S0
+from synth.text.numbers import number_text, typed_number
+
+from ..mechanics import guide_friction
+from ..sources import S0
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +38,7 @@ def _limits(step: Mapping[str, float], threshold: float) -> list[dict[str, Any]]
         ("(15)", step["surfaces_legacy"]),
         ("(16)", guide_friction.surface_limit_geometric(guide_number, threshold)),
     )
-    return [{"x": float(x), "label": f"worth while to {float(x):.1f} {label}"} for label, x in named]
+    return [{"x": float(x), "label": f"worth while to {number_text(float(x), 3)} {label}"} for label, x in named]
 
 
 def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
@@ -85,11 +87,12 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
         with np.errstate(invalid="ignore"):  # nothing over nothing where there is no plate
             data[others[-1]] = 100 * (data[f"{heading} [N*m]"] / data[f"{FIRST} [N*m]"] - 1)
     frame = pd.DataFrame(data)
-    note = f" Excess: torque over that of (5), less 1. S = {guide_number:.4g}, mu F0 r = {unit:.4g} N m."
+    note = (
+        f" Excess: torque over that of (5), less 1. S = {number_text(guide_number)}, mu F0 r = {number_text(unit)} N m."
+    )
     if guide_number > 0:
-        note += (
-            f" Worth while by (16): the torque is {spec['plate_effectiveness_min']:.4g} of what it were without guides."
-        )
+        share = number_text(spec["plate_effectiveness_min"])
+        note += f" Worth while by (16): the torque is {share} of what it were without guides."
     if problem.option("guide_model") == "cz":
         note += " This design is sized with the factor c_z: its torque is the ideal one."
     frame.attrs = {
@@ -118,14 +121,14 @@ def _sum_factor_over_plates(problem: DesignProblem, spec: Mapping[str, Any]) -> 
         data[f"friction_{mu:g} [-]"] = guide_friction.torque_sum_factor(series, surfaces, mu * guide, mu * guide)
         limit = float(guide_friction.surface_limit_geometric(2 * mu * guide, spec["plate_effectiveness_min"]))
         if 0 < limit <= surfaces[-1]:
-            marks.append({"x": limit, "label": f"worth while to {limit:.1f} at {mu:g} (16)"})
+            marks.append({"x": limit, "label": f"worth while to {number_text(limit, 3)} at {typed_number(mu)} (16)"})
     frame = pd.DataFrame(data)
     frame.attrs = {
         "title": f"{problem.title}: torque over mu F0 r, over the number of friction surfaces",
         "x": "friction_surfaces [-]",
         "panels": [{"label": "torque_sum_factor [-]", "columns": list(frame.columns[1:])}],
         "marks": marks,
-        "source": f"Narrow ring, S = 2 mu mu1 with mu1 = {guide:g}; series {series}. {SOURCE}",
+        "source": f"Narrow ring, S = 2 mu mu1 with mu1 = {typed_number(guide)}; series {series}. {SOURCE}",
     }
     return frame
 
@@ -171,6 +174,6 @@ def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: An
             {"label": "pressure [N/mm2]", "columns": list(frame.columns[len(forces) + 1 :]), "points": True},
         ],
         "lines": [{"panel": 1, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"}],
-        "source": f"Surfaces counted from the actuator. {SOURCE} S = {inner + outer:.4g}.",
+        "source": f"Surfaces counted from the actuator. {SOURCE} S = {number_text(inner + outer)}.",
     }
     return frame

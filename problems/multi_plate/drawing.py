@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
 from synth.drawing import (
     Area,
     Balloon,
@@ -25,6 +24,8 @@ from synth.drawing import (
     Weight,
     diameter,
 )
+
+from ..drawing_parts import NEIGHBOURS, SHAFT_OUT, Sizes, envelope, ring, shaft_end
 
 INNER, OUTER, LINING, END, DRUM, HUB, PISTON = 1, 2, 3, 4, 5, 6, 7
 TEETH = "teeth of the splines: plates are drawn to the mean radius of their spline, as the masses are computed"

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, friction, practice, wear
-from problems.friction import startup_curves
-from problems.multi_plate import body as plate_body
-from problems.multi_plate import curves as pack_curves
-from problems.multi_plate import pack as plate_pack
-from problems.multi_plate import plate_sets
-from problems.multi_plate.requirements import MadePackOptions, PackOptions
-from problems.sources import S0
 from synth import DesignProblem
 from synth.declaration import Declaration, Part
+
+from .. import cost, friction, practice, wear
+from ..friction import startup_curves
+from ..sources import ARCHARD, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S0, SHAFT
+from . import body as plate_body
+from . import curves as pack_curves
+from . import pack as plate_pack
+from . import plate_sets
+from .requirements import MadePackOptions, PackOptions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,9 +34,12 @@ class MultiPlateClutch(DesignProblem):
     name = "multi_plate_clutch"
     title = "Multi-plate clutch"
     sources = (
-        "S0: B. Szoke, Engagement and release of the multi-plate clutch (in Hungarian), 1966; appendix by I. Lipka",
-        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
-        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+        LIST_S0,
+        LIST_S1,
+        NEALE,
+        ARCHARD,
+        *PLATES_IN_USE,
+        *SHAFT,
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (
@@ -83,35 +87,21 @@ class MultiPlateClutch(DesignProblem):
         if plate_set is not None:
             plates = plate_sets.standard_plates(plate_set, wants=wants, ring=ring)
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring, plates=plates)
-
-        plate_pack.refuse_impossible_pack(
-            d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
-        )
-        torque = plate_pack.declare_pack_torque(
-            d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=force
-        )
-        torques = friction.declare_torque(
+        torque, torques = plate_pack.declare_pack_torques(
             d,
             duty=duty,
+            options=options,
+            wants=wants,
+            ring=ring,
             pair=pair,
+            pack=pack,
             required=required,
-            torque_low=torque.low,
-            torque_high=torque.high,
-            needs=("guide_jams",),
+            force=force,
         )
         if plate_set is not None:
             plate_sets.declare_set_limits(d, plate_set, pair=pair, pack=pack, pressure=torque.pressure)
-        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
-        area = pack.surfaces * ring.area
-        friction.declare_surface_loads(
-            d,
-            duty=duty,
-            pair=pair,
-            start=start,
-            area=area,
-            rubbing_area=pack.aid.area_factor * area,
-            pressure=torque.pressure,
-            rubbing_radius=ring.outer_radius,
+        start, area = plate_pack.declare_pack_start(
+            d, duty=duty, ring=ring, pair=pair, pack=pack, torque=torque, torques=torques, ramp_time=ramp_time
         )
         pack_size = plate_pack.pack_size(duty, wants, ring, pair, pack)
         plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=pack_size, rules=scope.rules)
@@ -133,7 +123,6 @@ class MultiPlateClutch(DesignProblem):
             size=size,
             mass_of="The whole clutch" if scope.complete else "Plates with linings",
             outside="Outside of the drum",
-            across="2 (b + s_drum)",
             along="Drum with pack, bottom and actuator"
             if scope.complete
             else "Length of the released pack, without actuator and end stops",
@@ -188,7 +177,7 @@ class MultiPlateClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the released clutch; the pack alone where only that is counted."""
-        from problems.multi_plate import drawing as pack_drawing  # costly to import; searches do without
+        from . import drawing as pack_drawing  # costly to import; searches do without
 
         complete = self.option("mass_scope") == "complete"
         piston = complete and self.option("actuator") != "external"

@@ -8,13 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup, advise_frequent_switching, declare_heated_body
-from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
-from problems.mechanics import guide_friction, heat
-from problems.mechanics import plates as plate_formulas
-from problems.mechanics import ring as ring_formulas
-from problems.multi_plate.requirements import (
+from synth.declaration import Declaration
+
+from ..friction.duty import Duty, Size
+from ..friction.engagement import (
+    Pair,
+    Startup,
+    Torques,
+    advise_frequent_switching,
+    declare_heated_body,
+    declare_startup,
+    declare_surface_loads,
+    declare_torque,
+)
+from ..friction.ring import RING_OUTER_DIAMETER_MAX, Ring
+from ..mechanics import guide_friction, heat
+from ..mechanics import plates as plate_formulas
+from ..mechanics import ring as ring_formulas
+from ..sources import S0, S1
+from .requirements import (
     LugRequirements,
     MadePackOptions,
     PackOptions,
@@ -22,8 +34,6 @@ from problems.multi_plate.requirements import (
     PracticeLugRequirements,
     PracticePackRequirements,
 )
-from problems.sources import S0, S1
-from synth.declaration import Declaration
 
 
 @dataclass(frozen=True)
@@ -77,11 +87,13 @@ class Pack:
 
 @dataclass(frozen=True)
 class PackTorque:
-    """Torque and pressure of a pack under an actuation force."""
+    """Torque and pressure of a pack under an actuation force, and the sources of their formulas."""
 
     low: Any
     high: Any
     pressure: Any
+    source: str
+    pressure_source: str
 
 
 @dataclass(frozen=True)
@@ -102,7 +114,7 @@ def declare_lubrication(d: Declaration) -> str:
         ("oil", "dry"),
         "oil",
         symbol="lub",
-        text="Condition on the friction pair; sets the defaults of oil_viscosity and cooling",
+        text="Condition on the friction pair; sets the defaults of oil viscosity and cooling",
         source=f"{S0}, plates in oil",
         group="duty",
     )
@@ -464,7 +476,7 @@ def declare_pack_torque(
         guide_number,
         symbol="S",
         needs="guide_jams",
-        text="Friction in the guides; 0 with guide_model cz",
+        text="Friction in the guides; 0 with guide model cz",
         source=f"{S0}, eq. (2)",
     )
     factor = d.derive(
@@ -473,7 +485,7 @@ def declare_pack_torque(
         sum_factor(pair.mu_low),
         symbol="E",
         needs="guide_jams",
-        text="Torque of the pack over mu F0 r",
+        text="Torque of the pack over that of one surface without guide friction",
         source=f"{S0}, eq. (5)",
     )
     factor_high = factor if pair.mu_high is pair.mu_low else sum_factor(pair.mu_high)
@@ -483,7 +495,7 @@ def declare_pack_torque(
         factor_high / surfaces,
         symbol="eta_z",
         needs="guide_jams",
-        text="Torque of the pack over that of as many surfaces without guide friction (worst_case: with mu_max)",
+        text="Torque of the pack over that without guide friction (worst case: greatest friction)",
         source=f"{S0}, eq. (16)",
     )
     if series:
@@ -498,15 +510,15 @@ def declare_pack_torque(
         d.advise(
             "beyond_legacy_plate_limit",
             surfaces > guide_friction.legacy_plate_limit(guide_number),
-            "more friction surfaces than the rule sqrt(2)/K of eq. (15) allows; plate_count_worthwhile (16) decides",
+            "more friction surfaces than the rule sqrt(2)/K of eq. (15) allows; plate count worthwhile (16) decides",
             source=f"{S0}, eq. (15)",
         )
     else:
         d.advise(
             "surface_factor_fits_ten_surfaces",
             np.logical_or(surfaces < 10, surfaces > 10),
-            "surface_factor was taken for a pack that may have another number of surfaces: 0.75 belongs to ten; "
-            "guide_model series computes the loss for any number",
+            "surface factor was taken for a pack that may have another number of surfaces: 0.75 belongs to ten; "
+            "guide model series computes the loss for any number",
             source=f"{S1}, c_z",
         )
     shares = [share(j, pair.mu_high) for j in (1, 2, 3)]
@@ -519,7 +531,80 @@ def declare_pack_torque(
         low=moment_low * factor,
         high=moment_high * factor_high,
         pressure=net_force * share(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
+        source=f"{S0}, eq. (5)" if series else f"{S1}, sizing",
+        pressure_source=f"{S0}, eq. (3)" if series else f"{S1}, p",
     )
+
+
+def declare_pack_torques(
+    d: Declaration,
+    *,
+    duty: Duty,
+    options: PackOptions,
+    wants: PackRequirements,
+    ring: Ring,
+    pair: Pair,
+    pack: Pack,
+    required: Any,
+    force: Any,
+    needs: tuple[str, ...] = (),
+) -> tuple[PackTorque, Torques]:
+    """Refuse a pack that cannot be, declare what it carries under an actuation force, and that it carries its load.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty, options, wants, ring, pair, pack
+        What is asked, and what it is made of.
+    required : symbol
+        Torque that it is sized for [N m].
+    force : symbol
+        Actuation force [N].
+    needs : tuple of str
+        Guards beside that of the guides without which the torque does not exist.
+    """
+    refuse_impossible_pack(d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required)
+    torque = declare_pack_torque(d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=force)
+    torques = declare_torque(
+        d,
+        duty=duty,
+        pair=pair,
+        required=required,
+        torque_low=torque.low,
+        torque_high=torque.high,
+        source=torque.source,
+        needs=("guide_jams", *needs),
+    )
+    return torque, torques
+
+
+def declare_pack_start(
+    d: Declaration,
+    *,
+    duty: Duty,
+    ring: Ring,
+    pair: Pair,
+    pack: Pack,
+    torque: PackTorque,
+    torques: Torques,
+    ramp_time: Any,
+) -> tuple[Startup, Any]:
+    """Declare a start with a pack and what it does to the surfaces; return it and their area [m2]."""
+    start = declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
+    area = pack.surfaces * ring.area
+    declare_surface_loads(
+        d,
+        duty=duty,
+        pair=pair,
+        start=start,
+        area=area,
+        rubbing_area=pack.aid.area_factor * area,
+        pressure=torque.pressure,
+        pressure_source=torque.pressure_source,
+        rubbing_radius=ring.outer_radius,
+    )
+    return start, area
 
 
 def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, moment: Any) -> None:
@@ -532,7 +617,7 @@ def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, mome
         "N*m",
         moment,
         symbol="M_0",
-        text="Torque mu F0 r of one surface without guide friction",
+        text="Torque of one surface without guide friction",
         source=f"{S0}, M0",
     )
     total = inner + outer
@@ -541,7 +626,7 @@ def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, mome
         "N*m",
         moment / total,
         symbol="M_bound",
-        text="Torque mu F0 r/S, which no number of plates reaches",
+        text="Torque that no number of plates reaches",
         source=f"{S0}, eq. (5)",
     )
     # (14) and (16) are roots that only numbers have; the curve asks for them with the S named here.
@@ -562,7 +647,7 @@ def _name_greatest(d: Declaration, *, guides: Any, moment: Any) -> None:
         "-",
         guides,
         symbol="S_max",
-        text="Friction in the guides, with mu_max",
+        text="Friction in the guides, with the greatest friction",
         source=f"{S0}, eq. (2)",
     )
     d.step(
@@ -570,7 +655,7 @@ def _name_greatest(d: Declaration, *, guides: Any, moment: Any) -> None:
         "N*m",
         moment,
         symbol="M_0_max",
-        text="Torque mu F0 r of one surface without guide friction, with mu_max",
+        text="Torque of one surface without guide friction, with the greatest friction",
         source=f"{S0}, M0",
     )
 
@@ -592,8 +677,8 @@ def _name_shares(d: Declaration, *, options: PackOptions, guides: Any, shares: S
             "-",
             part,
             symbol=f"f_{surface}",
-            text=f"Share of the actuation force that reaches surface {surface} (worst_case: with mu_max)",
-            source=f"{S0}, F_j = F0 (E(j) - E(j-1))",
+            text=f"Share of the actuation force that reaches surface {surface} (worst case: greatest friction)",
+            source=f"{S0}",
         )
 
 
@@ -615,7 +700,7 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
         ),
         symbol="p_lo",
         needs="guide_jams",
-        text="Pressure of the lugs of the first outer plate (worst_case: with mu_max)",
+        text="Pressure of the lugs of the first outer plate (worst case: greatest friction)",
         source=f"{S0}, plate thickness; derived",
     )
     inner = d.derive(
@@ -630,7 +715,7 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
         ),
         symbol="p_li",
         needs="guide_jams",
-        text="Pressure of the lugs of the first inner plate between two surfaces (worst_case: with mu_max)",
+        text="Pressure of the lugs of the first inner plate between two surfaces (worst case: greatest friction)",
         source=f"{S0}, plate thickness; derived",
     )
     rule = f"{S0}: the lugs must not bite into the spline groove"
@@ -782,8 +867,8 @@ def declare_pack_remarks(d: Declaration, *, options: PackOptions, lubrication: s
         d.advise(
             "no_release_aid",
             True,
-            "without a release aid oil adhesion drags the plates along after release; drag_torque is for plates "
-            "that stand apart by plate_gap",
+            "without a release aid oil adhesion drags the plates along after release; drag torque is for plates "
+            "that stand apart by plate gap",
             source=f"{S0}, after-running",
         )
     if options.release_aid == "sine_plates":

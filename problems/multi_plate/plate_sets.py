@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from problems.friction.bought import declare_bought
-from problems.friction.engagement import Pair
-from problems.friction.ring import Ring
-from problems.multi_plate.pack import Pack, Plates
-from problems.multi_plate.requirements import PackRequirements
 from synth.declaration import Declaration, Part
+
+from ..friction.bought import declare_bought
+from ..friction.engagement import Pair
+from ..friction.ring import Ring
+from .pack import Pack, Plates
+from .requirements import PackRequirements
 
 TABLE = "plate_sets"
 

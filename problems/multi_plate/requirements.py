@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from problems import wear
-from problems.friction.duty import Duty
-from problems.friction.ring import Ring
-from problems.mechanics import guide_friction
-from problems.practice import UNSOURCED, ShaftRequirements
-from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Option, Requirement
+
+from .. import wear
+from ..friction.duty import Duty
+from ..friction.ring import Ring
+from ..mechanics import guide_friction
+from ..practice import UNSOURCED, ShaftRequirements
+from ..sources import S0, S1, TYPICAL
 
 FLATNESS = "out of flat 0.10 mm (AP Racing) and 0.15 mm (Harley-Davidson) when plates are discarded"
 
@@ -24,7 +25,7 @@ class PackOptions(Block):
         ("series", "cz"),
         "series",
         symbol="guide",
-        text="series: friction in the plate guides is computed; cz: the lecture's factor surface_factor instead",
+        text="series: friction in the plate guides is computed; cz: the lecture's factor surface factor instead",
         source=f"{S0}, eq. (2) to (5); {S1}, c_z",
     )
     guide_series = Option(
@@ -74,7 +75,7 @@ class PackRequirements(Block):
         lower=0.3,
         upper=1,
         symbol="c_z",
-        text="Surface-count factor, used with guide_model cz only; 0.75 belongs to ten surfaces",
+        text="Surface-count factor, used with guide model cz only; 0.75 belongs to ten surfaces",
         source=f"{S1}, c_z",
     )
     guide_friction = Requirement(
@@ -141,7 +142,7 @@ class PackRequirements(Block):
         lower=0.05,
         upper=1,
         symbol="eta_min",
-        text="Least torque of the pack over that without guide friction; used with guide_model series",
+        text="Least torque of the pack over that without guide friction; used with guide model series",
         source=f"{S0}, eq. (16)",
     )
 
@@ -177,7 +178,7 @@ class PracticePackRequirements(PackRequirements):
         lower=0,
         upper=3,
         symbol="g_0",
-        text="Release gap of a pack without diameter, where plate_gap is not given",
+        text="Release gap of a pack without diameter, where plate gap is not given",
         source=f"{UNSOURCED}; {FLATNESS}",
     )
     gap_per_diameter = Requirement(
@@ -194,7 +195,7 @@ class PracticePackRequirements(PackRequirements):
         lower=0.1,
         upper=60000,
         symbol="omega_drag",
-        text="Speed between the released plates at which their drag is judged; by default driver_speed",
+        text="Speed between the released plates at which their drag is judged; by default driver speed",
         source="requirement of the drive",
         group="duty",
     )
@@ -248,7 +249,7 @@ class PracticeLugRequirements(LugRequirements):
         upper=200,
         optional=True,
         symbol="n_lug",
-        text="Lugs of a plate that carry; by default the share lug_share of teeth of lug_module all around",
+        text="Lugs of a plate that carry; by default the share lug share of teeth of lug module all around",
         source=UNSOURCED,
         group="model",
     )
@@ -258,7 +259,7 @@ class PracticeLugRequirements(LugRequirements):
         upper=30,
         optional=True,
         symbol="h_lug",
-        text="Loaded flank height of a lug; by default lug_module",
+        text="Loaded flank height of a lug; by default lug module",
         source=UNSOURCED,
         group="model",
     )
@@ -315,7 +316,7 @@ class PackRules(Block):
         lower=0.01,
         upper=5,
         symbol="gap_min",
-        text="Least release gap per surface where plate_gap is given (a transmission pack has 0.06 to 0.09 mm)",
+        text="Least release gap per surface where plate gap is given (a transmission pack has 0.06 to 0.09 mm)",
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
@@ -374,7 +375,7 @@ class PackBodyRequirements(ShaftRequirements):
         lower=0.01,
         upper=50,
         symbol="d_w_max",
-        text="Wear of one lining before it is replaced, where less than its wearable_depth (six packs in oil: 0.2 mm; "
+        text="Wear of one lining before it is replaced, where less than its wearable depth (six packs in oil: 0.2 mm; "
         "eight dry car discs: 1.0 mm)",
         source=UNSOURCED,
     )

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
-from problems.roller_coupling import formulas
 from synth.declaration import Block, Declaration, Part, Requirement
 from synth.errors import InputError
+
+from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
+from . import formulas
 
 SHAFT_FACTOR = 1.5  # torque for which the shaft is sized over the torque to transmit: shocks of the drive
 RIM_PRACTICE = 5.0  # mm
@@ -53,7 +54,7 @@ class CouplingRules(Block):
         lower=0,
         upper=1,
         symbol="k_l",
-        text=f"Least length of contact over contact_width of the roller ({UNSOURCED})",
+        text=f"Least length of contact over contact width of the roller ({UNSOURCED})",
         source=UNSOURCED,
     )
     float_slenderness_min = Requirement(
@@ -71,7 +72,7 @@ class CouplingRules(Block):
         lower=0.1,
         upper=1000,
         symbol="k_cost",
-        text=f"Largest relative_cost_per_kg of the float: no titanium, no PEEK ({UNSOURCED})",
+        text=f"Largest relative cost per kg of the float: no titanium, no PEEK ({UNSOURCED})",
         source=UNSOURCED,
     )
 
@@ -121,7 +122,7 @@ def track_rollers(d: Declaration, *, contact: str) -> tuple[str, ...]:
 def declare_body_requirements(d: Declaration, *, torque: Any) -> CouplingBodyRequirements:
     """Declare the requirements of the complete coupling; its shafts carry a multiple of the torque [N m]."""
     wants = d.block(CouplingBodyRequirements, shaft_diameter=shaft_for(SHAFT_FACTOR * torque))
-    name_shaft_end(d, wants.shaft_diameter)
+    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=SHAFT_FACTOR * torque)
     return wants
 
 

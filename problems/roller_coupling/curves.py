@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.roller_coupling import formulas
-from problems.roller_coupling import motion as kinematics
-from problems.sources import EXTENDS_S3, S3
+from synth.text.numbers import number_text
+
+from ..sources import EXTENDS_S3, S3
+from . import formulas
+from . import motion as kinematics
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +59,7 @@ def torque_force(spec: Mapping[str, Any], least: float, largest: float) -> pd.Da
     tangential = formulas.tangential_force(spec["required_torque"], radius, radius)
     frame = pd.DataFrame({"arm radius [mm]": 1000 * radius, "from the torque [N]": tangential})
     frame.attrs = {
-        "title": f"Pin force of {spec['required_torque']:.4g} N*m over the arm radius",
+        "title": f"Pin force of {number_text(spec['required_torque'])} N*m over the arm radius",
         "panels": [{"label": "force [N]", "columns": ["from the torque [N]"], "log": True}],
         "source": f"{S3}, eq. (15)",
     }
@@ -78,7 +80,7 @@ def angled_shafts(spec: Mapping[str, Any]) -> pd.DataFrame:
         }
     )
     frame.attrs = {
-        "title": f"One turn with shafts at {math.degrees(spec['shaft_angle']):.3g} deg",
+        "title": f"One turn with shafts at {number_text(math.degrees(spec['shaft_angle']), 3)} deg",
         "panels": [
             {"label": label, "columns": [column]}
             for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)

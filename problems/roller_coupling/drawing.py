@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes
 from synth.drawing import (
     XY,
     Angle,
@@ -34,6 +33,8 @@ from synth.drawing import (
     disc,
     rectangle,
 )
+
+from ..drawing_parts import SHAFT_OUT, Sizes
 
 FLOAT, ROLLER, PIN, ARM, BOSS = 1, 2, 3, 4, 5
 SECTION, FRONT = "Section along guide I", "Float from the left, cut in its middle, without arm 1"

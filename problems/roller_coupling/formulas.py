@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from problems.mechanics import Quantity
-from problems.mechanics.shaft import BOSS_LENGTH
+from ..mechanics import Quantity
+from ..mechanics.shaft import BOSS_LENGTH
 
 # ISO 76: a line contact loaded beyond this is dented by more than 0.0001 of the roller diameter [Pa].
 STATIC_CONTACT_LIMIT = 4.0e9
@@ -40,7 +40,7 @@ def effective_offset(offset: Quantity, float_distance: Quantity, shaft_angle: Qu
     -------
     scalar, array or symbol
         e_eff [m]. Exact where e or h or alpha is 0; else the way of the float is longer by less than 0.01 % up to
-        10 degrees (problems.roller_coupling.motion).
+        10 degrees (synth.problems.roller_coupling.motion).
 
     References
     ----------
@@ -1246,7 +1246,7 @@ def axial_slide(
     ----------
     ext; for intersecting shafts (e = 0) it is S3, eq. (25), h sin(alpha)**2/cos(alpha). S3 takes (25) for skew shafts
     as well and finds no slide with the float on the common normal: it looked at 0 and 90 degrees only, the extremes lie
-    between, and z is e tan(alpha) there. The factor 1/sin(chi) follows from problems.roller_coupling.motion.
+    between, and z is e tan(alpha) there. The factor 1/sin(chi) follows from synth.problems.roller_coupling.motion.
 
     Examples
     --------

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, practice
-from problems.mechanics import contact as hertz
-from problems.roller_coupling import body as coupling_body
-from problems.roller_coupling import curves, formulas
-from problems.sources import DRIVE, EXTENDS_S3, S3, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+
+from .. import cost, practice
+from ..mechanics import contact as hertz
+from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
+from . import body as coupling_body
+from . import curves, formulas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -179,7 +180,7 @@ class Wants(Block):
         lower=0.01,
         upper=50,
         symbol="s3_min",
-        text="Least clearance for pulling apart; counts with sideways_removable yes",
+        text="Least clearance for pulling apart; counts with sideways removable yes",
         source=f"{S3}, s3 in eq. (21)",
         group="duty",
     )
@@ -211,7 +212,7 @@ class Wants(Block):
         lower=1,
         upper=1000,
         symbol="sigma_c",
-        text="Allowed stress sigma_c of the pins, twice the shear stress",
+        text="Allowed stress of the pins, twice the shear stress",
         source=f"{S3}, eq. (16), 400 kp/cm2",
         group="material",
     )
@@ -283,8 +284,8 @@ class Wants(Block):
         lower=1,
         upper=1e5,
         symbol="R_cr",
-        text="Radius of a crowned tread; counts with roller_contact crowned",
-        source="track rollers NUTR, NATV, NATR",
+        text="Radius of a crowned tread; counts with roller contact crowned",
+        source="makers' lists of track rollers",
     )
     rolling_friction = Requirement(
         "-",
@@ -349,9 +350,10 @@ class RollerCoupling(DesignProblem):
     title = "Roller coupling"
     sources = (
         "S3: B. Szoke, MTA VI. Osztaly Kozlemenyei 39 (1967), part II, chapters X to XIV, equations (14) to (29)",
-        "K. L. Johnson, Contact Mechanics (1985)",
+        JOHNSON,
         "B. J. Hamrock, D. Brewe, Journal of Lubrication Technology 105 (1983) 171-177",
-        "ISO 76, static load ratings of rolling bearings",
+        ISO_76,
+        *SHAFT,
     )
     understands = (
         "required_torque",
@@ -481,7 +483,7 @@ class RollerCoupling(DesignProblem):
                 80,
                 symbol="e_cap",
                 text="Offset up to which all clearances are kept",
-                source=f"{S3}, e_max in eq. (18b)",
+                source=f"{S3}, eq. (18b)",
             ),
             balance=d.choice(
                 "balance",
@@ -601,7 +603,7 @@ class RollerCoupling(DesignProblem):
             offset,
             symbol="e_eff",
             text="Offset seen in the plane of the float",
-            source=f"{EXTENDS_S3}, sqrt(e**2 + h**2 tan(alpha)**2)",
+            source=f"{EXTENDS_S3}",
         )
         slide = d.derive(
             "axial_slide",
@@ -625,7 +627,7 @@ class RollerCoupling(DesignProblem):
             "cm2",
             section,
             symbol="A_f",
-            text="Float without its guides, pi R_f**2 - (4 K D - D**2/sin(chi)); D: of the roller; a completed square",
+            text="Float without its guides, a completed square",
             source="geometry",
         )
         ends = formulas.float_radius(unknowns.guide_half_length, diameter, 0.0)
@@ -716,7 +718,7 @@ class RollerCoupling(DesignProblem):
             2 * (float_radius + offset / np.sin(wants.guide_angle)),
             symbol="D_o",
             text="Diameter that the float sweeps about a shaft",
-            source="geometry, 2 (R_f + e_eff/sin(chi))",
+            source="geometry",
         )
         arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
         d.step("float_radius", "mm", float_radius, symbol="R_f", text="Outside of the float", source="geometry")
@@ -853,7 +855,7 @@ class RollerCoupling(DesignProblem):
         roller, material = unknowns.roller, unknowns.material
         length, radius = unknowns.contact_length, roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
-        text = "Inverse of the modulus of the contact E*, (1 - nu1**2)/E1 + (1 - nu2**2)/E2"
+        text = "Inverse of the modulus of the contact E*"
         d.step("contact_compliance", "mm2/N", 1 / modulus, symbol="s_c", text=text, source="Johnson, Contact Mechanics")
         pressure, source = None, ""
         if contact != "crowned":
@@ -983,7 +985,7 @@ class RollerCoupling(DesignProblem):
         d.advise(
             "distance_ignored",
             np.logical_and(wants.float_distance > 0, wants.shaft_angle <= 0),
-            "float_distance does nothing without a shaft_angle",
+            "float distance does nothing without a shaft angle",
             source=f"{S3}, chapter XII",
         )
         d.advise(
@@ -1007,7 +1009,7 @@ class RollerCoupling(DesignProblem):
         d.advise(
             "hertz_capped",
             material.hertz_allow > formulas.STATIC_CONTACT_LIMIT,
-            "hertz_allow of this material is capped at 4000 N/mm2, the static limit of ISO 76",
+            "hertz allow of this material is capped at 4000 N/mm2, the static limit of ISO 76",
             source="ISO 76",
         )
         d.advise(
@@ -1034,7 +1036,7 @@ class RollerCoupling(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section along one guide, and the float with rollers and pins from the front."""
-        from problems.roller_coupling import drawing as coupling_drawing  # costly to import; searches do without
+        from . import drawing as coupling_drawing  # costly to import; searches do without
 
         return coupling_drawing.coupling_drawing(spec, design)
 

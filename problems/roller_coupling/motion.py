@@ -1,6 +1,6 @@
 """Exact motion of the roller coupling over one turn: float, clearances, slide and forces.
 
-Nothing here uses the closed forms of problems.roller_coupling.formulas; they are checked against it.
+Nothing here uses the closed forms of synth.problems.roller_coupling.formulas; they are checked against it.
 
 Shaft 1 is the z axis and turns evenly. The common normal of the shafts lies along x, shaft 2 passes it at x = e and is
 tilted by alpha about x. Arm 1 turns in the plane z = h. Its guide I points along u1, at the angle psi from x; guide II
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from ..mechanics import Quantity
 
 # Rows per turn: a multiple of 4 for quarter turns, with every whole and half degree.
 STEPS = 720

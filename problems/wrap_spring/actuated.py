@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from problems import practice
-from problems.practice import UNSOURCED
-from problems.sources import DRIVE, NOT_IN_S2, TYPICAL
-from problems.wrap_spring import blocks, body, curves, formulas
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+
+from .. import practice
+from ..practice import UNSOURCED
+from ..sources import DRIVE, NOT_IN_S2, TYPICAL
+from . import blocks, body, curves, formulas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,7 +50,7 @@ class Wants(Block):
         lower=0.1,
         upper=60000,
         symbol="omega_rel",
-        text="Speed between the hub and the held free end; gives engagement_time only",
+        text="Speed between the hub and the held free end; gives engagement time only",
         source=DRIVE,
         group="duty",
     )
@@ -99,7 +100,7 @@ class PracticeWants(Wants):
     actuator_torque_limit = replace(
         Wants.actuator_torque_limit,
         optional=False,
-        text=f"Largest energising torque; by default a tenth of required_torque ({UNSOURCED})",
+        text=f"Largest energising torque; by default a tenth of required torque ({UNSOURCED})",
         source=UNSOURCED,
     )
 
@@ -234,7 +235,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             "N*m",
             duty.peak_torque,
             symbol="T_load",
-            text="Torque that the wire sees at overload: peak_torque",
+            text="Torque that the wire sees at overload: peak torque",
             source=NOT_IN_S2,
         )
         bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
@@ -270,8 +271,8 @@ class ActuatedWrapSpringClutch(DesignProblem):
                 source="geometry",
             )
             for name, value, symbol, text in (
-                ("spring_diameter", spring.diameter, "D_sp", "Outside of the closed coils, d_h + 2 a"),
-                ("collar_bore", spring.diameter + 4 * clearance, "d_col", "Inside of the control collar, D_sp + 4 c"),
+                ("spring_diameter", spring.diameter, "D_sp", "Outside of the closed coils"),
+                ("collar_bore", spring.diameter + 4 * clearance, "d_col", "Inside of the control collar"),
             ):
                 d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
         if rules is not None:
@@ -281,7 +282,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
         d.advise(
             "fatigue_of_the_wire",
             tired > 1,
-            "engaged again and again up to wire_torque the wire tires: its stress swings between 0 and wire_stress and "
+            "engaged again and again up to wire torque the wire tires: its stress swings between 0 and wire stress and "
             "lies above Goodman's line",
             source=f"Goodman; {NOT_IN_S2}",
         )
@@ -311,7 +312,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through hubs, spring and collar, engaged, and a detail of the coils."""
-        from problems.wrap_spring import drawing as wrap_spring  # costly to import; searches do without
+        from . import drawing as wrap_spring  # costly to import; searches do without
 
         return wrap_spring.clearance_drawing(
             spec,
@@ -339,7 +340,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
                 "N*m",
                 -loose,
                 "M_close",
-                "Bending moment that closes the widest clearance, E I_w kappa",
+                "Bending moment that closes the widest clearance",
             ),
         ]
         if options.model != "seed":

@@ -8,15 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
-from problems.wrap_spring import formulas
 from synth.declaration import Block, Declaration, Option, Part, Requirement
 from synth.errors import InputError
+from synth.text.numbers import typed_number
+
+from ..sources import ARCHARD, DRIVE, NOT_IN_S2, S2, SHAFT, TYPICAL
+from . import formulas
 
 SOURCES = (
     "S2: M. Kozma, G. Molnar, K. Varadi, R. Oroszvary, Preloaded force-locking clutch with a helical spring "
     "(wrap spring clutch, in Hungarian)",
     "A. M. Wahl, Mechanical Springs",
+    "Goodman, fatigue under a mean stress",
+    "ISO 3, preferred numbers",
+    ARCHARD,
+    *SHAFT,
 )
 
 # What a sheet for several families may state.
@@ -64,7 +70,7 @@ class Options(Block):
         "catalogue",
         symbol="wc",
         text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, the material "
-        "is given by wire_modulus, wire_density and so on",
+        "is given by wire modulus, wire density and so on",
         source="supply of the wire",
     )
     hub_ladder = Option(
@@ -90,7 +96,7 @@ class Duty(Block):
         lower=1,
         upper=4,
         symbol="S_T",
-        text="Safety of the least closing torque over required_torque",
+        text="Safety of the least closing torque over required torque",
         source=f"{TYPICAL} of the reference model",
     )
     peak_torque = Requirement(
@@ -99,7 +105,7 @@ class Duty(Block):
         lower=0.01,
         upper=1e12,
         symbol="T_peak",
-        text="Highest torque that the drive can apply; by default 2.5 required_torque",
+        text="Highest torque that the drive can apply; by default 2.5 required torque",
         source=DRIVE,
     )
     spring_speed = Requirement(
@@ -230,7 +236,8 @@ def declare_duty(d: Declaration, *, kind: type[Duty], bore: Callable[[Duty], Any
     d.refuse(
         "hub_thinner_than_bore",
         duty.bore_diameter >= largest_hub / 1000,
-        f"a bore_diameter below {largest_hub:g} mm, the largest hub there is; a hub is not thinner than its bore",
+        f"a bore_diameter below {typed_number(largest_hub)} mm, the largest hub there is; "
+        "a hub is not thinner than its bore",
     )
     if duty.outer_diameter_limit is not None:
         d.refuse(
@@ -283,7 +290,7 @@ def declare_wire(d: Declaration, *, options: Options) -> Wire:
             upper=upper,
             optional=catalogue,
             symbol=symbol,
-            text=f"{text}; for wire_choice custom, where it must be given",
+            text=f"{text}; for wire choice custom, where it must be given",
             source="data sheet of the wire",
             group="material",
         )
@@ -309,8 +316,8 @@ def declare_wire(d: Declaration, *, options: Options) -> Wire:
         d.advise(
             "wire_material_unused",
             True,
-            "the wire comes from the catalogue: wire_modulus and the other figures of a wire of one's own are not "
-            "used; they belong to wire_choice custom",
+            "the wire comes from the catalogue: wire modulus and the other figures of a wire of one's own are not "
+            "used; they belong to wire choice custom",
         )
     part = d.part(
         "wire",
@@ -360,7 +367,11 @@ def hub_grid(d: Declaration, *, ladder: str) -> Any:
     # Rounding to a nanometre undoes what the conversion to metres adds.
     inside = sorted({round(float(x), 6) for x in diameters if low <= x <= high})
     if not inside:
-        raise InputError(f"table {HUB_TABLE}, column diameter", None, f"a diameter from {low:g} to {high:g} mm")
+        raise InputError(
+            f"table {HUB_TABLE}, column diameter",
+            None,
+            f"a diameter from {typed_number(low)} to {typed_number(high)} mm",
+        )
     return inside
 
 
@@ -425,7 +436,7 @@ def declare_coils(d: Declaration, *, options: Options, duty: Duty, wire: Wire) -
     d.advise(
         "keystoning",
         formulas.keystone_growth(0.3, wire.width, wire.thickness, mean) > duty.coil_gap,
-        "coiling widens the inner edge of the wire by more than coil_gap: neighbouring coils would rub on each other",
+        "coiling widens the inner edge of the wire by more than coil gap: neighbouring coils would rub on each other",
         source="anticlastic bending",
     )
     return Coils(
@@ -508,7 +519,7 @@ def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, l
         "locks_at_any_peak",
         high > 6,
         "at the highest friction the belt exponent is above 6: any peak is locked instead of slipping through; "
-        "belt_exponent_limit 6 keeps the search to clutches that can slip",
+        "belt exponent limit 6 keeps the search to clutches that can slip",
         source=NOT_IN_S2,
     )
     d.advise(
@@ -517,7 +528,7 @@ def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, l
         "at the highest friction the clutch is locked; the belt exponent counts up to 50 only",
         source=NOT_IN_S2,
     )
-    text = "Belt exponent of one hub at the least friction, mu_min 2 pi n r_h/r_m"
+    text = "Belt exponent of one hub at the least friction"
     d.step("belt_exponent_low", "-", low, symbol="beta_lo", text=text, source=f"{S2}, mu alpha in eq. (18)")
     return Friction(part, low, high)
 
@@ -546,7 +557,7 @@ def declare_closing(d: Declaration, *, duty: Duty, torque: Any, needs: str | tup
         torque,
         symbol="T_c",
         needs=needs,
-        text="Least torque at which the closing clutch slips: least friction, loosest fit, at spring_speed",
+        text="Least torque at which the closing clutch slips: least friction, loosest fit, at spring speed",
         source=f"{S2}, eq. (18)-(20)",
     )
     d.at_least(
@@ -641,9 +652,9 @@ def declare_load(
     )
     tension = formulas.wire_tension(moment + load, coils.mean_radius)
     for name, unit, value, symbol, text in (
-        ("second_moment", "mm4", formulas.second_moment(wire.width, wire.thickness), "I_w", "Of the wire, b a**3/12"),
+        ("second_moment", "mm4", formulas.second_moment(wire.width, wire.thickness), "I_w", "Of the wire"),
         ("bending_stress", "N/mm2", bending_stress, "sigma_b", "Largest bending stress of the fitted wire"),
-        ("wire_tension", "N", tension, "N_w", "Tension of the loaded wire, (M_b + T_load)/r_m"),
+        ("wire_tension", "N", tension, "N_w", "Tension of the loaded wire"),
     ):
         d.step(name, unit, value, symbol=symbol, text=text, source=f"{S2}, eq. (4) and (8)")
     return stress, pressure
@@ -698,13 +709,13 @@ def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_c
     d.step("hub_mass", "kg", hubs, symbol="m_hub", text="Both hubs under the spring", source="geometry")
     pitch = wire.width + duty.coil_gap
     for name, value, symbol, text in (
-        ("coil_pitch", pitch, "p_c", "From coil to coil, b + g_c"),
-        ("grip_length", coils.per_hub * pitch, "L_n", "Length of the coils on one hub, n p_c"),
-        ("gap_length", duty.gap_coils * pitch, "L_gap", "Length of the coils over the gap, n_gap p_c"),
+        ("coil_pitch", pitch, "p_c", "From coil to coil"),
+        ("grip_length", coils.per_hub * pitch, "L_n", "Length of the coils on one hub"),
+        ("gap_length", duty.gap_coils * pitch, "L_gap", "Length of the coils over the gap"),
     ):
         d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
     if fixed_coils is not None:
-        text = "Length of the coils anchored on the second hub, n_fix p_c"
+        text = "Length of the coils anchored on the second hub"
         d.step("fixed_length", "mm", fixed_coils * pitch, symbol="L_fix", text=text, source="geometry")
     return Size(
         mass=spring + hubs,
@@ -744,7 +755,7 @@ def declare_size(d: Declaration, *, duty: Duty, size: Size, whole: bool, outside
         size.diameter,
         symbol="D_o",
         text=f"Outside of the {outside}",
-        source="geometry, 2 (r_h + a)" if outside == "coils" else "geometry",
+        source="geometry",
     )
     d.derive(
         "mass",

@@ -5,28 +5,28 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from problems import cost
-from problems.mechanics import shaft as shaft_formulas
-from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end
 from synth.declaration import Block, Declaration, Requirement
 
+from .. import cost
+from ..mechanics import shaft as shaft_formulas
+from ..practice import UNSOURCED, ShaftRequirements, ShaftStress, declare_shaft
+
 if TYPE_CHECKING:
-    from problems.wrap_spring.blocks import Coils, Duty, Size, Wire
+    from .blocks import Coils, Duty, Size, Wire
 
 SHAFT_RESERVE = 1.5  # torque that the shaft stands over required_torque
 # Of required_torque: largest drag of an interference fit, largest energising torque of a clearance fit.
 FREE_SHARE = 0.1
-THIN = 0.95  # of the shaft that is needed: a bore of a series may lie a little below it
 
 
-class BodyRequirements(Block):
+class BodyRequirements(ShaftStress):
     """Shaft and bosses of a complete clutch, all in SI."""
 
     group = "practice"
 
     shaft_shear_allow = replace(
-        ShaftRequirements.shaft_shear_allow,
-        text=f"Shear stress from which the default of bore_diameter follows, with 1.5 required_torque ({UNSOURCED}; "
+        ShaftStress.shaft_shear_allow,
+        text=f"Shear stress from which the default of bore diameter follows, with 1.5 required torque ({UNSOURCED}; "
         "twelve shafts of real units run at 6 to 25)",
     )
     hub_factor = ShaftRequirements.hub_factor
@@ -86,7 +86,7 @@ def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring
     """
     d.derive("part_mass", "kg", spring.mass, symbol="m_part", text="Spring and both hubs under it", source="geometry")
     d.derive("spring_length", "mm", spring.length, symbol="L_sp", text="Length of the spring", source="geometry")
-    name_shaft_end(d, duty.bore_diameter)
+    declare_shaft(d, wants, diameter=duty.bore_diameter, torque=SHAFT_RESERVE * duty.required_torque)
     bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, wants.hub_factor)
     d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Both bosses beyond the spring", source="geometry")
     for name, value, symbol, text in (
@@ -94,12 +94,6 @@ def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring
         ("boss_length", shaft_formulas.BOSS_LENGTH * duty.bore_diameter, "L_boss", "Length of a boss"),
     ):
         d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
-    d.advise(
-        "thin_shaft",
-        duty.bore_diameter < THIN * wants.bore(duty),
-        "bore_diameter is below the shaft that shaft_shear_allow needs for 1.5 required_torque: check the shaft",
-        source=UNSOURCED,
-    )
 
 
 def declare_cost(d: Declaration, *, wire: Wire, spring: Size, mass: Any, parts: float) -> None:

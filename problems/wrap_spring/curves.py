@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.sources import S2
-from problems.wrap_spring import formulas
+from ..sources import S2
+from . import formulas
 
 if TYPE_CHECKING:
     import pandas as pd

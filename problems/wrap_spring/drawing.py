@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
 from synth.drawing import (
     Area,
     Balloon,
@@ -25,6 +24,9 @@ from synth.drawing import (
     diameter,
     rectangle,
 )
+from synth.text.numbers import number_text, typed_number
+
+from ..drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
 
 FIRST, SECOND, SPRING, COLLAR = 1, 2, 3, 4
 ENDS = (
@@ -143,10 +145,10 @@ def interference_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool
     size = Sizes(spec, design)
     spring = _Spring(size, fixed=False)
     per_hub, gap = size.number("coils_per_hub"), size.number("gap_coils")
-    coils = f"Coils: {per_hub:g} on each hub, {gap:g} over the gap between the hubs."
+    coils = f"Coils: {typed_number(per_hub)} on each hub, {typed_number(gap)} over the gap between the hubs."
     fit = (
-        f"The spring is drawn fitted. Free, its inside diameter is {size('free_inside_diameter'):.4g} mm: an "
-        f"interference of {size('interference'):.4g} mm on the radius."
+        f"The spring is drawn fitted. Free, its inside diameter is {number_text(size('free_inside_diameter'))} mm: an "
+        f"interference of {number_text(size('interference'))} mm on the radius."
     )
     return _drawn(
         size, spring, _Outside(), title="longitudinal section", complete=complete, seed=seed, told=(fit, coils),
@@ -162,10 +164,13 @@ def clearance_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool, s
     size = Sizes(spec, design)
     spring = _Spring(size, fixed=True)
     per_hub, gap, fixed = (size.number(name) for name in ("coils_per_hub", "gap_coils", "fixed_coils"))
-    coils = f"Coils: {per_hub:g} on the first hub, {gap:g} over the gap, {fixed:g} anchored on the second hub."
+    coils = (
+        f"Coils: {typed_number(per_hub)} on the first hub, {typed_number(gap)} over the gap, "
+        f"{typed_number(fixed)} anchored on the second hub."
+    )
     fit = (
-        f"The clutch is drawn engaged, its coils closed. Released, they stand {size('clearance'):.3g} mm clear of the "
-        "first hub on the radius."
+        f"The clutch is drawn engaged, its coils closed. Released, they stand "
+        f"{number_text(size('clearance'), 3)} mm clear of the first hub on the radius."
     )
     omitted = ["tang at the free end, anchor of the other end", "stop and actuator that hold the free end"]
     if complete:
@@ -219,7 +224,7 @@ def _drawn(
     items = [
         Item(FIRST, "First hub", 1, surface, note, Hatch.RIGHT),
         Item(SECOND, "Second hub", 1, surface, note, Hatch.LEFT),
-        Item(SPRING, "Spring", 1, size.part("wire"), f"{size.number('total_coils'):g} coils", Hatch.CROSS),
+        Item(SPRING, "Spring", 1, size.part("wire"), f"{typed_number(size.number('total_coils'))} coils", Hatch.CROSS),
     ]
     if outside.radius:
         shapes.append(ring(0.0, end, outside.bore, outside.radius, COLLAR))

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from ..mechanics import Quantity
 
 MODELS = ("refined", "seed")
 # Beyond this exponent the clutch is locked for any practical purpose, and exp() would sooner or later overflow.

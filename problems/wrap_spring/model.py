@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import practice, wear
-from problems.practice import UNSOURCED
-from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
-from problems.wrap_spring import blocks, body, curves, formulas
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
+
+from .. import practice, wear
+from ..practice import UNSOURCED
+from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
+from . import blocks, body, curves, formulas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,7 +49,7 @@ class Wants(Block):
         lower=1,
         upper=5,
         symbol="K_A",
-        text="The wire must stand service_factor required_torque again and again",
+        text="The wire must stand service factor times required torque again and again",
         source=MODEL_VALUE,
     )
     overrun_speed = Requirement(
@@ -69,7 +70,7 @@ class Wants(Block):
         upper=1e4,
         optional=True,
         symbol="drag_max",
-        text="Largest drag when overrunning; a twentieth of required_torque is usual",
+        text="Largest drag when overrunning; a twentieth of required torque is usual",
         source=DRIVE,
     )
     hub_shear_limit = Requirement(
@@ -98,7 +99,7 @@ class Wants(Block):
         lower=0.1,
         upper=1,
         symbol="k_lift",
-        text="Largest spring_speed over the speed at which the spring lifts off",
+        text="Largest spring speed over the speed at which the spring lifts off",
         source=MODEL_VALUE,
         group="model",
     )
@@ -141,7 +142,7 @@ class PracticeWants(Wants):
     drag_torque_limit = replace(
         Wants.drag_torque_limit,
         optional=False,
-        text=f"Largest drag when overrunning; by default a tenth of required_torque ({UNSOURCED})",
+        text=f"Largest drag when overrunning; by default a tenth of required torque ({UNSOURCED})",
         source=UNSOURCED,
     )
     interference_ratio_max = replace(
@@ -197,8 +198,8 @@ class WrapSpringClutch(DesignProblem):
             OVERLOADS,
             "slip_limited",
             symbol="pol",
-            text="slip_limited: the wire sees peak_torque or the largest slip torque, whichever is smaller; "
-            "torque_limited: it sees peak_torque",
+            text="slip_limited: the wire sees peak torque or the largest slip torque, whichever is smaller; "
+            "torque_limited: it sees peak torque",
             source=NOT_IN_S2,
             group="duty",
         )
@@ -238,7 +239,7 @@ class WrapSpringClutch(DesignProblem):
         self._declare_fit(d, duty=duty, wants=wants, coils=coils, interference=interference)
         low, high = self._fitted_moments(options, duty, wire, coils, interference)
         self._name_fit(d, options=options, duty=duty, wire=wire, coils=coils, interference=interference)
-        text = "Bending moment of the loosest fit, E I_w kappa; M_b is E I_w (dr + tol)/(r_m r_free_lo) in the same way"
+        text = "Bending moment of the loosest fit"
         d.step("least_moment", "N*m", low, symbol="M_lo", text=text, source=f"{S2}, eq. (4)")
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
         guards = self._declare_grip(d, options=options, duty=duty, wire=wire, coils=coils, low=low)
@@ -318,7 +319,7 @@ class WrapSpringClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through hubs and spring, and a detail of the coils."""
-        from problems.wrap_spring import drawing as wrap_spring  # costly to import; searches do without
+        from . import drawing as wrap_spring  # costly to import; searches do without
 
         return wrap_spring.interference_drawing(
             spec,
@@ -372,7 +373,7 @@ class WrapSpringClutch(DesignProblem):
         curvature = formulas.curvature_change(loosest, mean, large)
         named = [
             ("least_interference", "mm", loosest, "dr_lo", "Interference of the loosest fit, dr - tol"),
-            ("curvature_change", "1/m", curvature, "kappa", "Curvature change of the wire, 1/r_free - 1/r_m, loosest"),
+            ("curvature_change", "1/m", curvature, "kappa", "Curvature change of the wire, loosest fit"),
             ("free_inside_diameter", "mm", inside, "d_free", "Inside of the free spring"),
         ]
         if options.model != "seed":
@@ -442,7 +443,7 @@ class WrapSpringClutch(DesignProblem):
             blocks.centrifugal_moment(options, duty, wire, coils),
             "N*m",
             guard=True,
-            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips",
+            text="At spring speed the loosest spring is below its lift-off; otherwise nothing grips",
             source=NOT_IN_S2,
         )
         return ("grip",)  # without interference there is no preload either
@@ -464,7 +465,7 @@ class WrapSpringClutch(DesignProblem):
             duty.spring_speed,
             wants.liftoff_margin * speed,
             "1/min",
-            text="The spring stays on its hub at spring_speed, also with model seed, which counts torques at rest",
+            text="The spring stays on its hub at spring speed, also with model seed, which counts torques at rest",
             source=NOT_IN_S2,
         )
 
@@ -485,7 +486,7 @@ class WrapSpringClutch(DesignProblem):
             d.advise(
                 "slips_below_peak",
                 slip < duty.peak_torque,
-                "the clutch always slips below peak_torque: slip_torque loads the wire, not the drive",
+                "the clutch always slips below peak torque: slip torque loads the wire, not the drive",
                 source=NOT_IN_S2,
             )
         return d.derive(
@@ -515,7 +516,7 @@ class WrapSpringClutch(DesignProblem):
         least, largest = stress(0.0), stress(wants.service_factor * duty.required_torque)
         text = "Stress of the wire without a torque"
         d.step("least_stress", "N/mm2", least, symbol="sigma_lo", text=text, source=f"{S2}, eq. (8)")
-        text = "Stress of the wire under service_factor required_torque"
+        text = "Stress of the wire under service factor times required torque"
         d.step("fatigue_stress", "N/mm2", largest, symbol="sigma_hi", text=text, source=f"{S2}, eq. (8)")
         used = d.derive(
             "fatigue_utilisation",
@@ -528,7 +529,7 @@ class WrapSpringClutch(DesignProblem):
                 wire.tensile_strength,
             ),
             symbol="u_F",
-            text="Fatigue of the wire between no torque and service_factor required_torque",
+            text="Fatigue of the wire between no torque and service factor times required torque",
             source=f"Goodman; {NOT_IN_S2}",
         )
         d.at_most(
@@ -556,7 +557,7 @@ class WrapSpringClutch(DesignProblem):
             formulas.hub_shear_stress(load, coils.hub_diameter, duty.bore_diameter),
             symbol="tau",
             needs="hub_bore",
-            text="Shear stress of the hub under wire_torque",
+            text="Shear stress of the hub under wire torque",
             source="torsion of a tube",
         )
         d.at_most(
@@ -699,7 +700,7 @@ class WrapSpringClutch(DesignProblem):
                 "rad",
                 formulas.slip_arc(duty.required_torque, low, slope),
                 "alpha_s",
-                "Arc over which the loaded wire slips, ln(1 + T_req/M_lo)/mu' with mu' = mu_min r_h/r_m",
+                "Arc over which the loaded wire slips",
             ),
         ):
             d.step(name, unit, value, symbol=symbol, text=text, source=NOT_IN_S2)
@@ -709,7 +710,7 @@ class WrapSpringClutch(DesignProblem):
             angle,
             symbol="theta",
             needs="interference_positive",
-            text="Angle between the hubs until required_torque is carried: least friction, loosest fit, at rest",
+            text="Angle between the hubs until required torque is carried: least friction, loosest fit, at rest",
             source=NOT_IN_S2,
         )
 
@@ -721,7 +722,7 @@ class WrapSpringClutch(DesignProblem):
             "-",
             stress / wire.bending_allow,
             symbol="u_s",
-            text="wire_stress over its limit",
+            text="wire stress over its limit",
             source=f"{S2}, eq. (8) and (18)",
         )
         d.derive(
@@ -729,7 +730,7 @@ class WrapSpringClutch(DesignProblem):
             "-",
             pressure / friction.part.p_allow,
             symbol="u_p",
-            text="contact_pressure over its limit",
+            text="contact pressure over its limit",
             source=f"{S2}, eq. (22), corrected",
         )
 
@@ -767,7 +768,7 @@ class WrapSpringClutch(DesignProblem):
             "tip_lifts_off",
             formulas.closing_torque(effective, tips) < duty.required_torque,
             "the tip of a free end lifts off and about 0.05 coils there do not grip; counting that, the least closing "
-            "torque is below required_torque: raise slip_safety",
+            "torque is below required torque: raise slip safety",
             source=NOT_IN_S2,
         )
         if wants.overrun_speed is not None:
@@ -775,5 +776,5 @@ class WrapSpringClutch(DesignProblem):
                 "overrun_sliding_speed",
                 wants.overrun_speed * coils.hub_radius > friction.part.optional("v_allow"),
                 "the sliding speed when overrunning is above what the friction pair stands",
-                source="table friction_materials, v_allow",
+                source="table friction_materials, allowed speed",
             )

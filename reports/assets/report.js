@@ -1,6 +1,6 @@
 // Designs that the report does not tell in full are shown on request, from the table that stands in the file.
-"use strict";
 (() => {
+  "use strict";
   const source = document.getElementById("all-designs");
   const place = document.getElementById("any-design");
   if (!source || !place) return;
@@ -21,15 +21,15 @@
     const body = make("tbody", undefined, node);
     rows.forEach((cells) => {
       const row = make("tr", undefined, body);
-      cells.forEach((text, k) => { make("td", text, row).className = k === 1 ? "n" : ""; });
+      cells.forEach((text, k) => { make("td", typeof text === "number" ? number(text) : text, row).className = k === 1 ? "n" : ""; });
     });
     return frame;
   };
   const show = (rank) => {
     const row = told.rows.find((one) => one[0] === rank);
-    const pairs = told.columns.map((name, k) => [name, row[k] === null ? "" : String(row[k])]);
+    const pairs = told.columns.map((name, k) => [name, row[k] ?? ""]);
     const limits = pairs.filter(([name]) => name.startsWith("utilisation: "))
-      .map(([name, used]) => [name.slice(13), used === "" ? "not checked" : `${(100 * Number(used)).toFixed(1)} %`, Number(used)])
+      .map(([name, used]) => [name.slice(13), used === "" ? "not checked" : usedShare(used), used])
       .sort((a, b) => b[2] - a[2]).map((x) => x.slice(0, 2));
     const values = pairs.filter(([name, value]) => !name.startsWith("utilisation: ") && value !== "");
     place.replaceChildren();

@@ -1,6 +1,6 @@
 // Many rows of a table: chosen by state and text, sorted by a column, some at a time.
-"use strict";
 (() => {
+  "use strict";
   const place = document.getElementById("many-rows");
   const source = document.getElementById("all-rows");
   if (!place || !source) return;
@@ -11,15 +11,7 @@
   const heads = [...place.querySelectorAll("thead th")];
   const kinds = heads.map((head) => head.className);
   const order = new Intl.Collator("en", { numeric: true });
-  const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u00a0");
-  const shown = (value, column) => {
-    if (value === null) return "";
-    if (typeof value !== "number" || isWhole[column]) return String(value);
-    const decimals = value === 0 ? 0 : Math.max(3 - Math.floor(Math.log10(Math.abs(value))), 0);
-    const [integer, rest = ""] = value.toFixed(Math.min(decimals, 100)).split(".");
-    const digits = rest.replace(/0+$/, "");
-    return integer.replace(/\B(?=(\d{3})+$)/g, " ") + (digits ? `.${digits}` : "");
-  };
+  const cellText = (value, k) => (typeof value === "string" || isWhole[k] ? String(value) : number(value));
   const make = (tag, words, parent) => {
     const node = document.createElement(tag);
     node.textContent = words;
@@ -43,20 +35,20 @@
     const made = document.createDocumentFragment();
     chosen.slice(first, last).forEach((k) => {
       const line = document.createElement("tr");
-      rows[k].forEach((value, n) => { make("td", shown(value, n), line).className = kinds[n]; });
+      rows[k].forEach((value, n) => { make("td", cellText(value, n), line).className = kinds[n]; });
       made.append(line);
     });
     body.replaceChildren(made);
-    const range = chosen.length > most ? `${whole(first + 1)} to ${whole(last)} of ` : "";
-    const all = chosen.length < rows.length ? ` (of ${whole(rows.length)})` : "";
-    counted.textContent = `${range}${whole(chosen.length)} ${chosen.length === 1 ? "row" : "rows"}${all}`;
+    const range = chosen.length > most ? `${number(first + 1)} to ${number(last)} of ` : "";
+    const all = chosen.length < rows.length ? ` (of ${number(rows.length)})` : "";
+    counted.textContent = `${range}${number(chosen.length)} ${chosen.length === 1 ? "row" : "rows"}${all}`;
     before.disabled = first === 0;
     after.disabled = last >= chosen.length;
     before.hidden = after.hidden = chosen.length <= most;
   };
   const choose = () => {
     const words = text.value.toLowerCase().split(/\s+/).filter(Boolean);
-    if (words.length && !searched) searched = rows.map((row) => row.map(shown).join("\n").toLowerCase());
+    if (words.length && !searched) searched = rows.map((row) => row.map(cellText).join("\n").toLowerCase());
     chosen = [];
     rows.forEach((row, k) => {
       if (state.value !== "" && row[kind] !== state.value) return;
@@ -74,8 +66,8 @@
 
   const counts = new Map();
   rows.forEach((row) => counts.set(row[kind], (counts.get(row[kind]) || 0) + 1));
-  make("option", `all (${whole(rows.length)})`, state).value = "";
-  [...counts].forEach(([word, count]) => { make("option", `${word} (${whole(count)})`, state).value = word; });
+  make("option", `all (${number(rows.length)})`, state).value = "";
+  [...counts].forEach(([word, count]) => { make("option", `${word} (${number(count)})`, state).value = word; });
   heads.forEach((head, k) => {
     const button = document.createElement("button");
     button.type = "button";

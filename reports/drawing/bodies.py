@@ -13,10 +13,12 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from reports.about import About
-from reports.extras import needed
 from synth.drawing import Area, Drawing, Item, Vertex
 from synth.drawing.shapes import arc_of, sides
+from synth.results.drawings import EXTRAS
+
+from ..about import About
+from ..extras import needed
 
 NO_DATE = "1970-01-01T00:00:00"  # the same drawing gives the same file; dates are told by --about
 SAG = 0.1  # mm between a surface and its triangles in glTF
@@ -124,7 +126,7 @@ def plain(name: str) -> str:
 
 
 def _cad() -> Any:
-    return needed("build123d", "--step", "step")
+    return needed(*EXTRAS["step"])
 
 
 def _body(cad: Any, area: Area) -> Any:

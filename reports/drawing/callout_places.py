@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.drawing.dimension_places import EDGES, label
-from reports.drawing.lettering import TEXT, width
-from reports.drawing.paper import Callout, PlacedMeasure, Ring, Stroke, Text
 from synth.drawing import XY, Balloon, Box2, Detail, Edge, Radius
+
+from .dimension_places import EDGES, label
+from .lettering import TEXT, width
+from .paper import Callout, PlacedMeasure, Ring, Stroke, Text
 
 BALLOON = 3.5  # radius of the ring of a part number
 LETTER = 5.0  # height of the letter of a detail

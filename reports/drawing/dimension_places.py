@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from reports.drawing.lettering import TEXT, width
-from reports.drawing.paper import ARROW, Bow, PlacedMeasure, Stroke, Text, shown
 from synth.drawing import XY, Angle, Box2, Dimension, Edge, Radius, Slant
+
+from .lettering import TEXT, width
+from .paper import ARROW, Bow, PlacedMeasure, Stroke, Text, shown
 
 FIRST = 10.0  # mm from the view to the first tier (ISO 129: at least 10)
 PITCH = 7.0  # from tier to tier

@@ -12,11 +12,6 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from reports.drawing.filling import Filling, filling
-from reports.drawing.paper import ARROW, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text
-from reports.drawing.svg import NARROW_PART, lengthened
-from reports.drawing.view_places import CENTRE_OVER
-from reports.extras import needed
 from synth.drawing import (
     XY,
     Angle,
@@ -33,6 +28,13 @@ from synth.drawing import (
     Slant,
 )
 from synth.drawing.shapes import Vertex, box_of, corner, flattened, points_of, thickness
+from synth.results.drawings import EXTRAS
+
+from ..extras import needed
+from .filling import Filling, filling
+from .paper import ARROW, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text
+from .svg import NARROW_PART, lengthened
+from .view_places import CENTRE_OVER
 
 STYLE = "CLUTCHSYNTH"
 FONT = "arial.ttf"
@@ -85,7 +87,7 @@ def dxf_document(sheet: PaperSheet, drawing: Drawing) -> Any:
 
     Parameters and errors as for :func:`drawing_dxf`.
     """
-    ezdxf = needed("ezdxf", "--dxf", "dxf")
+    ezdxf = needed(*EXTRAS["dxf"])
     ezdxf.options.write_fixed_meta_data_for_testing = True  # ours is the only use: no time, no chance in the file
     return _Dxf(ezdxf, sheet, drawing).document()
 

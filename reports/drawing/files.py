@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from reports.about import About
-from reports.drawing.dxf import drawing_dxf
-from reports.drawing.page import paper_sheet
-from reports.drawing.svg import drawing_svg
 from synth.drawing import Drawing
+
+from ..about import About
+from .dxf import drawing_dxf
+from .page import paper_sheet
+from .svg import drawing_svg
 
 
 def svg_of(drawing: Drawing, title: str, program: str, about: Any = None, prefix: str = "drawing") -> str:

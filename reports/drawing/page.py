@@ -10,9 +10,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from reports.about import About
-from reports.drawing.paper import PaperSheet, PlacedView, Stroke
-from reports.drawing.sheet_blocks import (
+from synth.drawing import Box2, Detail, Drawing, LineKind, View
+
+from ..about import About
+from .paper import PaperSheet, PlacedView, Stroke
+from .sheet_blocks import (
     BLOCK,
     NOTE,
     WIDE,
@@ -23,8 +25,7 @@ from reports.drawing.sheet_blocks import (
     parts_list,
     title_block,
 )
-from reports.drawing.view_places import placed_detail, placed_view
-from synth.drawing import Box2, Detail, Drawing, LineKind, View
+from .view_places import placed_detail, placed_view
 
 SHEETS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0)}
 FILING, MARGIN = 20.0, 10.0  # left, and around (ISO 5457)

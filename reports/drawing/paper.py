@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from reports.drawing.lettering import width
 from synth.drawing import XY, Box2, Detail, Drawable, LineKind, Measured, View
+
+from .lettering import width
 
 ARROW = 3.0  # length of an arrow; a third as wide
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.about import About
-from reports.drawing.lettering import LABEL, SMALL, TEXT, fitted, wrapped
-from reports.drawing.paper import Ring, Stroke, Text, scale_label
 from synth.drawing import Drawing, Item, LineKind
+
+from ..about import About
+from .lettering import LABEL, SMALL, TEXT, fitted, wrapped
+from .paper import Ring, Stroke, Text, scale_label
 
 WIDE = 180.0  # of title block and parts list (ISO 7200)
 BLOCK = 36.0  # height of the title block

@@ -6,14 +6,15 @@ import math
 from collections.abc import Sequence
 from html import escape
 
-from reports.drawing.dimension_places import TAIL
-from reports.drawing.filling import Filling, filling
-from reports.drawing.lettering import size_of, width
-from reports.drawing.paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
-from reports.drawing.view_places import CENTRE_OVER
 from synth.drawing import XY, Angle, Area, Circle, Drawable, Drawing, Line, LineKind, Slant
 from synth.drawing.shapes import arc_of, sides, thickness
 from synth.plain_text import one_line
+
+from .dimension_places import TAIL
+from .filling import Filling, filling
+from .lettering import size_of, width
+from .paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
+from .view_places import CENTRE_OVER
 
 WIDE, NARROW = 0.5, 0.25  # mm (ISO 128-2)
 NARROW_PART = 3.0  # parts thinner than that on paper have lighter outlines

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.drawing.callout_places import callouts
-from reports.drawing.dimension_places import angular, slanted, tiers
-from reports.drawing.paper import Callout, PlacedMeasure, PlacedView, Stroke, Text, scale_label
 from synth.drawing import XY, Angle, Box2, Detail, Dimension, Line, LineKind, Radius, Slant, View
 from synth.drawing.shapes import box_of, points_of
 from synth.plain_text import one_line
+
+from .callout_places import callouts
+from .dimension_places import angular, slanted, tiers
+from .paper import Callout, PlacedMeasure, PlacedView, Stroke, Text, scale_label
 
 CENTRE_OVER = 4.0  # mm that centre lines reach beyond their ends
 HEADING = 5.0  # height of letters over details

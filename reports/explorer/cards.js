@@ -156,7 +156,7 @@ export function tableCard(x) {
   );
 }
 
-const TONES = { listed: "good", beaten: "", infeasible: "bad", stopped: "open" };
+const TONES = { listed: "good", beaten: "", infeasible: "bad", not_found: "bad", stopped: "open" };
 
 /** Return the card of the families that were asked the same. */
 export function familiesCard(x) {

@@ -1,9 +1,8 @@
 // How far a front is proven, in plain words, what is not part of it; and why there is no design where there is none.
 
 import { h, s } from "./dom.js";
-import { amount, number, percent } from "./numbers.js";
+import { FULL_DIGITS, amount, number } from "./numbers.js";
 
-const LEAST_MISS = 5e-4; // that is told as a number
 const ICONS = {
   good: "M4.2 9.4l3.2 3.2 6.4-7",
   open: "M9 4.5v5.6M9 12.6v.9",
@@ -127,9 +126,9 @@ export function nothingCard(x) {
       "tr",
       null,
       h("th", { scope: "row" }, miss.label.replace(/ [≤≥] .*$/, "")),
-      h("td", null, amount(miss.sides[0], miss.unit, 4)),
-      h("td", null, `${miss.sign}\u00a0${amount(miss.sides[1], miss.unit, 4)}`),
-      h("td", { class: "missed" }, miss.by === null ? "" : miss.by < LEAST_MISS ? "< 0.1\u00a0%" : percent(miss.by)),
+      h("td", null, amount(miss.sides[0], miss.unit, FULL_DIGITS)),
+      h("td", null, `${miss.sign}\u00a0${amount(miss.sides[1], miss.unit, FULL_DIGITS)}`),
+      h("td", { class: "missed" }, miss.by),
     ),
   );
   const table =
@@ -153,10 +152,6 @@ export function nothingCard(x) {
         h("tbody", null, rows),
       ),
     );
-  const message = rows.length
-    ? String(told.message).split(":")[0].split(" misses ")[0] +
-      ` misses ${rows.length === 1 ? "one limit" : `${rows.length} limits`}.`
-    : told.message;
   const nearest =
     told.nearest.length > 0 &&
     h(
@@ -189,7 +184,7 @@ export function nothingCard(x) {
     "section",
     { class: "card nothing", "aria-labelledby": `${x.id}-nothing` },
     h("h2", { id: `${x.id}-nothing` }, "Nothing meets all limits"),
-    h("p", null, message),
+    h("p", null, told.message),
     table,
     nearest,
     slot,

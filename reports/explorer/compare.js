@@ -1,7 +1,7 @@
 // Up to four designs side by side, differences marked.
 
 import { h, hidden } from "./dom.js";
-import { amount, number, percent } from "./numbers.js";
+import { amount, number, usedShare } from "./numbers.js";
 
 export const MOST_PINS = 4;
 
@@ -88,14 +88,14 @@ export function compareView(x) {
       label: c.label,
       kind: c.kind,
       values: pins.map((i) => c.values[i]),
-      told: pins.map((i) => (c.kind === "word" ? c.values[i] : amount(c.values[i], c.unit, 4))),
+      told: pins.map((i) => (c.kind === "word" ? c.values[i] : amount(c.values[i], c.unit))),
       best: best(c, pins),
     }));
     const used = model.record.limits
       .map((limit, k) => ({
         label: `used of ${limit.label}`,
         kind: "used",
-        told: pins.map((i) => percent(model.record.designs[i].used[k])),
+        told: pins.map((i) => usedShare(model.record.designs[i].used[k])),
         hot: pins.map((i) => model.record.designs[i].used[k] >= 0.9),
       }))
       .filter((row) => row.hot.some(Boolean));
@@ -148,7 +148,7 @@ export function compareView(x) {
     if (!sense) return null;
     const values = pins.map((i) => column.values[i] ?? (sense === "min" ? Infinity : -Infinity));
     const top = (sense === "min" ? Math.min : Math.max)(...values);
-    return new Set(values.map((v) => number(v, 4))).size > 1 ? values.map((v) => v === top) : null;
+    return new Set(values.map((v) => number(v))).size > 1 ? values.map((v) => v === top) : null;
   }
 
   return { node, draw };

@@ -6,13 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from reports.about import About
-from reports.explorer.record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
-from reports.front_report import NOT_COVERED
-from reports.sheet.design_sheet import as_sentence, program_name
 from synth.drawing import Drawing
+from synth.plain_text import counted
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.calculation import Calculation
+
+from ..about import About
+from ..front_report import NOT_COVERED
+from ..sheet.design_sheet import as_sentence, program_name
+from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 
 TITLE = "Comparison of families"
 
@@ -161,7 +163,7 @@ class _Compared:
             "solved": c.solved,
             "unresolved": c.unresolved,
             "offered": [
-                f"{self.titles[family]}: {front.certificate.combinations} combinations"
+                f"{self.titles[family]}: {counted(front.certificate.combinations, 'combination')}"
                 for family, front in self.fronts.items()
             ],
             "not_part": self._not_part(),

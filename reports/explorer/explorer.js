@@ -250,10 +250,10 @@ export class Explorer {
       const c = model.column(key);
       const words =
         low === -Infinity
-          ? `${c.label} ≤ ${amount(high, c.unit, 3)}`
+          ? `${c.label} ≤ ${amount(high, c.unit)}`
           : high === Infinity
-            ? `${c.label} ≥ ${amount(low, c.unit, 3)}`
-            : `${c.label} ${amount(low, "", 3)} to ${amount(high, c.unit, 3)}`;
+            ? `${c.label} ≥ ${amount(low, c.unit)}`
+            : `${c.label} ${amount(low, "")} to ${amount(high, c.unit)}`;
       return drop(words, () => this.keep([[key, null]]));
     });
     if (state.off.size)

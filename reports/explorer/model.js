@@ -36,7 +36,7 @@ function columnsOf(record) {
       key: "robust:yield",
       label: "yield",
       unit: "%",
-      text: "Share of samples that keep all limits",
+      text: "Share of what scatters in which all limits hold, estimated unless it is 100 %",
       kind: "robust",
       values,
     });

@@ -12,7 +12,9 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-MODULES = "reports.explorer"
+from synth.ui import ui_files
+
+MODULES = "synth.reports.explorer"
 FIRST = "page.js"
 IMPORT = re.compile(r'^import \{([^}]*)\} from "\./([a-z]+\.js)";\n', re.MULTILINE)
 EXPORT = re.compile(r"^export ((?:async )?function|class|const|let) (\w+)", re.MULTILINE)
@@ -23,7 +25,7 @@ LEAST_HEIGHT, MOST_HEIGHT = 300, 4000  # of a frame, in pixels
 def explorer_files() -> dict[str, str]:
     """Return the modules and style sheets by name, as a service hands them out; ``explorer.js`` has ``mount``."""
     found = {path.name: path.read_text(encoding="utf-8") for path in files(MODULES).iterdir() if _handed_out(path.name)}
-    return dict(sorted(found.items()))
+    return dict(sorted((found | ui_files()).items()))
 
 
 def _handed_out(name: str) -> bool:
@@ -36,7 +38,7 @@ def explorer_page(record: Mapping[str, Any]) -> str:
     Parameters
     ----------
     record : mapping
-        As :func:`reports.explorer.record.explorer_record` returns it.
+        As :func:`synth.reports.explorer.record.explorer_record` returns it.
     """
     script, style = one_script(), explorer_files()["explorer.css"] + explorer_files()["page.css"]
     policy = (

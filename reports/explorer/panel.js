@@ -3,10 +3,10 @@
 import { h, localAddress, s } from "./dom.js";
 import { saveDesign } from "./files.js";
 import { colourClass, shape } from "./marks.js";
-import { amount, number, percent, signed } from "./numbers.js";
+import { FULL_DIGITS, amount, number, percent, signed, usedShare } from "./numbers.js";
 
 const FIRST_LIMITS = 7;
-const BINDING = 0.999; // as in reports/reasons.py
+const BINDING = 0.999; // as in synth/feasibility.py
 
 /**
  * Make the panel.
@@ -45,8 +45,8 @@ export function panelView(x) {
       badges.push(
         h(
           "span",
-          { class: `badge ${d.robust.holds ? "good" : "bad"}` },
-          d.robust.holds ? "stands what scatters" : "does not stand what scatters",
+          { class: `badge ${{ yes: "good", no: "bad" }[d.robust.verdict] ?? "open"}` },
+          `over what scatters: ${{ yes: "all limits hold", no: "a limit fails" }[d.robust.verdict] ?? d.robust.verdict}`,
         ),
       );
     const pin =
@@ -78,7 +78,7 @@ export function panelView(x) {
         "div",
         null,
         h("dt", null, c.label),
-        h("dd", null, h("b", null, number(c.values[i], 4)), c.unit ? h("small", null, `\u202f${c.unit}`) : null),
+        h("dd", null, h("b", null, number(c.values[i])), c.unit ? h("small", null, `\u202f${c.unit}`) : null),
       ),
     );
     return h(
@@ -213,7 +213,7 @@ export function panelView(x) {
       }),
       s("path", { class: "end", d: "M80 0v12" }),
     );
-    const digits = near(sides) ? 5 : 3;
+    const digits = tone === "bad" || near(sides) ? FULL_DIGITS : undefined;
     const both =
       sides[0] === null || sides[1] === null
         ? ""
@@ -228,13 +228,13 @@ export function panelView(x) {
         tone === "bad" ? h("b", { class: "tag" }, " violated") : tone ? h("b", { class: "tag" }, " at limit") : null,
       ),
       bar,
-      h("span", { class: "share" }, percent(row.used)),
+      h("span", { class: "share" }, usedShare(row.used)),
       h("span", { class: "sides" }, both),
     );
   }
 
   const near = ([value, limit]) =>
-    value !== null && limit !== null && value !== limit && number(value, 3) === number(limit, 3);
+    value !== null && limit !== null && value !== limit && number(value) === number(limit);
 
   function prices(d) {
     if (d.prices)
@@ -269,7 +269,7 @@ export function panelView(x) {
           },
           s("rect", { x: (35 - width).toFixed(1), y: 0, width: width.toFixed(1), height: 8, rx: 1 }),
         ),
-        h("span", null, signed(v)),
+        h("span", null, `${signed(v, 2)}\u00a0%`),
         unitless(objectives[k]) ? null : h("small", { class: "soft" }, changed((v * objectives[k].values[x.state.selected]) / 100, objectives[k].unit)),
       );
     };

@@ -147,8 +147,8 @@ export function parallelView(x) {
         );
       } else {
         made.push(
-          s("text", { x: ends[0], y: at + 15 }, number(axis.range[0], 3)),
-          s("text", { x: ends[1], y: at + 15, class: "end" }, number(axis.range[1], 3)),
+          s("text", { x: ends[0], y: at + 15 }, number(axis.range[0])),
+          s("text", { x: ends[1], y: at + 15, class: "end" }, number(axis.range[1])),
         );
       }
       return made;
@@ -168,8 +168,8 @@ export function parallelView(x) {
         made.push(s("text", { x: at + 8, y: along(axis.share(word)) + 4, class: colour }, short(String(word), MOST_LETTERS)));
       });
     } else {
-      made.push(s("text", { x: at, y: ends[1] - 9, class: "mid" }, number(axis.range[1], 3)));
-      made.push(s("text", { x: at, y: high - 6, class: "mid" }, number(axis.range[0], 3)));
+      made.push(s("text", { x: at, y: ends[1] - 9, class: "mid" }, number(axis.range[1])));
+      made.push(s("text", { x: at, y: high - 6, class: "mid" }, number(axis.range[0])));
     }
     return made;
   }
@@ -308,10 +308,7 @@ export function parallelView(x) {
           type: "number",
           step: "any",
           "aria-label": `${column.label}, ${word}${column.unit ? ` in ${column.unit}` : ""}`,
-          placeholder: number(
-            Number((k ? Math.max : Math.min)(...column.values.filter((v) => v !== null)).toPrecision(4)),
-            4,
-          ),
+          placeholder: number((k ? Math.max : Math.min)(...column.values.filter((v) => v !== null))),
           value: now[k] === null || !Number.isFinite(now[k]) ? null : Number(now[k].toPrecision(5)),
           onchange: (event) => {
             const typed = event.target.value === "" ? null : Number(event.target.value);
@@ -353,6 +350,6 @@ export function parallelView(x) {
   const same = () =>
     x.model.same
       .filter((c) => c.kind !== "derived")
-      .map((c) => `${c.label} ${c.kind === "word" ? c.values[0] : amount(c.values[0], c.unit, 4)}`);
+      .map((c) => `${c.label} ${c.kind === "word" ? c.values[0] : amount(c.values[0], c.unit)}`);
   return { node: box, draw, filter, mark, fields, same };
 }

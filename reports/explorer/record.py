@@ -6,16 +6,19 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from reports.about import About
-from reports.drawing.files import svg_of
-from reports.front_report import NOT_COVERED
-from reports.reasons import BINDING, SIGN_OF, why
-from reports.sheet.design_sheet import as_sentence, front_details, front_state, over_range_in_words, program_name
 from synth.drawing import Drawing
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
-from synth.results.plain import finite
-from synth.units import finite_from_si, unit_text
+from synth.results.design import reached_limits
+from synth.results.rating_tables import yield_percent
+from synth.text.numbers import typed_number
+from synth.units import finite_from_si, miss_text, unit_text
+
+from ..about import About
+from ..drawing.files import svg_of
+from ..front_report import NOT_COVERED
+from ..reasons import SIGN_OF, why
+from ..sheet.design_sheet import as_sentence, front_details, front_state, over_range_in_words, program_name
 
 EXPLORER_FORMAT = 1
 DIGITS = 7  # significant, of numbers in the record; five are shown
@@ -202,15 +205,17 @@ class RecordOf:
         for miss in told.conflicts or ():
             unit = str(miss.unit or "-")
             sides = [number(x, unit) if isinstance(x, float) else None for x in (miss.value, miss.limit_value)]
+            by = ""
+            if isinstance(miss.value, float) and isinstance(miss.limit_value, float):
+                by = miss_text(miss.value, miss.limit_value, unit)
             name = str(miss.limit)
-            share = finite(miss.missed_by) if isinstance(miss.missed_by, float) else None
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _compared(label(name)), "sides": sides, "unit": told_unit(unit), "sign": sign} | {"by": share}
+                {"label": _compared(label(name)), "sides": sides, "unit": told_unit(unit), "sign": sign, "by": by}
             )
         nearest = {**(told.nearest or {}), **(told.parts or {})}
         return {
-            "message": str(told.message or ""),
+            "message": told.headline,
             "conflicts": conflicts,
             "nearest": [[label(name), str(value)] for name, value in nearest.items()],
         }
@@ -252,7 +257,7 @@ class RecordOf:
             "used": [_rounded(d.utilisation.get(name)) for name in limits],
             "sides": [[number(x, self.frame.limit_units[name]) for x in d.limits[name]] for name in limits],
             "spec": d.to_spec()["values"],
-            "at_limit": [n for n in limits if self._binds(d, n)],
+            "at_limit": reached_limits(d),
         }
         more: dict[str, Any] = {
             "slopes": self._slopes(d),
@@ -272,10 +277,6 @@ class RecordOf:
         """Return a drawing as SVG."""
         return svg_of(drawing, self.frame.title, program_name(self.front), self.about)
 
-    def _binds(self, d: Design, name: str) -> bool:
-        used = d.utilisation.get(name)
-        return used is not None and used >= BINDING and self.frame.limit_senses[name] != "equal"
-
     def _slopes(self, d: Design) -> list[list[Any]]:
         """Return requirements and limits with what 1 % more of them changes in each objective, in per cent."""
         names = {name for slopes in d.elasticity.values() for name in slopes}
@@ -290,8 +291,8 @@ class RecordOf:
             return {}
         share = rating.share_good
         return {
-            "holds": bool(rating.holds),
-            "yield": _rounded(100 * share) if isinstance(share, float) else None,
+            "verdict": rating.verdict,
+            "yield": yield_percent(share) if isinstance(share, float) else None,
             "words": over_range_in_words(d),
         }
 
@@ -328,7 +329,7 @@ def _in_words(value: Any) -> str:
         return ", ".join(f"{key} {_in_words(inner)}" for key, inner in value.items())
     if isinstance(value, (list, tuple)):
         return ", ".join(map(_in_words, value))
-    return f"{value:.6g}" if isinstance(value, float) else _compared(str(value))
+    return f"{typed_number(value)}" if isinstance(value, float) else _compared(str(value))
 
 
 def _compared(text: str) -> str:

@@ -33,7 +33,7 @@ export function scatterView(x) {
     const some = (column) =>
       [...column.values, ...x.ghosts.map((d) => d[column.key])].filter((v) => v !== null && v !== undefined);
     const axes = [axisOf(some(across), small ? 5 : Math.round(wide / 110)), axisOf(some(up), ticksY)];
-    const labels = axes[1].ticks.map((t) => number(t, 3));
+    const labels = axes[1].ticks.map((t) => number(t));
     const left = 16 + 7 * Math.max(2, ...labels.map((t) => t.length));
     frame = { left, top: 34, right: wide - 16, bottom: high - 46, axes };
     const toX = (v) => frame.left + (frame.right - frame.left) * axes[0].share(v);
@@ -44,7 +44,7 @@ export function scatterView(x) {
     for (const tick of axes[0].ticks) {
       const at = toX(tick);
       nodes.push(s("line", { class: "grid", x1: at, x2: at, y1: frame.top, y2: frame.bottom }));
-      const text = number(tick, 3);
+      const text = number(tick);
       if (at - last < 8 + 7 * text.length || at < frame.left + 4) continue;
       last = at;
       nodes.push(
@@ -132,7 +132,7 @@ export function scatterView(x) {
   function said(i, across, up) {
     const d = x.model.record.designs[i];
     const names = x.model.names[i].length ? `, ${x.model.names[i].join(", ")}` : "";
-    const at = [across, up].map((c) => `${c.label} ${amount(c.values[i], c.unit, 4)}`);
+    const at = [across, up].map((c) => `${c.label} ${amount(c.values[i], c.unit)}`);
     return `Design ${d.rank}${names}: ${at.join(", ")}`;
   }
 

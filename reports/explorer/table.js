@@ -63,7 +63,7 @@ export function tableView(x) {
     );
     const bounds = (d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
     const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
-    const numbers = new Map(columns.filter((c) => c.kind !== "word").map((c) => [c, columnNumbers(c.values, 4)]));
+    const numbers = new Map(columns.filter((c) => c.kind !== "word").map((c) => [c, columnNumbers(c.values)]));
     rows = model.record.designs.map((d, i) => {
       const first = h(
         "th",

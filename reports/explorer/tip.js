@@ -46,7 +46,7 @@ export function tipView(x) {
     if (!on) return;
     head.data = plain(`Design ${d.rank}${x.model.names[i].length ? `, ${x.model.names[i].join(", ")}` : ""}`);
     for (const { column, text } of rows)
-      text.data = plain(column.kind === "word" ? column.values[i] : amount(column.values[i], column.unit, 4));
+      text.data = plain(column.kind === "word" ? column.values[i] : amount(column.values[i], column.unit));
     const labels = x.model.record.limits.filter((l) => d.at_limit.includes(l.name)).map((l) => l.label);
     rows.limits.data = labels.length
       ? plain(`at the limit: ${labels.slice(0, 4).join(", ")}${labels.length > 4 ? " …" : ""}`)

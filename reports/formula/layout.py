@@ -10,12 +10,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from reports.numbers import Shown, UnitIn, shown, shown_number
 from synth.results.calculation import NamedQuantity
 from synth.results.dimensions import EXACT, SAME, Fold, constant_in, dimension_of, fraction_of, unit_for
 from synth.results.expression import Expression, parts_of, with_parts
+from synth.text.numbers import FULL_DIGITS, STEP_DIGITS, shown
 
-NUMBER_DIGITS = 6  # of a number without a name
+from ..numbers import ShownQuantity, UnitIn, in_its_unit
+
 MOST_OVER = 36  # numerator of a fraction that is shown as one
 SHORT_DECIMAL = 4  # digits of a number that is shown as a decimal though it is a fraction
 NEGLIGIBLE = 1e-9  # an added number that keeps formulas away from dividing by zero; left out for readers
@@ -32,7 +33,7 @@ class Letter:
 class Amount:
     """A number with its unit."""
 
-    shown: Shown
+    shown: ShownQuantity
 
 
 @dataclass(frozen=True)
@@ -221,7 +222,8 @@ class Typesetter:
     def _quantity(self, name: str, around: int) -> Layout:
         found = self.leaf(self.quantities[name])
         if isinstance(found, Amount):
-            negative, unit = found.shown.text.startswith("-"), bool(found.shown.unit) or bool(found.shown.exponent)
+            number = found.shown.number
+            negative, unit = bool(number.sign), bool(found.shown.unit) or bool(number.power)
             if (negative and around > SUM) or (unit and around >= BASE):
                 return Fence(found)
         return found
@@ -365,13 +367,13 @@ def _is_short(number: float) -> bool:
     return len(f"{number:.15g}".replace(".", "").strip("0")) <= SHORT_DECIMAL
 
 
-def _in_unit(number: float, unit: str) -> Shown:
+def _in_unit(number: float, unit: str) -> ShownQuantity:
     """Return a number that stands beside quantities with a unit, in that unit."""
-    return shown_number(number, NUMBER_DIGITS) if not unit else shown(number, unit, NUMBER_DIGITS)
+    return in_its_unit(number, unit, FULL_DIGITS)
 
 
 def _whole(number: int) -> Layout:
-    return Amount(Shown(str(number)))
+    return Amount(ShownQuantity(shown(number)))
 
 
 def _raised(base: Layout, power: int) -> Layout:
@@ -392,7 +394,7 @@ class ByNumber:
 
     values: Mapping[str, float]
     in_si: bool = False
-    digits: int = 5
+    digits: int = STEP_DIGITS
 
     def __call__(self, q: NamedQuantity) -> Layout:
         """Return the number of a quantity, or the word that it stands for."""

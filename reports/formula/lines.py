@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from reports.formula.layout import (
+from synth.text.numbers import shown
+
+from ..numbers import ShownQuantity, printed
+from .layout import (
     BESIDE,
     TIMES,
     Amount,
@@ -18,8 +21,7 @@ from reports.formula.layout import (
     Sign,
     Word,
 )
-from reports.formula.symbols import symbol_parts
-from reports.numbers import Shown, printed
+from .symbols import symbol_parts
 
 WIDEST = 74.0  # digits side by side that a line of a page holds
 MOST_UNDER = 0.5  # of a line: what stands under a bar beside which the rest is broken
@@ -82,7 +84,9 @@ def _inside(line: Layout, widest: float) -> list[Layout]:
         over = part.over.items if isinstance(part.over, Row) else (part.over,)
         if any(isinstance(x, Sign) and x.text in ("+", "−") for x in over):
             over = (Fence(part.over),)
-        return broken(Row((*before, Fraction(Amount(Shown("1")), part.under), TIMES, *over, *after)), widest)
+        return broken(
+            Row((*before, Fraction(Amount(ShownQuantity(shown(1))), part.under), TIMES, *over, *after)), widest
+        )
     if isinstance(part, Fence) and not part.bars and isinstance(part.inner, Row):
         opened = Row((*before, Word("("), *part.inner.items, Word(")"), *after))
         return _packed(_pieces(opened, ("+", "−"), (place + 2, place + 1 + len(part.inner.items))), widest)

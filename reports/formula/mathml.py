@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from html import escape
 
-from reports.formula.layout import (
+from synth.text.numbers import THIN, grouped
+from synth.units import unit_text
+
+from .layout import (
     BESIDE,
     Amount,
     Call,
@@ -19,8 +22,7 @@ from reports.formula.layout import (
     Sign,
     Word,
 )
-from reports.formula.symbols import symbol_parts
-from synth.units import unit_text
+from .symbols import symbol_parts
 
 
 def mathml(layout: Layout) -> str:
@@ -89,16 +91,15 @@ def _subscript(text: str) -> str:
 
 
 def _amount(layout: Amount) -> str:
-    number = layout.shown
-    negative, digits = number.text.startswith("-"), number.text.removeprefix("-")
+    number, unit = layout.shown.number, unit_text(layout.shown.unit)
+    negative, digits = bool(number.sign), grouped(number.digits, THIN)
     found = f"<mo>−</mo><mn>{escape(digits)}</mn>" if negative else f"<mn>{escape(digits)}</mn>"
     many = negative
-    if number.exponent:
-        power = f"<mo>−</mo><mn>{-number.exponent}</mn>" if number.exponent < 0 else f"<mn>{number.exponent}</mn>"
+    if number.power:
+        power = f"<mo>−</mo><mn>{-number.power}</mn>" if number.power < 0 else f"<mn>{number.power}</mn>"
         found += f"<mo>·</mo><msup><mn>10</mn><mrow>{power}</mrow></msup>"
         many = True
-    if number.unit:
-        unit = unit_text(number.unit)
+    if unit:
         wide = "0.45em" if unit[0].isdigit() else "0.17em"  # 36 1/min, not 361/min
         space = "" if unit == "°" else f'<mspace width="{wide}"/>'
         found += f"{space}<mtext>{escape(unit)}</mtext>"

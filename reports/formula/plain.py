@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.formula.layout import (
+from .layout import (
     BESIDE,
     Amount,
     Call,

@@ -5,7 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from reports.formula.layout import (
+from synth.text.numbers import THIN, grouped
+from synth.units import unit_text
+
+from .layout import (
     BESIDE,
     MINUS,
     Amount,
@@ -21,8 +24,7 @@ from reports.formula.layout import (
     Sign,
     Word,
 )
-from reports.formula.symbols import symbol_parts
-from synth.units import unit_text
+from .symbols import symbol_parts
 
 SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
 NAMED = {"ln", "sin", "cos", "tan", "sinh", "cosh", "tanh", "min", "max"}
@@ -128,14 +130,13 @@ def _letter(symbol: str) -> str:
 
 
 def _amount(layout: Amount) -> str:
-    number = layout.shown
-    found = f"upright({string(number.text.removeprefix('-'))})"
-    if number.text.startswith("-"):
+    number, unit = layout.shown.number, unit_text(layout.shown.unit)
+    found = f"upright({string(grouped(number.digits, THIN))})"
+    if number.sign:
         found = f"- {found}"
-    if number.exponent:
-        found += f" dot.op attach(10, t: {number.exponent})"
-    if number.unit:
-        unit = unit_text(number.unit)
+    if number.power:
+        found += f" dot.op attach(10, t: {number.power})"
+    if unit:
         space = "" if unit == "°" else " thick thin " if unit[0].isdigit() else " thin "  # 36 1/min, not 361/min
         found += f"{space}upright({string(unit)})"
     return f" {found} "

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from reports.formula.layout import Layout
 from synth.plain_text import counted
+
+from ..formula.layout import Layout
 
 
 @dataclass(frozen=True)

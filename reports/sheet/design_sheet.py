@@ -6,11 +6,18 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from reports.about import About
-from reports.formula.layout import Amount, Letter, Word, textbook
-from reports.numbers import printed, shown
-from reports.reasons import BINDING
-from reports.sheet.blocks import (
+from synth.feasibility import binds, most_used
+from synth.results import Design, ParetoFront
+from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict, NamedQuantity
+from synth.results.provenance import installed_versions
+from synth.results.rating_tables import robust_sentence, yield_text
+from synth.results.ratings import NOT_SHOWN
+from synth.text.numbers import gap_text, used_share
+
+from ..about import About
+from ..formula.layout import Amount, Letter, Word, textbook
+from ..numbers import in_step, printed
+from .blocks import (
     Block,
     Bullets,
     Cell,
@@ -27,10 +34,7 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.steps import Steps
-from synth.results import Design, ParetoFront
-from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict, NamedQuantity
-from synth.results.provenance import installed_versions
+from .steps import Steps
 
 LENGTHS = ("summary", "normal", "full")
 DRAWN = "Design layout: computed sizes without tolerances. The scale holds on a sheet of the size in the title block."
@@ -121,7 +125,8 @@ class _Sheet:
         typed = [q for q in self._of_kind("requirement") if q.name in frame.requirements]
         usual = [q for q in self._of_kind("requirement") if q.name not in frame.requirements]
         blocks: list[Block] = [Heading("Input", anchor="input")]
-        blocks.append(TableBlock.of("Stated", INPUT_COLUMNS, [self._input_row(q) for q in typed]))
+        stated = [self._input_row(q) for q in typed]
+        blocks.append(TableBlock.of("Stated", INPUT_COLUMNS, stated) if stated else Paragraph("Nothing was stated."))
         options = [
             TableRow((Code(name), word, "stated" if name in frame.options else "default"))
             for name, word in self.calculation.options.items()
@@ -145,7 +150,7 @@ class _Sheet:
         if q.expression is not None:
             laid = self.steps.symbols.lay(textbook(q.expression))
             follows = said(f"{q.source}; " if q.source else "", "follows: ", laid)
-        return TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(self._value(q), q.unit)), follows))
+        return TableRow((q.text or q.name, Letter(q.symbol), Amount(in_step(self._value(q), q.unit)), follows))
 
     def _value(self, q: NamedQuantity) -> float:
         return self.outcome.values[q.name] if q.value is None else q.value
@@ -154,7 +159,7 @@ class _Sheet:
         rows = []
         for q in self._of_kind("variable", "count", "choice"):
             word = q.word(self._value(q))
-            amount: Cell = Word(word) if word is not None else Amount(shown(self._value(q), q.unit))
+            amount: Cell = Word(word) if word is not None else Amount(in_step(self._value(q), q.unit))
             remark = self.design.off_grid.get(q.name) or ""
             if q.name in self.design.outside:
                 remark = f"outside of what is searched: {self.design.outside[q.name]}"
@@ -168,7 +173,7 @@ class _Sheet:
             rows = []
             for q in columns:
                 word, value = q.word(self._value(q)), self._value(q)
-                told: Cell = word or "another text" if q.is_text else Amount(shown(value, q.unit))
+                told: Cell = word or "another text" if q.is_text else Amount(in_step(value, q.unit))
                 if math.isnan(value):
                     told = "no value"
                 rows.append(TableRow((q.text or q.name, Letter(q.symbol), told)))
@@ -179,7 +184,7 @@ class _Sheet:
         fixed = self._of_kind("row")
         for slot in dict.fromkeys(q.slot for q in fixed):
             rows = [
-                TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(self._value(q), q.unit))))
+                TableRow((q.text or q.name, Letter(q.symbol), Amount(in_step(self._value(q), q.unit))))
                 for q in fixed
                 if q.slot == slot
             ]
@@ -199,7 +204,7 @@ class _Sheet:
     # -- limits --------------------------------------------------------------------------------
 
     def _limits(self) -> list[Block]:
-        ranked = sorted(self.calculation.limits, key=lambda x: _order(x, self.outcome.verdicts[x.name]))
+        ranked = _ranked(self.calculation.limits, self.outcome.verdicts)
         rows = [self._limit_row(x, self.outcome.verdicts[x.name]) for x in ranked]
         blocks: list[Block] = [Heading("Limits", anchor="limits"), Paragraph(self._governing(ranked))]
         blocks.append(TableBlock.of("Limits, the most used first", LIMIT_COLUMNS, rows))
@@ -209,7 +214,7 @@ class _Sheet:
         broken = [x.name for x in ranked if not self.outcome.verdicts[x.name].holds]
         if broken:
             return f"Violated: {', '.join(broken)}."
-        tight = [x.name for x in ranked if (self.outcome.verdicts[x.name].used or 0) >= BINDING and x.sense != "equal"]
+        tight = [x.name for x in ranked if binds(self.outcome.verdicts[x.name].used, x.sense)]
         told = f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
         worst = self.design.robust.worst_limit if self.design.robust else ""
         return f"At the nominal point: {told} Over the range that scatters the worst is {worst}." if worst else told
@@ -224,11 +229,11 @@ class _Sheet:
             told = f"not checked: {', '.join(verdict.failed)} fails"
             return TableRow((name, condition, "", "", told))
         numbers = self.steps.limit_numbers(verdict, x.sense, x.unit)
-        used = "" if verdict.used is None else percent(verdict.used)
+        used = "" if verdict.used is None else used_share(verdict.used)
         words: Cell = "holds" if verdict.holds else Strong("VIOLATED")
         if x.source and "unsourced" in x.source:
             words = said(words, " (rule of practice)")
-        mark = "bad" if not verdict.holds else "tight" if (verdict.used or 0) >= BINDING and x.sense != "equal" else ""
+        mark = "bad" if not verdict.holds else "tight" if binds(verdict.used, x.sense) else ""
         return TableRow((name, condition, numbers, used, words), mark=mark, used=verdict.used)
 
     def _over_a_range(self) -> list[Block]:
@@ -241,14 +246,14 @@ class _Sheet:
         for name, told in rating.limits.items():
             unit = self.design.frame.limit_units.get(name, "-")
             sides = " / ".join(
-                "–" if side is None or not isinstance(side, float) else printed(shown(side, unit))
+                "–" if side is None or not isinstance(side, float) else printed(in_step(side, unit))
                 for side in (told.value, told.limit)
             )
             at = told.at if isinstance(told.at, Mapping) else {}
-            place = ", ".join(f"{key} {printed(shown(value, units.get(key, '-')))}" for key, value in at.items())
-            used = percent(told.utilisation) if isinstance(told.utilisation, float) else ""
-            words: Cell = "holds" if told.holds else Strong("VIOLATED")
-            mark = "" if told.holds else "bad"
+            place = ", ".join(f"{key} {printed(in_step(value, units.get(key, '-')))}" for key, value in at.items())
+            used = used_share(told.utilisation) if isinstance(told.utilisation, float) else ""
+            words: Cell = "holds" if told.holds else Strong("VIOLATED") if told.holds is False else NOT_SHOWN
+            mark = "bad" if told.holds is False else ""
             rows.append(TableRow((Code(name), place, sides, used, words, str(told.proof or "")), mark=mark))
         return [
             Heading("Limits over the range that scatters", level=2, anchor="range"),
@@ -264,9 +269,9 @@ class _Sheet:
             used, unit = self.design.utilisation.get(name), self.design.frame.limit_units.get(name, "-")
             bad = name in self.design.violated
             words: Cell = Strong("VIOLATED") if bad else "not checked" if used is None else "holds"
-            sides = f"{printed(shown(value, unit))} / {printed(shown(limit, unit))}"
+            sides = f"{printed(in_step(value, unit))} / {printed(in_step(limit, unit))}"
             rows.append(
-                TableRow((Code(name), sides, "" if used is None else percent(used), words), "bad" if bad else "")
+                TableRow((Code(name), sides, "" if used is None else used_share(used), words), "bad" if bad else "")
             )
         if not rows:
             return []
@@ -319,8 +324,8 @@ class _Sheet:
                 told += [", ", Letter(symbol)] if k else [Letter(symbol)]
             notes.append(said(*told))
         digests: list[Cell] = [said("Checksum of the calculation: ", Code(self.calculation.digest))]
-        if self.front is not None and self.front.record is not None:
-            digests.append(said("Checksum of front.json: ", Code(str(self.front.record.get("digest", "")))))
+        if self.front is not None:
+            digests.append(said("Checksum of the result: ", Code(self.front.result_digest)))
         return [
             Heading("Notes", anchor="notes"),
             Bullets((*notes, *digests)),
@@ -334,17 +339,13 @@ def next_in_tables(design: Design) -> list[Cell]:
     return [f"Next in the tables: {name.replace('_', ' ')} {row}" for name, row in design.next_rows.items()]
 
 
-def percent(share: float) -> str:
-    """Return a share in per cent, with a place more near the limit."""
-    if math.isinf(share):
-        return "no bound"
-    return f"{100 * share:.2f} %" if 0.995 <= share < 1.005 and share != 1 else f"{100 * share:.1f} %"
-
-
-def _order(x: LimitRule, verdict: LimitVerdict) -> tuple[int, float]:
-    if not verdict.holds:
-        return 0, -(verdict.used or math.inf)
-    return (2, 0.0) if verdict.used is None else (1, -verdict.used)
+def _ranked(limits: Sequence[LimitRule], verdicts: Mapping[str, LimitVerdict]) -> list[LimitRule]:
+    """Return limits, those that fail first, of each kind the most used first; last what is not checked."""
+    used = {x.name: verdicts[x.name].used for x in limits}
+    failing = {name: math.inf if x is None else x for name, x in used.items() if not verdicts[name].holds}
+    names = [*most_used(failing), *most_used({name: x for name, x in used.items() if name not in failing})]
+    place = {name: k for k, name in enumerate(names)}
+    return sorted(limits, key=lambda x: place.get(x.name, len(place)))
 
 
 def _grouped(quantities: Iterable[NamedQuantity]) -> list[tuple[str, list[NamedQuantity]]]:
@@ -379,19 +380,21 @@ def front_state(front: ParetoFront, feasible: str = "") -> tuple[str, str]:
     if front.interrupted:
         return "open", f"{before}the search was stopped: NOT PROVEN to the end"
     if front.certificate.kind == "global":
-        gap = 100 * (front.certificate.gap or 0)
+        gap = gap_text(front.certificate.gap or 0)
         what = "the front is proven" if before else "Proven"
-        return "good", f"{before}{what} to {gap:.3g} % over all combinations"
+        return "good", f"{before}{what} to {gap} over all combinations"
     if front.certificate.kind == "exhaustive":
         return "open", f"{before}every combination was solved, bounds are not closed"
     return "open", f"{before}NOT PROVEN: better designs may exist"
 
 
 def front_details(front: ParetoFront) -> list[str]:
-    """Return the certificate in words, and why a search was stopped."""
+    """Return the certificate in words, why a search was stopped, and how the designs stand what scatters."""
     told = [as_sentence(front.certificate.sentence())]
     if front.interrupted:
         told.append(f"Stopped: {front.interrupted}.")
+    if any(d.robust for d in front.designs):
+        told.append(as_sentence(robust_sentence(front.designs)))
     return told
 
 
@@ -403,10 +406,11 @@ def as_sentence(text: str) -> str:
 def over_range_in_words(design: Design) -> str:
     """Return how a design stands what scatters."""
     rating = design.robust
-    holds = "holds" if rating.holds else "DOES NOT HOLD"
-    told = f"Over the range that scatters it {holds} ({rating.proof or 'not proven'})"
-    if isinstance(rating.share_good, float):
-        told += f"; {100 * rating.share_good:.4g} % of {rating.samples} samples keep all limits"
+    holds = "holds (proven)" if rating.holds else "DOES NOT HOLD" if rating.holds is False else "is NOT SHOWN to hold"
+    told = f"Over the range that scatters it {holds}"
+    if isinstance(rating.share_good, float) and not rating.holds:
+        ends = [yield_text(x) for x in (rating.yield_low, rating.yield_high) if isinstance(x, float)]
+        told += f"; yield {yield_text(rating.share_good)} ({' to '.join(ends)}, from {rating.samples} samples)"
     if rating.worst_limit:
         told += f"; the worst limit is {rating.worst_limit}"
     return told + "."

@@ -11,9 +11,13 @@ from html import escape
 from importlib.resources import files
 from itertools import islice
 
-from reports.formula.layout import Layout
-from reports.formula.mathml import mathml
-from reports.sheet.blocks import (
+from synth.plain_text import escaped
+from synth.text.numbers import page_text
+from synth.ui import as_script
+
+from ..formula.layout import Layout
+from ..formula.mathml import mathml
+from .blocks import (
     Block,
     Bullets,
     Cell,
@@ -33,7 +37,6 @@ from reports.sheet.blocks import (
     TableBlock,
     TableRow,
 )
-from synth.plain_text import escaped, plain_number
 
 SHORT = 14  # rows of a table that stays on one page
 AT_A_TIME = 200  # of many rows, as rows.js shows them as well
@@ -43,7 +46,7 @@ WIDE = 2.0  # width of a column of many rows from which its texts take one line,
 @cache
 def asset(name: str) -> str:
     """Return a file that reports are made with."""
-    return (files("reports") / "assets" / name).read_text(encoding="utf-8")
+    return (files("synth.reports") / "assets" / name).read_text(encoding="utf-8")
 
 
 def html(document: Document) -> str:
@@ -53,6 +56,7 @@ def html(document: Document) -> str:
     """
     script = asset("report.js") if document.data else ""
     script += asset("rows.js") if any(isinstance(block, RowsBlock) for block in document.blocks) else ""
+    script = as_script("numbers.js") + script if script else ""
     body = "\n".join(block_html(block) for block in document.blocks)
     facts = "".join(f"<dt>{escape(label)}</dt><dd>{escape(text)}</dd>" for label, text in document.facts)
     logo = f'<img src="{escape(document.logo)}" alt="">' if document.logo else ""
@@ -196,14 +200,15 @@ def _rows(block: RowsBlock) -> str:
 
 
 def _many(cell: str | float | None) -> str:
-    return escape(cell) if isinstance(cell, str) else str(cell) if isinstance(cell, int) else plain_number(cell)
+    known = _number_in_json(cell)
+    return escape(known) if isinstance(known, str) else str(known) if isinstance(known, int) else page_text(known)
 
 
 def _number_in_json(cell: str | float | None) -> str | float | None:
-    """Return a number in five digits, and nothing for what JSON does not know."""
+    """Cell with its number in seven digits; None for what JSON does not know."""
     if cell is None or isinstance(cell, (str, int)):
         return cell
-    return float(f"{cell:.5g}") if math.isfinite(cell) else None
+    return float(f"{cell:.7g}") if math.isfinite(cell) else None
 
 
 def _row(row: TableRow, columns: tuple[Column, ...]) -> str:

@@ -11,11 +11,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from reports.extras import needed
-from reports.formula.typst import written_out
-from reports.sheet.blocks import Document
-from reports.sheet.typst_source import typst_source
 from synth.errors import InputError
+from synth.results.drawings import EXTRAS
+
+from ..extras import needed
+from ..formula.typst import written_out
+from .blocks import Document
+from .typst_source import typst_source
 
 STANDARDS = ("a-2b", "ua-1")
 NO_GLYPH = re.compile(r'the text `"(.*?)"` could not be displayed')
@@ -45,7 +47,7 @@ def pdf_with_notes(document: Document, fonts: Sequence[Path] = ()) -> tuple[byte
     InputError
         The extra is not installed, or there are no such fonts.
     """
-    typst = needed("typst", "--pdf", "pdf")
+    typst = needed(*EXTRAS["pdf"])
     lacking: dict[str, None] = {}
     with tempfile.TemporaryDirectory() as root:
         known = _fonts(typst, fonts, Path(root)) if fonts else _own_fonts()
@@ -78,7 +80,7 @@ def pdf_with_notes(document: Document, fonts: Sequence[Path] = ()) -> tuple[byte
 @cache
 def _own_fonts() -> Any:
     """Return the fonts that come with Typst; none of the system."""
-    return needed("typst", "--pdf", "pdf").Fonts(include_system_fonts=False)
+    return needed(*EXTRAS["pdf"]).Fonts(include_system_fonts=False)
 
 
 def _fonts(typst: Any, paths: Sequence[Path], folder: Path) -> Any:

@@ -6,7 +6,14 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from reports.formula.layout import (
+from synth.feasibility import TOLERANCE
+from synth.results.calculation import CalculatedDesign, Calculation, LimitVerdict, NamedQuantity
+from synth.results.dimensions import dimension_of
+from synth.results.expression import Expression, in_force, names_in, value_of
+from synth.text.numbers import FULL_DIGITS, STEP_DIGITS
+from synth.units import parse_unit, to_si
+
+from ..formula.layout import (
     Amount,
     ByNumber,
     Layout,
@@ -19,19 +26,14 @@ from reports.formula.layout import (
     negligible_in,
     textbook,
 )
-from reports.formula.lines import broken
-from reports.formula.plain import plain
-from reports.numbers import DIGITS, Shown, UnitIn, shown
-from reports.reasons import SIGN_OF
-from reports.sheet.blocks import Cell, StepBlock, said
-from synth.feasibility import TOLERANCE
-from synth.results.calculation import CalculatedDesign, Calculation, LimitVerdict, NamedQuantity
-from synth.results.dimensions import dimension_of
-from synth.results.expression import Expression, in_force, names_in, value_of
-from synth.units import parse_unit, to_si
+from ..formula.lines import broken
+from ..formula.plain import plain
+from ..numbers import ShownQuantity, UnitIn, in_its_unit, in_step
+from ..reasons import SIGN_OF
+from .blocks import Cell, StepBlock, said
 
 ENOUGH = 1e-4  # relative; what is printed gives the printed result this closely
-MORE_DIGITS = (DIGITS, 6, 7, 9, 12)
+MORE_DIGITS = (STEP_DIGITS, FULL_DIGITS, 7, 9, 12)
 CONDITIONS = 3  # of one formula that are told
 
 
@@ -117,7 +119,7 @@ class Steps:
         )
         return Typesetter(self.quantities, self._leaf(in_si, digits), numeric=True).lay(shown_tree)
 
-    def _leaf(self, in_si: bool, digits: int = DIGITS) -> ByNumber:
+    def _leaf(self, in_si: bool, digits: int = STEP_DIGITS) -> ByNumber:
         return ByNumber(self.outcome.values, in_si, digits)
 
     def _is_enough(self, tree: Expression, value: float, in_si: bool, digits: int) -> bool:
@@ -132,7 +134,7 @@ class Steps:
             return value
         unit = UnitIn.formula(q.unit, in_si)
         number = unit.shown(value, digits)
-        read = float(f"{number.text}e{number.exponent}")
+        read = float(number.number.typed())
         return read if unit.unit in ("", "SI", "K", "rad/s") else float(to_si(read, parse_unit(unit.unit)))
 
     def _results(self, q: NamedQuantity, value: float, closes: bool) -> list[Layout]:
@@ -140,9 +142,9 @@ class Steps:
         direct = UnitIn.formula(q.unit)
         found: list[Layout] = [Amount(direct.shown(value))]
         if q.unit and direct.unit not in ("", q.unit):
-            found.append(Amount(shown(value, q.unit)))
+            found.append(Amount(in_step(value, q.unit)))
         if not closes and q.unit not in ("", "-"):
-            return [Amount(UnitIn("SI").shown(value)), Amount(shown(value, q.unit))]
+            return [Amount(UnitIn("SI").shown(value)), Amount(in_step(value, q.unit))]
         return found
 
     def _condition(self, condition: Expression, answer: bool, in_si: bool) -> Cell:
@@ -165,10 +167,10 @@ class Steps:
         return said(sides[0], f" {SIGN_OF[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
 
 
-def apart(value: float, other: float, unit: str, holds: bool) -> Shown:
+def apart(value: float, other: float, unit: str, holds: bool) -> ShownQuantity:
     """Return a number with enough digits to see that it is not the other one; what a limit tolerates is none."""
     same = value == other or (holds and abs(value - other) <= TOLERANCE * max(abs(value), abs(other)))
     for digits in MORE_DIGITS:
-        if same or shown(value, unit, digits) != shown(other, unit, digits):
-            return shown(value, unit, digits)
-    return shown(value, unit, MORE_DIGITS[-1])
+        if same or in_its_unit(value, unit, digits) != in_its_unit(other, unit, digits):
+            return in_its_unit(value, unit, digits)
+    return in_its_unit(value, unit, MORE_DIGITS[-1])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from datetime import date
 from itertools import pairwise
 
-from reports.formula.layout import (
+from ..formula.layout import (
     MINUS,
     Amount,
     Call,
@@ -23,11 +23,11 @@ from reports.formula.layout import (
     Sign,
     Word,
 )
-from reports.formula.lines import broken, width
-from reports.formula.plain import plain
-from reports.formula.typst import string, typst_math
-from reports.numbers import printed
-from reports.sheet.blocks import (
+from ..formula.lines import broken, width
+from ..formula.plain import plain
+from ..formula.typst import string, typst_math
+from ..numbers import printed
+from .blocks import (
     Block,
     Bullets,
     Cell,
@@ -47,7 +47,7 @@ from reports.sheet.blocks import (
     TableBlock,
     TableRow,
 )
-from reports.sheet.html import asset
+from .html import asset
 
 PAGE = 175.0  # mm between the margins
 DIGIT = 1.6  # mm that a digit takes in a formula of a table

@@ -8,8 +8,9 @@ that names its steps (``Declaration.step``) needs none.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Any
 
 import casadi as ca
@@ -34,6 +35,7 @@ from synth.tables.catalogs import Catalogs
 
 LONGEST = 26  # quantities and numbers in one formula: what fits a line of a page
 SHORTEST = 5  # in a part of a formula that is told alone
+DEEPEST = 50  # operations inside each other in one formula: what readers of JSON and spreadsheets take
 
 ONE: Expression = ["n", 1.0]
 FUNCTION_OF = {
@@ -82,6 +84,7 @@ def calculation(
     requirements: Mapping[str, Any] | None = None,
     catalogs: Any = None,
     limits: Mapping[str, Any] | None = None,
+    problem: Any = None,
 ) -> Calculation:
     """Return how every number of a design is computed.
 
@@ -93,6 +96,8 @@ def calculation(
         Of a problem: as for ``synthesize``. A front has its own.
     catalogs, limits : optional
         Of a problem, as for ``synthesize``; of a front, own tables that were in memory.
+    problem : DesignProblem subclass or instance, optional
+        For a loaded front of a problem of one's own.
 
     Returns
     -------
@@ -106,16 +111,16 @@ def calculation(
         When the question cannot be posed, or the file is not what was saved with the front.
     """
     if isinstance(asked, ParetoFront):
-        return _of_front(asked, catalogs)
+        return _of_front(asked, problem, catalogs)
     # A given design may lie outside of what is searched, so limits bound nothing here.
     return calculation_of(Instance(Request.of(asked, requirements or {}, catalogs, limits=limits), restrict=False))
 
 
-def _of_front(front: ParetoFront, catalogs: Any) -> Calculation:
+def _of_front(front: ParetoFront, problem: Any, catalogs: Any) -> Calculation:
     saved = front.record.get("calculation") if front.record else None
-    if saved and front.folder is not None and catalogs is None:
+    if saved and front.folder is not None and problem is None and catalogs is None:
         return load_calculation(front.folder, saved)
-    return calculation_of(question_of(front, None, catalogs))
+    return calculation_of(question_of(front, problem, catalogs, kept=True))
 
 
 def calculation_of(instance: Instance) -> Calculation:
@@ -265,8 +270,10 @@ def _defaults(model: Model) -> dict[str, Expression]:
     if not wanted:
         return {}
     program = Program(model.inputs, [expanded(e, model.calls) for e in wanted.values()])
-    reader = _Reader(program, _input_names(model, program))
-    return {name: reader.tree(node) for name, node in zip(wanted, program.outputs, strict=True)}
+    leaves = _input_names(model, program)
+    reader, parts = _Reader(program, leaves), _Parts(program, leaves)
+    # Parts stand behind all inputs, so that a default of more than a line is told by its value.
+    return {name: reader.tree(k) for name, k in zip(wanted, program.outputs, strict=True) if parts.fits(k)}
 
 
 def _input_names(model: Model, program: Program) -> dict[int, str]:
@@ -305,7 +312,7 @@ class _Formulas:
                 leaves.setdefault(node, name)
         turned = _turned_round(program, leaves)
         roots = [*named.values(), *turned, *(node for pair in sides.values() for node in pair), *conditions]
-        helpers = _Parts(program, leaves | turned).of(roots)
+        helpers = _Parts(program, leaves | turned, d.words()).of(roots)
         leaves |= helpers
         reader = _Reader(program, leaves, turned)
         needs = _needs(model, program, {**named, **{name: node for node, name in helpers.items()}})
@@ -390,9 +397,9 @@ def _needs(model: Model, program: Program, named: Mapping[str, int]) -> dict[str
 
 
 def _in_order(records: Mapping[str, NamedQuantity]) -> list[NamedQuantity]:
-    """Return quantities so that each stands behind what it is computed from, otherwise as they were declared."""
+    """Quantities in an order in which each stands behind what it is computed from, otherwise as they were declared."""
     placed: dict[str, NamedQuantity] = {}
-    stack = [name for name in reversed(list(records)) if records[name].kind != "helper"]
+    stack = list(records)[::-1]  # parts come last, so that those of limits and remarks alone stand at the end
     while stack:
         q = records[stack[-1]]
         assert q.expression is not None
@@ -402,22 +409,24 @@ def _in_order(records: Mapping[str, NamedQuantity]) -> list[NamedQuantity]:
         else:
             placed.setdefault(q.name, q)
             stack.pop()
-    # Parts of limits and remarks alone.
-    return [*placed.values(), *(q for name, q in records.items() if name not in placed)]
+    return list(placed.values())
 
 
 class _Parts:
-    """Which nodes of formulas that are too long are told alone.
+    """Which nodes of formulas that are too long or too deep are told alone.
 
     Parameters
     ----------
     program : Program
     leaves : mapping
         Node -> name of what has one.
+    words : collection of str
+        Names that parts must not have.
     """
 
-    def __init__(self, program: Program, leaves: Mapping[int, str]) -> None:
+    def __init__(self, program: Program, leaves: Mapping[int, str], words: Collection[str] = ()) -> None:
         self.nodes, self.leaves = program.nodes, dict(leaves)
+        self.names = (name for name in (f"u_{number}" for number in count(1)) if name not in words)
         self.found: dict[int, str] = {}
 
     def of(self, roots: Iterable[int]) -> dict[int, str]:
@@ -426,20 +435,20 @@ class _Parts:
             self._shorten(root)
         return self.found
 
+    def fits(self, root: int) -> bool:
+        """Tell whether a formula is told as one."""
+        return self._measured(root).fits
+
     def _shorten(self, root: int) -> None:
-        while True:
-            inner, sizes, times = self._measured(root)
-            if sizes[root] <= LONGEST:
-                return
-            part = self._best(root, inner, sizes, times)
+        while not (formula := self._measured(root)).fits:
+            part = self._best(root, formula)
             if part is None:
                 return
-            name = f"u_{len(self.found) + 1}"
-            self.found[part] = self.leaves[part] = name
+            self.found[part] = self.leaves[part] = next(self.names)
             self._shorten(part)
 
-    def _measured(self, root: int) -> tuple[list[int], dict[int, int], dict[int, int]]:
-        """Return the nodes of a formula in order, how much stands in each, and how often each stands there."""
+    def _measured(self, root: int) -> _Formula:
+        """Measure the formula of a node down to what has a name."""
         inner, stack, seen = list[int](), [root], {root}
         while stack:
             node = stack.pop()
@@ -450,30 +459,48 @@ class _Parts:
                     stack.append(a)
         inner.sort()
         sizes: dict[int, int] = {}
+        depths: dict[int, int] = {}
         for node in inner:
             sizes[node] = sum(sizes.get(a, 1) for a in self.nodes[node].args)
+            depths[node] = 1 + max((depths.get(a, 0) for a in self.nodes[node].args), default=0)
         times = dict.fromkeys(inner, 0)
         times[root] = 1
         for node in reversed(inner):
             for a in self.nodes[node].args:
                 if a in times:
                     times[a] += times[node]
-        return inner, sizes, times
+        return _Formula(inner, sizes, depths, times, sizes[root] <= LONGEST and depths[root] <= DEEPEST)
 
-    def _best(self, root: int, inner: list[int], sizes: Mapping[int, int], times: Mapping[int, int]) -> int | None:
+    def _best(self, root: int, formula: _Formula) -> int | None:
         """Return the part that makes a formula shorter and is most worth a name."""
-        offered = [k for k in inner if SHORTEST <= sizes[k] < sizes[root] and not self._is_condition(k)]
+        inner, sizes, depths = formula.inner, formula.sizes, formula.depths
+        if sizes[root] <= LONGEST:
+            return max((k for k in inner if depths[k] <= DEEPEST), key=lambda k: (depths[k], -k))
+        shorter = [k for k in inner if SHORTEST <= sizes[k] < sizes[root]]
+        # A condition is a number only where nothing else makes its formula shorter.
+        offered = [k for k in shorter if not self._is_condition(k)] or shorter
         if not offered:
             return None
-        repeated = [k for k in offered if times[k] > 1 and sizes[k] <= LONGEST]
+        repeated = [k for k in offered if formula.times[k] > 1 and sizes[k] <= LONGEST]
         if repeated:
-            return max(repeated, key=lambda k: ((times[k] - 1) * sizes[k], -k))
+            return max(repeated, key=lambda k: ((formula.times[k] - 1) * sizes[k], -k))
         half = max(12, sizes[root] // 2)
         small = [k for k in offered if sizes[k] <= half]
         return max(small or offered, key=lambda k: (sizes[k] if small else -sizes[k], -k))
 
     def _is_condition(self, node: int) -> bool:
         return self.nodes[node].op in COMPARISON_OF
+
+
+@dataclass(frozen=True)
+class _Formula:
+    """Nodes of a formula in order; by node how much stands in it, how deep it is, and how often it stands there."""
+
+    inner: list[int]
+    sizes: dict[int, int]
+    depths: dict[int, int]
+    times: dict[int, int]
+    fits: bool
 
 
 class _Reader:

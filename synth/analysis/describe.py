@@ -19,6 +19,7 @@ from synth.question.inputs import fixed_row_values
 from synth.question.ranges import declared_ranges
 from synth.row_cells import ELSE, named_column
 from synth.tables.catalogs import Catalogs
+from synth.text.numbers import typed_number
 from synth.units import finite_from_si, from_si
 
 if TYPE_CHECKING:
@@ -215,7 +216,7 @@ def _variable(v: VariableRecord) -> dict[str, Any]:
 
 def _values(values: np.ndarray) -> str:
     """Return the makeable values in short: all of a few, the first and last of many."""
-    texts = [f"{x:.6g}" for x in values]
+    texts = [typed_number(x) for x in values]
     if len(texts) <= 8:
         return ", ".join(texts)
     return f"{', '.join(texts[:3])} .. {texts[-1]} ({len(texts)} values)"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-from synth.errors import InputError
-from synth.question.spec_keys import A_DESIGN, refuse_several, refuse_values
+from synth.errors import Described, InputError
+from synth.question.spec_keys import A_DESIGN, ROW_EXPECTED, refuse_several, refuse_values
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
@@ -42,25 +43,62 @@ def must_be_a_design(asked: Spec) -> None:
 def given_design(asked: Spec, tables: Catalogs | None = None) -> tuple[DesignProblem, Catalogs, Design]:
     """Load the problem and evaluate the design that a spec with values describes.
 
-    ``tables``: in place of those that the spec names.
+    Rows of tables that are away are those that the spec has kept, or the front beside it. ``tables``: in place of those
+    that the spec names.
     """
     from synth.analysis.evaluate import evaluate
+    from synth.analysis.restate import IN_MEMORY
     from synth.model.registry import load
     from synth.question.catalogs import catalogs_for
+    from synth.results.loading import rows_kept
     from synth.robust.counterpart import robust_counterpart
 
     problem = robust_counterpart(load(asked.family, **asked.options), asked.robust or None, asked.limits)
-    catalogs = catalogs_for(problem, asked.catalogs if tables is None else tables, asked.folder)
-    design = evaluate(
-        problem,
-        asked.requirements,
-        values=asked.values,
-        parts=_one_each(asked),
-        catalogs=catalogs,
-        limits=asked.limits,
-        objectives=asked.objectives,
-    )
+    kept = _rows_kept(asked)
+    stated = asked.catalogs if tables is None else tables
+    if stated is None or isinstance(stated, Mapping):  # what was in memory no file names
+        stated = {**{str(row["table"]): IN_MEMORY for row in asked.rows.values()}, **(stated or {})} or None
+    known = rows_kept(asked.folder)
+    rows = {name: list({**known.get(name, {}), **kept.get(name, {})}.values()) for name in {**known, **kept}}
+    catalogs = catalogs_for(problem, stated, asked.folder, rows)
+    try:
+        design = evaluate(
+            problem,
+            asked.requirements,
+            values=asked.values,
+            parts=_one_each(asked),
+            catalogs=catalogs,
+            limits=asked.limits,
+            objectives=asked.objectives,
+        )
+    except InputError as error:
+        gone = {f"table {name}": file for name, file in catalogs.away().items()}
+        if error.field not in gone:
+            raise
+        right = f"{error.expected}, the rows kept; {gone[error.field]} with all others is not there"
+        raise InputError(error.field, error.value, right, error.path) from error
     return problem, catalogs, design
+
+
+def _rows_kept(asked: Spec) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return the rows that a spec has kept of tables, by table and designation.
+
+    Raises
+    ------
+    InputError
+        One is not as it was written.
+    """
+    from synth.tables.reading import OF_RECORD
+    from synth.tables.table import row_hash
+
+    found: dict[str, dict[str, dict[str, Any]]] = {}
+    for key, told in asked.rows.items():
+        cells = {name: x for name, x in told.items() if name not in OF_RECORD}
+        cells = {name: x if x is None or isinstance(x, str) else float(x) for name, x in cells.items()}
+        if row_hash(cells) != told["hash"]:
+            raise InputError(f"rows: {key}", Described("a row that was changed"), ROW_EXPECTED, ("rows", key))
+        found.setdefault(told["table"], {})[told["designation"]] = {**told, **cells}
+    return found
 
 
 def _one_each(asked: Spec) -> dict[str, str]:

@@ -10,14 +10,18 @@ import numpy as np
 from synth.declaration import VariableRecord
 from synth.feasibility import Status, utilisation
 from synth.margins import MARGINS
-from synth.model.model import Evaluation
+from synth.model.model import Evaluation, Model
+from synth.model.next_rows import rows_read
 from synth.question.count_domain import stated
+from synth.question.inputs import fixed_designation
 from synth.question.instance import Instance
 from synth.question.search_space import SearchSpace
 from synth.results import Design, Frame, PartRow
+from synth.results.next_row import NextRow
+from synth.results.provenance import joined
 from synth.results.statistics import SearchStatistics
 from synth.results.told import UNTOLD
-from synth.units import format_quantity
+from synth.units import typed_quantity
 
 
 def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
@@ -30,7 +34,7 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
             name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options
         },
         requirements={
-            name: format_quantity(instance.values.requirements[name], d.requirements[name].unit, None)
+            name: typed_quantity(instance.values.requirements[name], d.requirements[name].unit, None)
             for name in d.requirements
             if name in instance.values.given
         },
@@ -44,6 +48,7 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
         restated=_restated(instance),
         headline=d.headlines.shown,
         sized_by=d.headlines.sized_by,
+        tables={name: joined(instance.catalogs.table(name).hashes) for name in instance.catalogs.own},
     )
 
 
@@ -182,11 +187,32 @@ def off_grid(variables: Sequence[VariableRecord], points: np.ndarray) -> list[di
         if len(variable.grid):
             nearest = variable.grid[np.argmin(np.abs(variable.grid - values[:, None]), axis=1)]
             for k in np.flatnonzero(np.abs(nearest - values) > MARGINS.step * np.abs(nearest)).tolist():
-                makeable = format_quantity(float(nearest[k]), variable.unit)
+                makeable = typed_quantity(float(nearest[k]), variable.unit)
                 result[k][variable.name] = f"nearest makeable {makeable}"
     return result
 
 
+def rows_beside(model: Model, next_rows: Mapping[str, NextRow]) -> tuple[PartRow, ...]:
+    """Return the rows of the user's own tables that a design reads beside its parts.
+
+    Parameters
+    ----------
+    model : Model
+    next_rows : mapping
+        As the design tells them.
+    """
+    d, catalogs = model.declaration, model.declaration.catalogs
+    if not catalogs.own:
+        return ()
+    named = [(row.table, catalogs.table(row.table).row_index(fixed_designation(row.slot))) for row in d.rows.values()]
+    for name, found in next_rows.items():
+        named += rows_read(d.next_rows[name], found, catalogs)
+    return tuple(part_row(catalogs.table(table), k) for table, k in dict.fromkeys(named) if table in catalogs.own)
+
+
 def part_row(table: Any, index: int) -> PartRow:
     """Return the row of a table as results show it."""
-    return PartRow(table.name, table.hashes[index], table.row(index))
+    units = {}
+    if table.user_rows[index]:
+        units = {name: x.unit for name, x in table.columns.items() if not x.description and x.heading != name}
+    return PartRow(table.name, table.hashes[index], table.row(index), units)

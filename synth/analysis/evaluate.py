@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.designs import make_design, make_frame, part_row
+from synth.analysis.designs import make_design, make_frame, part_row, rows_beside
 from synth.errors import InputError, RefusedError, at
 from synth.model.model import DataInput, Model
 from synth.model.problem import DesignProblem
@@ -23,7 +23,7 @@ from synth.results import Design
 from synth.results.design import DesignSteps
 from synth.special import expanded
 from synth.study_limits import DERIVED
-from synth.units import format_quantity, parse_quantity
+from synth.units import parse_quantity, typed_quantity
 
 
 def evaluate(
@@ -122,6 +122,7 @@ def _evaluate(
     result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
     refuse_not_computable(model, result, found, variables, data)
+    next_rows = model.next_rows(variables[None, :], data)[0]
     return make_design(
         instance,
         frame,
@@ -133,7 +134,8 @@ def _evaluate(
         remarks=remarks,
         outside=found,
         steps=DesignSteps(model.steps(variables[None, :], data)[0]),
-        next_rows=model.next_rows(variables[None, :], data)[0],
+        next_rows=next_rows,
+        rows=rows_beside(model, next_rows),
     )
 
 
@@ -229,7 +231,7 @@ def _complete_variables(
             )
         if not derived:
             v = model.variables[missing[0]]
-            low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
+            low, high = typed_quantity(v.lower, v.unit), typed_quantity(v.upper, v.unit)
             right = f"a value ({low} to {high}), or a derived quantity in its place"
             raise InputError(f"values: {v.name}", None, right, ("values", v.name))
         right = f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
@@ -275,7 +277,7 @@ def _solve_for(
     if found:
         size = np.maximum(upper - lower, DERIVED.smallest * np.abs(upper))
         return min(found, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
-    wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
+    wanted = ", ".join(f"{n} = {typed_quantity(derived[n], model.units[n])}" for n in names)
     ranges = ", ".join(f"{v.name} ({shown_range(v)})" for v in unknown)
     right = f"quantities that some {ranges} can give, or values not far outside"
     raise InputError("values", wanted, right, ("values",))

@@ -16,7 +16,8 @@ from synth.question.instance import Instance
 from synth.question.requirement_values import RequirementValues
 from synth.special import expanded
 from synth.study_limits import GUARDS, WAYS_OUT
-from synth.units import format_quantity, outward, parse_quantity
+from synth.text.numbers import percent
+from synth.units import miss_text, outward, parse_quantity, typed_quantity
 
 AT_LEAST, AT_MOST = "at_least", "at_most"
 
@@ -162,11 +163,11 @@ class _RefusedChoices:
                 if sense == AT_LEAST
                 else ("less than" if strictly else "at most")
             )
-            sides = [format_quantity(x, unit, WAYS_OUT.digits) for x in (value, needed)]
+            sides = [typed_quantity(x, unit, WAYS_OUT.digits) for x in (value, needed)]
             shown = f"{sides[0]} where {side} {sides[1]} is needed"
             words += f": {name} is {shown}{f' with {part}' if part else ''}"
         if not math.isnan(missed):
-            words += f" (missed by {format_quantity(missed, '%', 3)})"
+            words += f" (missed by {miss_text(value, needed, unit) if name else percent(missed)})"
         return FiredGuard(
             self.refusal.code, self.refusal.message, name, value, needed, unit, sense, missed, part, lifted, words
         )

@@ -16,7 +16,8 @@ from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.question.catalogs import catalogs_for
 from synth.question.names import as_mapping
-from synth.units import format_quantity, parse_quantity, split_header
+from synth.text.numbers import UNKNOWN, number_text
+from synth.units import parse_quantity, split_header, typed_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +95,7 @@ def read_point(problem: DesignProblem, given: Mapping[str, Any]) -> dict[str, fl
             # Of NumPy, so that what is beyond all measure becomes infinite and is told below.
             point[name] = np.float64(parse_quantity(value, declared[name].unit, f"at: {name}"))
             if point[name] < 0:
-                zero = format_quantity(0.0, declared[name].unit)
+                zero = typed_quantity(0.0, declared[name].unit)
                 raise InputError(f"at: {name}", value, f"a value of {zero} or more")
     for name, setting in declared.items():
         if name not in point:
@@ -120,7 +121,7 @@ def state_of(problem: DesignProblem, design: Design, point: Mapping[str, float])
         if not split_header(str(column))[1]:
             raise ValueError(f"{where}: column {column!r} needs a unit, such as 'torque [N*m]'")
     if not np.isfinite(found[numbers].to_numpy(dtype=float)).all(axis=1).any():
-        shown = ", ".join(format_quantity(x, problem.operating_point[n].unit) for n, x in point.items())
+        shown = ", ".join(typed_quantity(x, problem.operating_point[n].unit) for n, x in point.items())
         more = f"; this one violates {', '.join(design.violated)}" if design.violated else ""
         raise InputError("at", shown, f"a point at which the design has a state{more}", ("at",))
     return found
@@ -131,6 +132,7 @@ def state_rows(found: pd.DataFrame) -> list[list[str]]:
     rows = [["", *found["course"]], ["regime", *found["regime"]]]
     for column in found.columns[len(WORDS) :]:
         name, unit = split_header(str(column))
-        shown = [f"{x:.6g} {'' if unit == '-' else unit}".rstrip() if math.isfinite(x) else "-" for x in found[column]]
+        behind = "" if unit == "-" else f" {unit}"
+        shown = [f"{number_text(x)}{behind}" if math.isfinite(x) else UNKNOWN for x in found[column]]
         rows.append([name, *shown])
     return rows

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,22 +12,81 @@ from typing import Any
 from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
 from synth.analysis.drawing import drawings_of
-from synth.analysis.restate import problem_of, question_of
+from synth.analysis.restate import problem_of, question_of, table_differences
 from synth.csv_style import unstyled
-from synth.errors import InputError
+from synth.errors import ExtraNeededError, InputError, first_with_others
+from synth.feasibility import Status
 from synth.files import read_bytes, read_json
 from synth.output_folder import save_files
+from synth.pareto import KNEE, knee_of
 from synth.plain_text import csv_cell
 from synth.question.instance import Instance
-from synth.results import Design, ParetoFront, design_columns, design_row, foremost
+from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
 from synth.results.drawings import report as report_named
-from synth.results.front_record import FRONT_FILE
+from synth.results.front_record import FRONT_FILE, result_digest
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
 
 CURVES = ("*.svg",)
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank
+Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
 NO_REPORTS = "the package reports, which clutchsynth is installed with"
+
+
+@dataclass(frozen=True)
+class WrittenReport:
+    """A report that stands in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    files : list of str
+        Their names.
+    notes : list of str
+        What else is to be told.
+    feasible : bool
+        Whether there are designs, and a single one keeps its limits.
+    lacking : sequence of ExtraNeededError
+        Why formats that were asked for are not among the files.
+    """
+
+    folder: Path
+    files: Sequence[str]
+    notes: Sequence[str]
+    feasible: bool
+    lacking: Sequence[ExtraNeededError] = ()
+
+    def complete(self) -> Path:
+        """Return the folder of a report that has everything that was asked for.
+
+        Raises
+        ------
+        InputError
+            An extra is not installed; what can be made without it is written.
+        """
+        if self.lacking:
+            raise first_with_others(self.lacking)
+        return self.folder
+
+
+def write_report(
+    folder: Path,
+    files: Mapping[str, str | bytes],
+    notes: Sequence[str],
+    feasible: bool,
+    lacking: Sequence[ExtraNeededError],
+) -> WrittenReport:
+    """Write the files of a report that can be made here; arguments as for :class:`WrittenReport`.
+
+    Raises
+    ------
+    InputError
+        All lack an extra, or the folder cannot be written; then nothing is written.
+    """
+    if lacking and not files:
+        raise first_with_others(lacking)
+    save_files(folder, files)
+    return WrittenReport(folder, list(files), list(notes), feasible, tuple(lacking))
 
 
 def report(
@@ -42,7 +102,7 @@ def report(
     problem: Any = None,
     catalogs: Any = None,
     about_folder: Path | None = None,
-) -> tuple[Path, list[str], list[str]]:
+) -> WrittenReport:
     """Write the report of a front, and calculation sheets of some of its designs.
 
     Parameters
@@ -69,21 +129,20 @@ def report(
 
     Returns
     -------
-    tuple
-        The folder, the names of the files, and what else is to be told.
+    WrittenReport
+        Formats whose extra is not installed are left out of it, and told.
 
     Raises
     ------
     InputError
-        Something asked is wrong, or an extra is not installed; then nothing is written.
+        Something asked is wrong, or no format that is asked for can be made; then nothing is written.
     """
     place = Path(folder)
     _refuse_another_front(front, place)
     how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = list(design) if isinstance(design, (list, tuple)) else [design]
-    files, notes = _of_front(front, chosen, full, how, problem, catalogs)
-    save_files(place, files)
-    return place, list(files), notes
+    files, notes, lacking = _of_front(front, chosen, full, how, place, problem, catalogs)
+    return write_report(place, files, notes, bool(front.designs), lacking)
 
 
 def explore(
@@ -117,7 +176,7 @@ def explored(
     record = report_named("explorer_record")
     if record is None:
         raise InputError("explore", None, NO_REPORTS)
-    read = calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front)
+    read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
     beside = _beside(Path(front.folder), front) if front.folder is not None else {}
     pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
     found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=pictures)
@@ -191,14 +250,20 @@ class ReportOptions:
 
 
 def _of_front(
-    front: ParetoFront, chosen: Sequence[Any], full: int, how: ReportOptions, problem: Any = None, catalogs: Any = None
-) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return the files of the report of a front, and what else is to be told."""
+    front: ParetoFront,
+    chosen: Sequence[Any],
+    full: int,
+    how: ReportOptions,
+    place: Path,
+    problem: Any = None,
+    catalogs: Any = None,
+) -> Made:
+    """Return the files of the report of a front, which will stand in a place."""
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
     asked: dict[str, Any] = {
-        "calculation": calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front),
-        "front": front,
+        "calculation": calculation(front, problem=problem, catalogs=catalogs if problem else None),
+        "front": front.placed(place),
         "chosen": [str(x) for x in chosen],
         "full": int(full),
     }
@@ -206,15 +271,23 @@ def _of_front(
         asked["rows"] = _offered(front, problem, catalogs)
     if front.folder is not None:
         asked |= _beside(Path(front.folder), front)
-    wanted = {str(word).strip() for word in chosen}
-    named = [d for d in front.designs if str(d.rank) in wanted or ("knee" in wanted and "knee" in d.note)]
-    asked["drawings"], untold = _drawings(front, named, problem, catalogs, asked=how.draws)
+    asked["drawings"], untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=how.draws)
     shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
     shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
     more = {d.rank: d for d in shown if d.rank not in asked["drawings"]}
     asked["drawings"] |= _drawings(front, list(more.values()), problem, catalogs)[0]
-    files, notes = _made(asked, how)
-    return files, [*notes, *untold]
+    files, notes, lacking = _made(asked, how)
+    return files, [*notes, *untold, *_differences(front, problem, catalogs)], lacking
+
+
+def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
+    """Return what is told of tables that are not as they were; nothing without the family."""
+    if front.question is not None:
+        return []
+    with suppress(InputError):
+        away, changed = table_differences(front, problem_of(front, problem, catalogs, kept=True)[1])
+        return [*away, *changed]
+    return []
 
 
 def _drawings(
@@ -222,7 +295,7 @@ def _drawings(
 ) -> tuple[dict[int, Any], list[str]]:
     """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
     try:
-        own, _ = problem_of(front, problem, catalogs)
+        own, _ = problem_of(front, problem, catalogs, kept=True)
     except InputError as error:
         return {}, [f"no drawing: {error}"] if asked else []
     return drawings_of(own, designs, asked=asked)
@@ -233,7 +306,7 @@ def _refuse_another_front(front: ParetoFront, place: Path) -> None:
     own = front.folder is not None and Path(front.folder).resolve() == place.resolve()
     if not own and (place / FRONT_FILE).is_file():
         there = read_json(place / FRONT_FILE, "output", "a folder for reports")
-        if not isinstance(there, Mapping) or there.get("digest") != (front.record or {}).get("digest"):
+        if not isinstance(there, Mapping) or result_digest(there) != front.result_digest:
             raise InputError("output", str(place), "another folder: this one holds another front")
 
 
@@ -248,19 +321,18 @@ def report_design(
     length: str = "normal",
     fonts: Sequence[str | Path] = (),
     about_folder: Path | None = None,
-) -> tuple[Path, list[str], list[str]]:
+) -> WrittenReport:
     """Write the calculation sheet of one design that was checked; arguments and returns as for :func:`report`."""
     how = ReportOptions.read(formats, about, length, fonts, about_folder)
     place = Path(folder)
     # The sheet of a front's design says how far the front is proven; this one must not take its place.
     name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
-    asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design, "name": name}
+    asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design.placed(place), "name": name}
     if "xlsx" in how.formats:
         asked["rows"] = _rows(instance)
     asked["drawings"], untold = drawings_of(instance.problem, [design], asked=how.draws)
-    files, notes = _made(asked, how)
-    save_files(place, files)
-    return place, list(files), [*notes, *untold]
+    files, notes, lacking = _made(asked, how)
+    return write_report(place, files, [*notes, *untold], design.status is not Status.INFEASIBLE, lacking)
 
 
 def report_comparison(
@@ -274,11 +346,10 @@ def report_comparison(
     length: str = "normal",
     fonts: Sequence[str | Path] = (),
     about_folder: Path | None = None,
-) -> tuple[Path, list[str], list[str], bool]:
+) -> WrittenReport:
     """Write the report of several families that were asked the same, and that of each family in a folder of its name.
 
-    Arguments as for :func:`report`; ranks and knee are those of the common front. Returns folder, files, what else is
-    to be told, and whether there are designs.
+    Arguments and returns as for :func:`report`; ranks and knee are those of the common front.
 
     Raises
     ------
@@ -290,22 +361,24 @@ def report_comparison(
     how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = _chosen_of_all(listed, design)
     files: dict[str, str | bytes] = {}
-    notes, links = list[str](), dict[str, str]()
+    notes, links, lacking = list[str](), dict[str, str](), dict[str, ExtraNeededError]()
     for family, place in places.items():
         ranks = [x["own_rank"] for x in chosen if x["family"] == family]
-        made, told = _of_front(fronts[family], ranks, full, how)
+        made, told, lacks = _of_front(fronts[family], ranks, full, how, folder / place)
+        lacking |= {error.extra: error for error in lacks}
         files |= {f"{place}/{name}": file for name, file in made.items()}
         notes += [note for note in told if note not in notes]
-        links |= {family: f"{place}/{next(name for name in made if name.startswith(('report.', 'explorer.')))}"}
+        first = next((name for name in made if name.startswith(("report.", "explorer."))), "")
+        links |= {family: f"{place}/{first}"}
     make = report_named("comparison")
     assert make is not None
     asked: dict[str, Any] = {"content": content, "fronts": fronts, "links": links}
     if "explorer" in how.formats:
         asked |= {"calculations": _calculations(fronts), "drawings": _drawings_of_all(listed, fronts)}
-    own, told = make({**asked, **how.asked()})
+    own, told, lacks = make({**asked, **how.asked()})
+    lacking |= {error.extra: error for error in lacks}
     notes += [note for note in told if note not in notes]
-    save_files(folder, {**own, **files})
-    return folder, [*own, *files], notes, bool(listed)
+    return write_report(folder, {**own, **files}, notes, bool(listed), list(lacking.values()))
 
 
 def _compared(source: Path) -> tuple[dict[str, Any], dict[str, str], dict[str, ParetoFront]]:
@@ -333,30 +406,30 @@ def _listed(told: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[
 
 def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) -> list[Mapping[str, Any]]:
     """Return the designs of a common front that are named by rank, or as its knee."""
-    if not listed and list(words) == ["1"]:
+    if not listed and list(words) in (["1"], [KNEE]):
         return []
     known = {str(x["rank"]): x for x in listed}
-    known |= {"knee": x for x in reversed(listed) if "knee" in str(x.get("note"))}  # noqa: B035
+    known |= {KNEE: listed[knee_of([str(x.get("note")) for x in listed])]} if listed else {}
     for word in words:
         if word not in known:
-            right = f"a rank from 1 to {len(listed)} of the common front" if listed else "a front with designs"
-            raise InputError("design", word, right + (" or knee" if "knee" in known else ""), ("design",))
-    return [known[word] for word in words]
+            right = f"a rank from 1 to {len(listed)} of the common front or knee" if listed else "a front with designs"
+            raise InputError("design", word, right, ("design",))
+    return list({known[word]["rank"]: known[word] for word in words}.values())
 
 
-def _made(asked: Mapping[str, Any], how: ReportOptions) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return the files of a report by name, and what else is to be told."""
+def _made(asked: Mapping[str, Any], how: ReportOptions) -> Made:
+    """Return the files of a report by name, what else is to be told, and which extras lack for more files."""
     make = report_named("files")
     if make is None:
-        raise InputError("report", None, "the package reports, which clutchsynth is installed with")
-    files, notes = make({**asked, **how.asked()})
-    return dict(files), list(notes)
+        raise InputError("report", None, NO_REPORTS)
+    files, notes, lacking = make({**asked, **how.asked()})
+    return dict(files), list(notes), tuple(lacking)
 
 
 def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:
     """Return what other commands have found out about a front, in its folder or in one below."""
     found: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
-    digest = (front.record or {}).get("digest")
+    digest = front.result_digest
     for path in (folder / "prices.json", *sorted(folder.glob("*/prices.json"))):
         if path.is_file():
             content = read_json(path, "prices", "a prices.json as clutchsynth has written it")
@@ -387,7 +460,7 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
 def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[Any]]:
     """Return the rows that slots offer; where the question cannot be posed again those that the designs use."""
     try:
-        return _rows(question_of(front, problem, catalogs))
+        return _rows(question_of(front, problem, catalogs, kept=True))
     except InputError:
         used: dict[str, dict[str, Any]] = {}
         for design in front.designs:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
@@ -10,33 +11,51 @@ from synth.model.registry import load
 from synth.question.catalogs import catalogs_for
 from synth.question.instance import Instance
 from synth.question.request import Request
-from synth.robust.counterpart import robust_counterpart
+from synth.results.provenance import joined
+from synth.robust.counterpart import nominal, robust_counterpart
 from synth.tables.catalogs import Catalogs
 
 if TYPE_CHECKING:
     from synth.results import ParetoFront
 
 
-def problem_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> tuple[DesignProblem, Catalogs]:
+IN_MEMORY = "a table in memory"
+
+
+def problem_of(
+    front: ParetoFront, problem: Any = None, catalogs: Any = None, kept: bool = False
+) -> tuple[DesignProblem, Catalogs]:
     """Return the problem of a front and its tables.
 
     Parameters
     ----------
     front : ParetoFront
     problem : family name, DesignProblem subclass or instance, optional
-        For a front of a problem of one's own that was loaded from a file.
+        For a front of a problem of one's own that was loaded from a file; one that was just found knows its problem.
     catalogs : folder or mapping, optional
         Own tables that were in memory; those that were files are read again.
+    kept : bool
+        Whether rows of its designs stand in for tables that are away: enough to check designs, not to search.
 
     Raises
     ------
     InputError
         When the problem or its tables cannot be had.
     """
-    own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
+    if problem is None and front.question is not None:
+        own: DesignProblem = nominal(front.question.problem)  # a problem of one's own has no name to be loaded by
+    else:
+        own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
     restated = front.frame.restated
     own = robust_counterpart(own, restated.get("robust"), restated.get("limits"))
-    return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
+    if catalogs is not None or not kept:
+        return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
+    rows: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for design in front.designs:
+        for row in (*design.parts.values(), *design.rows):
+            rows.setdefault(row["table"], {})[str(row)] = row.record()
+    named = {**dict.fromkeys(front.frame.tables, IN_MEMORY), **restated.get("catalogs", {})}
+    return own, catalogs_for(own, named or None, kept={name: list(used.values()) for name, used in rows.items()})
 
 
 def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:
@@ -53,6 +72,7 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
             problem=problem,
             requirements=front.frame.requirements,
             catalogs=catalogs,
+            objectives=front.frame.objectives,
             parts=settings["parts"],
             limits=settings["limits"],
             fix=settings["fix"],
@@ -61,8 +81,20 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
     )
 
 
-def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> Instance:
-    """Return the question that a front answers.
+def table_differences(front: ParetoFront, tables: Catalogs) -> tuple[list[str], list[str]]:
+    """Return what is told of tables that are away, and of those that are others than when the front was found."""
+    away, names = tables.away(), set(tables.own)
+    told = tables.differences()
+    gone = [sentence for sentence in told if any(sentence.startswith(f"table {name}:") for name in away)]
+    changed = [sentence for sentence in told if sentence not in gone]
+    for name, digest in front.frame.tables.items():
+        if name in names - away.keys() and joined(tables.table(name).hashes) != digest:
+            changed.append(f"table {name}: it is not the one that the front was found with")
+    return gone, changed
+
+
+def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None, kept: bool = False) -> Instance:
+    """Return the question that a front answers; arguments as of :func:`problem_of`.
 
     Raises
     ------
@@ -72,7 +104,7 @@ def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -
     if front.question is not None and problem is None and catalogs is None:
         known: Instance = front.question
         return known
-    own, tables = problem_of(front, problem, catalogs)
+    own, tables = problem_of(front, problem, catalogs, kept)
     try:
         return asked_again(front, own, tables)
     except (KeyError, TypeError, ValueError, AttributeError) as error:

@@ -9,8 +9,8 @@ from typing import Any
 from synth.analysis.describe import described
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
-from synth.plain_text import plain_number
 from synth.question.settings import SearchSettings
+from synth.text.numbers import FULL_DIGITS, number_text
 from synth.units import parse_quantity, to_si
 
 WIDTH = 100  # of a line with its comment; a longer comment stands on lines of its own above
@@ -148,7 +148,7 @@ def _meaning(row: Row, more: str) -> str:
 
 
 def _range(row: Row) -> str:
-    return " .. ".join(plain_number(row[end], 6) for end in ("lower", "upper") if math.isfinite(row[end]))
+    return " .. ".join(number_text(row[end], FULL_DIGITS) for end in ("lower", "upper") if math.isfinite(row[end]))
 
 
 def _span(row: Row) -> str:

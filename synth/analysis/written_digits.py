@@ -10,7 +10,7 @@ import numpy as np
 from synth.margins import MARGINS, within
 from synth.model.model import Evaluation
 from synth.question.search_space import SearchSpace
-from synth.units import format_quantity, parse_quantity
+from synth.units import parse_quantity, written_quantity
 
 DIGITS = (6, 7, 8, 9, 10, 12)  # that are tried
 ALL = 0  # of them
@@ -72,7 +72,7 @@ def _rounded(space: SearchSpace, points: np.ndarray, digits: int) -> np.ndarray:
     return np.array(
         [
             [
-                parse_quantity(format_quantity(float(x), variable.unit, digits), variable.unit, variable.name)
+                parse_quantity(written_quantity(float(x), variable.unit, digits), variable.unit, variable.name)
                 for x, variable in zip(point, space.model.variables, strict=True)
             ]
             for point in points

@@ -1,1 +1,1 @@
-"""Bounds of the search: intervals, contraction, clusters, curvature, compiled boxes."""
+"""Bounds of the search: intervals, contraction, clusters, curvature, the kernel of boxes."""

@@ -1,4 +1,4 @@
-"""All that bounds and scores the boxes of one question: sound bounds, branching weights and compiled code together."""
+"""All that bounds and scores the boxes of one question: sound bounds, branching weights and the kernel together."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ import copy
 
 from synth.bounds.branching import BranchingWeights
 from synth.bounds.clusters import Cells
-from synth.bounds.compiled_propagation import CompiledPropagation
 from synth.bounds.influences import Influences
+from synth.bounds.kernel_propagation import KernelPropagation
 from synth.bounds.propagation import Propagation
 from synth.bounds.question_bounds import QuestionBounds
-from synth.compiled.execution import Execution
 from synth.question.search_space import SearchSpace
 from synth.tuning import Tuning
 
@@ -21,7 +20,8 @@ class Bounding:
     Parameters
     ----------
     question : QuestionBounds
-    execution : Execution
+    workers : int
+        Threads that may tighten boxes at the same time, where kernels compute.
     tuning : Tuning
 
     Attributes
@@ -32,33 +32,32 @@ class Bounding:
         What holds in boxes: sound.
     branching : BranchingWeights
         Where boxes are split: proves nothing.
-    compiled : CompiledPropagation
-        Both in compiled code.
+    kernel : KernelPropagation
+        Both by the kernel.
     goal_sizes : array (objectives,)
         Median sizes of the objectives over the question.
     """
 
-    def __init__(self, question: QuestionBounds, execution: Execution, tuning: Tuning) -> None:
+    def __init__(self, question: QuestionBounds, workers: int, tuning: Tuning) -> None:
         self._tuning = tuning
         self._influences = Influences(question, tuning.branching)
         self.goal_sizes = self._influences.goal_sizes
         trees = [self._influences.clusters(factor) for factor in question.factors]
-        self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)), execution)
+        self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)), workers)
 
-    def among(self, instance: SearchSpace, execution: Execution) -> Bounding | None:
+    def among(self, instance: SearchSpace, workers: int) -> Bounding | None:
         """Return the same for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
         question = self.question.among(instance)
         if question is None:
             return None
         own = copy.copy(self)
         first = self._influences.clusters(question.factors[0])
-        own._begin(self.propagation.among(question, first), execution)
+        own._begin(self.propagation.among(question, first), workers)
         return own
 
-    def _begin(self, propagation: Propagation, execution: Execution) -> None:
+    def _begin(self, propagation: Propagation, workers: int) -> None:
         tuning = self._tuning
         self.question, self.propagation = propagation.question, propagation
         self.branching = BranchingWeights(self.question, propagation.cells.trees, self._influences, tuning.branching)
-        self.compiled = CompiledPropagation(
-            propagation, self.branching, execution, tuning.tolerances.margins, tuning.compiling
-        )
+        margins, sizes = tuning.tolerances.margins, tuning.kernels
+        self.kernel = KernelPropagation(propagation, self.branching, workers, margins, sizes)

@@ -1,4 +1,4 @@
-"""Batches of boxes as the compiled code reads and writes them: records with addresses of arrays."""
+"""Batches of boxes as the kernel reads and writes them: records with addresses of arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
 from synth.bounds.root_propagation import Root
-from synth.tuning import CodeSizes
+from synth.tuning import KernelSizes
 
 # Rows of scores are as long as a multiple of it, so that registers hold whole ones.
 SCORE_WIDTH = 16
@@ -80,16 +80,8 @@ class BatchStructure(ctypes.Structure):
     )
 
 
-def structure_source() -> str:
-    """Return the definition of the structure in C."""
-    lines = [f"    {kind} {name};" for name, kind in NUMBERS.items()]
-    lines += [f"    const {kind} *{name};" for name, kind in GIVEN.items()]
-    lines += [f"    {kind} *{name};" for name, kind in TAKEN.items()]
-    return "\n".join(["typedef struct {", *lines, "} Batch;"])
-
-
 @dataclass(frozen=True)
-class CompiledQuestion:
+class KernelQuestion:
     """What the contraction of boxes reads of one question.
 
     Parameters
@@ -108,7 +100,7 @@ class CompiledQuestion:
         Makeable values per variable; empty where it is continuous.
     margins : (float, float)
         By how much a value may miss the grid, relative and absolute.
-    sizes : CodeSizes
+    sizes : KernelSizes
     floors : array (clusters, objectives), optional
         The least that objectives may be, with their sign, by the cluster of the first factor.
     """
@@ -123,14 +115,14 @@ class CompiledQuestion:
     scoring: ScoreTables
     grids: Sequence[np.ndarray]
     margins: tuple[float, float]
-    sizes: CodeSizes
+    sizes: KernelSizes
     floors: np.ndarray | None = None
 
 
 class Prepared:
-    """The arrays of one question as the compiled code reads them."""
+    """The arrays of one question as the kernel reads them."""
 
-    def __init__(self, question: CompiledQuestion) -> None:
+    def __init__(self, question: KernelQuestion) -> None:
         steep, of_clusters = question.scoring.steep, question.scoring.spreads
         self.sizes, factors = question.sizes, len(of_clusters)
         width = -(-steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
@@ -175,7 +167,7 @@ def _per_unit(grid: np.ndarray) -> float:
 
 
 class Batches:
-    """Some boxes as the compiled code reads them, from any first to any last one.
+    """Some boxes as the kernel reads them, from any first to any last one.
 
     Parameters
     ----------

@@ -1,9 +1,8 @@
-"""The statements that tighten boxes as a list of instructions, for code that is compiled once for all formulas.
+"""The statements that tighten boxes as a list of instructions, for the kernel.
 
-The list says what :mod:`synth.bounds.box_source` writes in C: the same operations on the same numbers in the same
-order, so that both give the same bits. An instruction is a row of numbers: what is done, the register of the result,
-and those of the operands. What an instruction can do is an expression in C (:func:`forms`) or a rule of
-:mod:`synth.bounds.compiled_rules`; larger expressions are taken apart.
+They do the operations of the NumPy form on the same numbers in the same order. An instruction is a row of numbers: what
+is done, the register of the result, and those of the operands. What an instruction can do is an expression in C
+(:func:`forms`) or a rule of :mod:`synth.bounds.compiled_rules`; larger expressions are taken apart.
 """
 
 from __future__ import annotations
@@ -19,17 +18,17 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds import compiled_rules as rules
-from synth.bounds.box_source import formula_steps
 from synth.bounds.contractor import Code
-from synth.bounds.intervals import SLACK
+from synth.bounds.fused_instructions import RUNS, fused
 from synth.bounds.propagated_nodes import CONSTANT
 from synth.bounds.statements import Assign, Enclose, EndOfFirstSweep, Hold, Kill, Narrow, Statement
-from synth.compiled.c_text import EXPRESSIONS
-from synth.model.program import UnsupportedOperation
+from synth.kernels.expressions import EXPRESSIONS
+from synth.model.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
+from synth.special import SpecialFunction
 
 WIDTH = 6  # of an instruction: what is done, where the result goes, and up to four operands
 LETTERS = "abcd"
-BUILT_IN = ("END", "END_IF_DEAD", "HOLD", "IN_ORDER")
+BUILT_IN = ("END", "END_IF_DEAD", "HOLD", "IN_ORDER", *RUNS)
 
 # Expressions of registers a to d that are not masks, and of masks.
 NUMBERS = (
@@ -57,15 +56,15 @@ OTHERS = {
     "choose(a, b, c)": "choose((vi)a, b, c)",
     "keep(a, b)": "keep((vi)a, b)",
     "TRUTH(a)": "keep((vi)a, all(1.0))",
-    "up(a, b)": f"a + {SLACK!r} * v_max(v_abs(a), b)",
-    "down(a, b)": f"a + {-SLACK!r} * v_max(v_abs(a), b)",
+    "up(a, b, c)": "a + c * v_max(v_abs(a), b)",
+    "down(a, b, c)": "a - c * v_max(v_abs(a), b)",
 }
 LEAF = re.compile(
     r"\b(?:[lhoax]\d+|[rabc]_(?:low|high)|[stmpq])\b(?!\()|[BCF]\[\d+\]|(?<![\w.\]])(?:\d+\.?\d*(?:e[+-]?\d+)?|INFINITY|NAN)(?![\w.])"
 )
 CROSSED = re.compile(r"choose\(l(\d+) > h\1, h\1, l\1\)")
 OF_TWO = re.compile(r"(?:(v_fmax|v_fmin)\((\w+), )?([lh]\d+|[st]) ([-+*/]) ([lh]\d+|[st])\)?")
-LOOSENED = re.compile(r"loosened\(([^,]+), ([^,]+), (-?)1\)")
+LOOSENED = re.compile(r"loosened\(([^,]+), ([^,]+), (-?)([^,()]+)\)")
 
 
 class NoForm(Exception):
@@ -101,7 +100,8 @@ def _lettered(text: str) -> str:
 def operations() -> dict[str, int]:
     """Return the number of everything that an instruction can do."""
     twice = [f"{how} {text}" for how in ENDS.values() for text in TWICE]
-    names = [*BUILT_IN, *forms(), *(f"kill {text}" for text in ("a", *MASKS)), *twice, *(name for name, _ in _rules())]
+    kills = [f"kill {text}" for text in ("a", *MASKS)]
+    names = [*BUILT_IN, *forms(), *kills, *twice, *(name for name, _ in rule_functions())]
     return {name: number for number, name in enumerate(names)}
 
 
@@ -123,7 +123,7 @@ def _bodies() -> dict[str, str]:
     return bodies | {"backward_power": rules.POWER_BACKWARD}
 
 
-def _rules() -> Iterator[tuple[str, str]]:
+def rule_functions() -> Iterator[tuple[str, str]]:
     """Return the rules that are functions in C."""
     return ((name, body) for name, body in _bodies().items() if _ends_of(body) is None)
 
@@ -141,55 +141,6 @@ def _ends_of(body: str) -> tuple[str, str] | None:
         return None
     low, high = ast.parse(text, mode="eval").body.args  # type: ignore[attr-defined]
     return ast.unparse(low), ast.unparse(high)
-
-
-def definitions() -> str:
-    """Return the rules as functions in C."""
-    lines = []
-    for name, body in _rules():
-        letters = [x for x in "rabc" if re.search(rf"\b{x}\b", body)]
-        arguments = ", ".join(f"Interval {x}" for x in letters)
-        lines.append(f"static __attribute__((noinline)) Interval {name}({arguments}) {{ return {body}; }}")
-    return "\n".join(lines)
-
-
-def cases() -> str:
-    """Return what is done for each operation but those that are written out in the template."""
-    number, lines = operations(), list[str]()
-
-    def add(name: str, read: str, body: str) -> None:
-        given = [f"*const {x} = f[code[{2 + k}]]" for k, x in enumerate(LETTERS) if re.search(rf"\b{x}\b", read)]
-        each = re.sub(rf"\b([{LETTERS}]|target|target_1)\b", r"\1[w]", body)
-        lines.append(
-            f"        case {number[name]}: {{ const vd {', '.join(given)}; EACH_REGISTER {{ {each} }} break; }}"
-        )
-
-    for name, text in forms().items():
-        add(name, name, f"target = {text};")
-    for text in ("a", *MASKS):
-        add(f"kill {text}", text, f"dead[w] |= {'(vi)a' if text == 'a' else text};")
-    for how in ENDS.values():
-        for text in TWICE:
-            other = text.replace("b", "d").replace("a", "c")
-            ends = (text, other) if how == "both ends" else (f"v_fmax(target, {text})", f"v_fmin(target_1, {other})")
-            add(
-                f"{how} {text}",
-                "a b c d",
-                f"const vd low = {ends[0]}, high = {ends[1]}; target = low; target_1 = high;",
-            )
-    for name, body in _rules():
-        letters = [x for x in "rabc" if re.search(rf"\b{x}\b", body)]
-        places = [2 + ("rabc" if name.startswith("backward") else "abc").index(x) for x in letters]
-        pairs = ", ".join(f"both(f[code[{k}]][w], f[code[{k}] + 1][w])" for k in places)
-        found = f"const Interval i = {name}({pairs}); target[w] = i.low; target_1[w] = i.high;"
-        lines.append(f"        case {number[name]}: EACH_REGISTER {{ {found} }} break;")
-    return "\n".join(lines)
-
-
-def sizes() -> list[str]:
-    """Return the definitions that the template reads."""
-    number = operations()
-    return [f"#define WIDTH {WIDTH}", *(f"#define {name} {number[name]}" for name in BUILT_IN)]
 
 
 @dataclass(frozen=True)
@@ -280,7 +231,7 @@ class _Lists:
                 or self._one(statements[k])
             )
         self._put("END", 0)
-        return np.array(self.out, dtype=np.intc)
+        return np.array(fused(self.out, self.number, WIDTH), dtype=np.intc)
 
     def _ends(self) -> np.ndarray:
         goals = [Assign(f"goal {j}", end) for j, end in enumerate(self.sweeps.goals)]
@@ -438,7 +389,7 @@ Step = tuple[str, tuple[int, ...]]
 
 def _masked(text: str) -> tuple[str, list[str]]:
     """Return an expression with its leaves numbered, and the leaves: few expressions differ in more than these."""
-    text = LOOSENED.sub(lambda own: f"{'down' if own[3] else 'up'}({own[1]}, {own[2]})", text)
+    text = LOOSENED.sub(lambda own: f"{'down' if own[3] else 'up'}({own[1]}, {own[2]}, {own[4]})", text)
     text = re.sub(r"\ball\(([^()]*)\)", r"(\1)", text)
     leaves: list[str] = []
 
@@ -537,3 +488,50 @@ def _replace(place: Any, of: int | str, part: ast.expr) -> None:
         place[of] = part
     else:
         setattr(place, of, part)
+
+
+def formula_steps(function: SpecialFunction) -> tuple[list[tuple[str, str]], str]:
+    """Return the formula of a special function, traced with symbols, in C: names with their values, and the result.
+
+    Its arguments are a0, a1 and so on.
+    """
+    symbols = [ca.SX.sym(f"a{k}") for k in range(len(function.elasticity))]
+    program = Program(symbols, [function.formula(*symbols)])
+    steps: list[tuple[str, str]] = []
+    names: dict[int, str] = {}
+    for k in program.needed(program.outputs):
+        node = program.nodes[k]
+        args = [names[a] for a in node.args]
+        truths = [f"({x} != 0.0)" for x in args]
+        if node.op == ca.OP_INPUT:
+            names[k] = f"a{int(node.constant)}"
+            continue
+        if node.op == ca.OP_CONST:
+            value = f"all({_literal(node.constant)})"
+        elif node.op == ca.OP_NOT:
+            value = f"TRUTH(~{truths[0]})"
+        elif node.op in (ca.OP_AND, ca.OP_OR):
+            value = f"TRUTH({truths[0]} {'&' if node.op == ca.OP_AND else '|'} {truths[1]})"
+        elif node.op in COMPARISONS:
+            value = f"TRUTH({EXPRESSIONS[node.op].format(*args)})"
+        elif node.op == OP_SELECT:
+            value = f"choose({truths[0]}, {args[1]}, {args[2]})"
+        elif node.op == ca.OP_IF_ELSE_ZERO:
+            value = f"keep({truths[0]}, {args[1]})"
+        else:
+            value = EXPRESSIONS[node.op].format(*args)
+        names[k] = f"x{k}"
+        steps.append((names[k], value))
+    result = names[program.outputs[0]]
+    if function.above is not None:
+        first, second = function.above
+        result = f"choose(a{first} >= a{second}, {result}, all(NAN))"
+    return steps, result
+
+
+def _literal(value: float) -> str:
+    if np.isnan(value):
+        return "NAN"
+    if np.isinf(value):
+        return "INFINITY" if value > 0 else "-INFINITY"
+    return repr(float(value))

@@ -17,6 +17,10 @@ from synth.bounds.influences import Influences
 from synth.bounds.question_bounds import QuestionBounds
 from synth.tuning import BranchingSettings
 
+# Widths are finite: one without bounds (a missing cutoff, ends too far apart for a ratio) times no influence is none.
+LARGEST_RATIO = float(np.finfo(float).max)
+WIDEST = float(np.log(LARGEST_RATIO))
+
 
 @dataclass(frozen=True)
 class BranchingStatistics:
@@ -106,7 +110,8 @@ class BranchingWeights:
     def widths(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return widths of boxes on the scale of the influences."""
         with np.errstate(all="ignore"):
-            result: np.ndarray = np.where(self._question.positive, np.log(high / low), (high - low) / self._range)
+            ratio = np.minimum(high / low, LARGEST_RATIO)
+            result: np.ndarray = np.where(self._question.positive, np.log(ratio), (high - low) / self._range)
         return result
 
     def scores(
@@ -168,7 +173,7 @@ class BranchingWeights:
         """
         sizes = np.abs(multipliers)
         total = sizes.sum(axis=1)
-        good = np.isfinite(total) & (total > 0)
+        good = np.isfinite(total) & (total > 0) & np.isfinite(importance) & (importance > 0)
         if not good.any():
             return
         shares = sizes[good] / total[good, None]
@@ -238,7 +243,7 @@ class BranchingWeights:
         low, high = tree.hull(factor.columns) if factor.columns.size else (np.zeros((len(tree), 0)),) * 2
         with np.errstate(all="ignore"):
             width = np.where(low > 0, np.log(high / low), high - low)
-        width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], width)
+        width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], np.minimum(width, WIDEST))
         # The cutoff of a row is as far off as its objective.
         capped = np.eye(len(influence))[:, [len(question.constraints) + g for g in factor.capped]]
         own = np.concatenate([influence[:, [question.n + i for i in factor.inputs]], capped], axis=1)

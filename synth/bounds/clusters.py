@@ -14,6 +14,8 @@ import numpy as np
 
 from synth.question.combinations import MixedRadix
 
+APART = 1e3  # on a scale of logarithms or shares of a range: farther than any two numbers are
+
 
 @dataclass(frozen=True)
 class Factor:
@@ -105,12 +107,15 @@ def _places(columns: np.ndarray) -> np.ndarray:
     """Return columns on a scale on which distances compare: logarithms where positive, else shares of the range."""
     result = np.empty(columns.shape)
     for k, column in enumerate(columns.T):
-        known = column[~np.isnan(column)]
+        known = column[np.isfinite(column)]
+        span = np.ptp(known) if len(known) else 0.0
         if len(known) and known.min() > 0:
             result[:, k] = np.log(column)
         else:
-            span = np.ptp(known) if len(known) else 0.0
-            result[:, k] = column / span if span > 0 else np.where(np.isnan(column), np.nan, 0.0)
+            result[:, k] = column / span if span > 0 else np.where(np.isfinite(column), 0.0, column)
+        # What has no end, as a cutoff that is missing, is apart from the rest, and equal among itself.
+        ends = result[np.isfinite(column), k] if len(known) else np.zeros(1)
+        result[column == np.inf, k], result[column == -np.inf, k] = ends.max() + APART, ends.min() - APART
     return result
 
 

@@ -7,21 +7,10 @@ Not-a-number means that nothing is known, here too.
 from __future__ import annotations
 
 import math
-import re
-from functools import cache
 
 import casadi as ca
 
-from synth.bounds.intervals import CANCELLATION, SLACK
-from synth.compiled.c_text import template
 from synth.model.program import OP_SELECT
-
-
-@cache
-def common() -> str:
-    """Return the arithmetic that all rules share."""
-    numbers = {"CANCELLATION": CANCELLATION, "SLACK": SLACK, "PI": math.pi, "TWO_PI": 2 * math.pi}
-    return re.sub(rf"\b({'|'.join(numbers)})\b", lambda name: repr(numbers[name[1]]), template("bounds", "rules"))
 
 
 def _rising(name: str) -> str:

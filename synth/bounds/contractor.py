@@ -7,7 +7,7 @@ over the whole question are settled when the code is written, so that a product 
 multiplications and no test. Not-a-number stands for "nothing known" and never excludes a box.
 
 The rules are written once, as statements whose expressions read the same in Python and in C; the Python is made
-here, the C in :mod:`synth.bounds.compiled_boxes`.
+here; :mod:`synth.bounds.box_instructions` makes the list that the kernel reads.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from synth.bounds.sweep_writer import SweepWriter
 class Code:
     """The generated code of one sign pattern.
 
-    ``compiled`` is what is compiled of it, kept here by who compiles.
+    ``kernel`` is the kernel with its instructions, kept here by who makes it.
     """
 
     nodes: PropagatedNodes
     sweeps: SweepStatements
-    compiled: Any = None
+    kernel: Any = None
     _functions: dict[bytes, Callable[..., Any]] = field(default_factory=dict)
 
     def function(self, root: Root) -> Callable[..., Any]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.bounds.curvature import INF, Ends
 from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING, loosened
+from synth.feasibility import SLACK
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.program import OP_SPECIAL, Node, Program
@@ -35,6 +36,7 @@ def natural(program: Program, node: Node, ends: Sequence[Ends], low: np.ndarray,
 class FeasibleIntervals:
     """Intervals of all nodes of a model as far as its limits leave anything.
 
+    Only what limits are made of is narrowed through its formulas: a quantity that no limit reads need not exist.
     Limits that a missing value may make void say nothing. A guard holds strictly: it also tells which nodes are above
     zero and which node is larger than another one. Where nothing is feasible at all the limits say nothing.
 
@@ -63,6 +65,7 @@ class FeasibleIntervals:
             whole.append(natural(self._program, node, whole, low, high))
         self.low, self.high = [a for a, _ in whole], [b for _, b in whole]
         limits = [x for x in model.constraints if not x.void_without]
+        self._read = self._program.needed([k for x in limits for k in x.nodes])
         if not all(self._sweep(limits) for _ in range(SWEEPS)):
             self.low, self.high = [a for a, _ in whole], [b for _, b in whole]
             self.above_zero, self.larger = set(), set()
@@ -75,7 +78,7 @@ class FeasibleIntervals:
                 self._order(value, bound, limit)
             if limit.sense in ("at_least", "equal"):
                 self._order(bound, value, limit)
-        for k in range(len(self._program.nodes) - 1, -1, -1):
+        for k in reversed(self._read):
             self._backward(k)
         ends: list[Ends] = []
         for k, node in enumerate(self._program.nodes):
@@ -89,10 +92,11 @@ class FeasibleIntervals:
 
     def _order(self, small: int, large: int, limit: Constraint) -> None:
         """Carry small <= large over to the intervals of both."""
+        size = limit.scale if limit.terms is None else self.high[limit.terms]
         if np.isfinite(self.high[large]):
-            self.high[small] = min(self.high[small], float(loosened(self.high[large], limit.scale, +1)))
+            self.high[small] = min(self.high[small], float(loosened(self.high[large], size, SLACK)))
         if np.isfinite(self.low[small]):
-            self.low[large] = max(self.low[large], float(loosened(self.low[small], limit.scale, -1)))
+            self.low[large] = max(self.low[large], float(loosened(self.low[small], size, -SLACK)))
         if limit.guard:
             self.larger.add((large, small))
             if self.low[small] >= 0:

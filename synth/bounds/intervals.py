@@ -18,10 +18,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.feasibility import TOLERANCE
 from synth.model.program import OP_SELECT
 
-SLACK = 2 * TOLERANCE  # relative, by which limits are loosened
 ROUNDING = 1e-8  # relative: ends of an interval that pass each other by less do so by rounding
 CANCELLATION = 1e-12  # of the size of the terms: what a sum or difference of them may be off by
 
@@ -358,6 +356,15 @@ BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
 }
 
 
-def loosened(limit: Any, scale: float, side: int) -> Any:
-    """Return the limit moved outward by the slack that feasibility and rounding may use."""
-    return limit + side * SLACK * np.maximum(np.abs(limit), scale)
+def loosened(limit: Any, size: Any, share: float) -> Any:
+    """The limit moved by a share of its size: outward by the slack that feasibility and rounding may use.
+
+    Parameters
+    ----------
+    limit : float or array
+    size : float or array
+        Smallest size that counts.
+    share : float
+        Negative to move it down.
+    """
+    return limit + share * np.maximum(np.abs(limit), size)

@@ -38,7 +38,7 @@ from typing import Any
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.bounds.intervals import ROUNDING, SLACK
+from synth.bounds.intervals import ROUNDING
 from synth.bounds.log_forms import ELASTIC, LARGEST, SUM, LogForms, Relation, log_forms
 from synth.bounds.propagated_nodes import CONSTANT
 from synth.bounds.propagation import Propagation
@@ -233,15 +233,16 @@ class _Programs:
 
     def limit(self, constraint: NodeConstraint, right_side: float) -> None:
         """Add a limit, loosened as everywhere, where both sides have the same sign."""
-        place, v, w = self.forms.place, constraint.value, constraint.limit
-        if v not in place or (w is not None and w not in place):
+        place, v, w, terms = self.forms.place, constraint.value, constraint.limit, constraint.terms
+        if any(k not in place for k in constraint.nodes):
             return
         sign = self.forms.signs[v]
         if sign != (np.sign(right_side) if w is None else self.forms.signs[w]):
             return
         with np.errstate(all="ignore"):
             least = abs(right_side) if w is None else np.exp(self.low[:, place[w]])
-            loose = -np.log1p(-np.minimum(SLACK * np.maximum(1.0, constraint.scale / least), 1.0))
+            size = constraint.scale if terms is None else np.exp(self.high[:, place[terms]])
+            loose = -np.log1p(-np.minimum(constraint.slack * np.maximum(1.0, size / least), 1.0))
         offset = np.log(abs(right_side)) if w is None else 0.0
         for sense, direction in (("at_most", 1.0), ("at_least", -1.0)):
             if constraint.sense in (sense, "equal"):

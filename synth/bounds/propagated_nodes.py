@@ -55,6 +55,8 @@ class PropagatedNodes:
         All that are read, arguments first.
     kind, factor : list of int
         Per node of the program: ``CONSTANT``, ``TABLE``, ``VARIABLE`` or ``INNER``, and for tables the factor.
+    sizes : list of bool
+        Per node of the program: whether it only tells how large a limit is, from which nothing follows.
     narrows : list of bool
         Per node of the program: whether anything may be concluded about it.
     tables, constants, inner, variables : list of int
@@ -71,14 +73,19 @@ class PropagatedNodes:
     ) -> None:
         self.program, self.layout, self.auxiliary = program, layout, tuple(auxiliary)
         self.constraints, self.goals = list(constraints), list(goals)
-        sides = [c.value for c in constraints] + [c.limit for c in constraints if c.limit is not None]
-        wanted = sides + [g.node for g in goals]
+        wanted = [k for c in constraints for k in c.nodes] + [g.node for g in goals]
         self.order = program.needed(wanted) if wanted else []
+        compared = [k for c in constraints for k in (c.value, c.limit) if k is not None]
+        shaping = set(program.needed([*compared, *(g.node for g in goals)])) if wanted else set()
+        self.sizes = [k not in shaping for k in range(len(program.nodes))]
         self.kind, self.factor = self._kinds()
         # What a limit says of a column that may lack a value holds only for rows that have one: it is read, never cut.
         lacking = [program.input_nodes[layout.n_variables + k] for k in layout.may_lack]
         untouchable = program.downstream(lacking)
-        self.narrows = [kind != CONSTANT and not void for kind, void in zip(self.kind, untouchable, strict=True)]
+        self.narrows = [
+            kind != CONSTANT and not void and not size
+            for kind, void, size in zip(self.kind, untouchable, self.sizes, strict=True)
+        ]
         read = {a for k in self.order if self.kind[k] == INNER for a in program.nodes[k].args} | set(wanted)
         self.tables = [k for k in self.order if self.kind[k] == TABLE and k in read]
         self.constants = [k for k in self.order if self.kind[k] == CONSTANT and k in read]

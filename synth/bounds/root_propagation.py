@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING, Interval, loosened, whole
@@ -58,6 +59,23 @@ def propagated_root(nodes: PropagatedNodes, leaves: Leaves) -> Root:
         found = _NodePropagation(nodes, leaves)
         found.run(SWEEPS)
         return found.root
+
+
+# Their rules give no number where an end of an argument is none, and never an infinite end with the other sign.
+SIGN_KEEPING = {
+    ca.OP_CONST,
+    ca.OP_INPUT,
+    ca.OP_ADD,
+    ca.OP_SUB,
+    ca.OP_NEG,
+    ca.OP_TWICE,
+    ca.OP_MUL,
+    ca.OP_SQ,
+    ca.OP_SQRT,
+    ca.OP_EXP,
+    ca.OP_FMAX,
+    ca.OP_FMIN,
+}
 
 
 def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interval:
@@ -129,7 +147,8 @@ class _NodePropagation:
                 ends = (-np.inf, cutoff) if goal.sign > 0 else (-cutoff, np.inf)
                 self._narrow(goal.node, *ends)
             for k in reversed(self.nodes.inner):
-                self._backward(k)
+                if not self.nodes.sizes[k]:
+                    self._backward(k)
 
     def crossed(self) -> Any:
         """Tell where nothing feasible is left."""
@@ -142,7 +161,11 @@ class _NodePropagation:
     def root(self) -> Root:
         """What is known where there is but one box."""
         a, b = np.array(self.a, dtype=float), np.array(self.b, dtype=float)
-        return Root(np.where(a > b, b, a), b, self.narrowed, bool(self.crossed()))
+        # Code for boxes takes signs that hold here for granted. In a box whose ends are no numbers (a special function
+        # beyond its border) a rule that divides or inverts knows nothing, not even the sign, so that it is held.
+        blind = [node.op not in SIGN_KEEPING for node in self.program.nodes]
+        narrowed = self.narrowed | ((a >= 0) & np.array(blind))
+        return Root(np.where(a > b, b, a), b, narrowed, bool(self.crossed()))
 
     def _forward(self, k: int, later: bool) -> None:
         node, a, b = self.program.nodes[k], self.a, self.b
@@ -167,14 +190,16 @@ class _NodePropagation:
     def _cut(self, constraint: NodeConstraint, constant: float) -> None:
         a, b, v, w = self.a, self.b, constraint.value, constraint.limit
         low, high = (constant, constant) if w is None else (a[w], b[w])
+        size = constraint.scale if constraint.terms is None else b[constraint.terms]
+        more, less = constraint.slack, -constraint.slack
         if constraint.sense in ("at_most", "equal"):
-            top, bottom = loosened(high, constraint.scale, +1), loosened(a[v], constraint.scale, -1)
+            top, bottom = loosened(high, size, more), loosened(a[v], size, less)
             self.empty = self.empty | (a[v] > top)
             self._narrow(v, -np.inf, top)
             if w is not None:
                 self._narrow(w, bottom, np.inf)
         if constraint.sense in ("at_least", "equal"):
-            bottom, top = loosened(low, constraint.scale, -1), loosened(b[v], constraint.scale, +1)
+            bottom, top = loosened(low, size, less), loosened(b[v], size, more)
             self.empty = self.empty | (b[v] < bottom)
             self._narrow(v, bottom, np.inf)
             if w is not None:

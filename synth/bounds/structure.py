@@ -73,7 +73,7 @@ def _structure(analysis: TermComposition) -> Structure:
     moving = ~(analysis.input_low == analysis.input_high)
     order = ("variable", "count", "part", "requirement", "row")
     named = [(k, labels[k]) for kind in order for k in range(len(labels)) if kinds[k] == kind and moving[k]]
-    nodes = tuple(analysis.shape(term, [k]) for k, term in enumerate(analysis.terms))
+    nodes = tuple(analysis.shape(term, [k]) for k, term in enumerate(analysis.terms[: model.traced]))
     quantities = {name: worded(nodes[k], named) for name, k in model.quantity_node.items()}
     limits, objectives = dict[str, Shape](), dict[str, Shape]()
     for limit in model.constraints:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import casadi as ca
 
-from synth.bounds.intervals import BACKWARD, CANCELLATION, FORWARD, ROUNDING, SLACK
+from synth.bounds.intervals import BACKWARD, CANCELLATION, FORWARD, ROUNDING
 from synth.bounds.propagated_nodes import INNER, VARIABLE, PropagatedNodes
 from synth.bounds.root_propagation import Root
 from synth.bounds.statements import Assign, Enclose, EndOfFirstSweep, Hold, Kill, Narrow, Statement, SweepStatements
+from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SELECT, OP_SPECIAL
 
 
@@ -69,8 +70,7 @@ class SweepWriter:
         constraints_at: dict[int, list[int]] = {}
         position = {k: i for i, k in enumerate(self.nodes.order)}
         for j, constraint in enumerate(self.nodes.constraints):
-            sides = [k for k in (constraint.value, constraint.limit) if k is not None]
-            constraints_at.setdefault(max(sides, key=lambda k: position[k]), []).append(j)
+            constraints_at.setdefault(max(constraint.nodes, key=lambda k: position[k]), []).append(j)
         goals_at: dict[int, list[int]] = {}
         for j, goal in enumerate(self.nodes.goals):
             goals_at.setdefault(goal.node, []).append(j)
@@ -162,10 +162,12 @@ class SweepWriter:
         elif self._moves(k):
             self._set(f"h{k}", f"v_fmin(h{k}, -F[{j}])")
 
-    def _loose(self, end: str, k: int | None, scale: float, side: int) -> str:
-        if k is not None and self._positive(k) and self.root.low[k] > scale:
-            return f"{end} * {1 + side * SLACK!r}"
-        return f"loosened({end}, {scale!r}, {side})"
+    def _loose(self, end: str, k: int | None, constraint: NodeConstraint, side: int) -> str:
+        share, terms = side * constraint.slack, constraint.terms
+        if terms is None and k is not None and self._positive(k) and self.root.low[k] > constraint.scale:
+            return f"{end} * {1 + share!r}"
+        size = f"all({constraint.scale!r})" if terms is None else f"h{terms}"
+        return f"loosened({end}, {size}, {share!r})"
 
     def _cut(self, j: int) -> None:
         constraint = self.nodes.constraints[j]
@@ -174,10 +176,10 @@ class SweepWriter:
         moving = w is not None and self._moves(w)
         opens = []
         if constraint.sense in ("at_most", "equal"):
-            self._set("s", self._loose(high, w, constraint.scale, +1))
+            self._set("s", self._loose(high, w, constraint, +1))
             self.out.append(Kill(f"l{v} > s"))
             if moving:
-                self._set("t", f"v_fmax({low}, {self._loose(f'l{v}', v, constraint.scale, -1)})")
+                self._set("t", f"v_fmax({low}, {self._loose(f'l{v}', v, constraint, -1)})")
             if self._moves(v):
                 self._set(f"h{v}", f"v_fmin(h{v}, s)")
             self._set(f"o{j}", f"h{v} > {low}")
@@ -185,10 +187,10 @@ class SweepWriter:
             if moving:
                 self._set(f"l{w}", "t")
         if constraint.sense in ("at_least", "equal"):
-            self._set("s", self._loose(low, w, constraint.scale, -1))
+            self._set("s", self._loose(low, w, constraint, -1))
             self.out.append(Kill(f"h{v} < s"))
             if moving:
-                self._set("t", f"v_fmin({high}, {self._loose(f'h{v}', v, constraint.scale, +1)})")
+                self._set("t", f"v_fmin({high}, {self._loose(f'h{v}', v, constraint, +1)})")
             if self._moves(v):
                 self._set(f"l{v}", f"v_fmax(l{v}, s)")
             self._set(f"o{j}", " | ".join([*opens, f"(l{v} < {high})"]))
@@ -199,12 +201,15 @@ class SweepWriter:
 
     def _backward(self) -> None:
         for k in reversed(self.nodes.inner):
-            self._back(k)
+            if not self.nodes.sizes[k]:
+                self._back(k)
         for k in [*self.nodes.variables, *self.nodes.tables, *self.nodes.auxiliary]:
             size = f"h{k}" if self._positive(k) else f"v_abs(h{k})"
             self.out.append(Kill(f"l{k} > h{k} + {ROUNDING!r} * {size}"))
         # Ends that cross by rounding change places: either may be the right one, and sweeps would pull them apart.
         for k in [*self.nodes.variables, *self.nodes.tables, *self.nodes.inner]:
+            if self.nodes.sizes[k]:
+                continue
             self._set("m", f"choose(l{k} > h{k}, h{k}, l{k})")
             self._set(f"h{k}", f"choose(l{k} > h{k}, l{k}, h{k})")
             self._set(f"l{k}", "m")

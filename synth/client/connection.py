@@ -16,6 +16,7 @@ from synth.files import csv_text, read_bytes
 from synth.jobs.row_table import ROWS, read_table
 from synth.question.count_domain import stated_value
 from synth.results import ParetoFront
+from synth.tables.table_file import table_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -324,11 +325,14 @@ class ServiceClient:
             It is none of these, or cannot be read.
         """
         if isinstance(table, (str, Path)):
-            name, content = Path(table).name, read_bytes(table, "rows", ROWS)
+            named = table_file(Path(table))
+            name, content = named.path.name, read_bytes(named.path, "rows", ROWS)
+            how = {"encoding": named.encoding, "visible": named.visible}
         else:
             rows = read_table(table)
             name, content = f"{rows.name}.csv", csv_text(rows.header(), [cells for _, cells in rows.lines()]).encode()
-        answer = self._transport.ask("POST", "/uploads", files={"file": (name, content)})
+            how = {}
+        answer = self._transport.ask("POST", "/uploads", files={"file": (name, content)}, params=how)
         return str(answer.json()["id"])
 
     def add_catalogue(self, table: str, source: str | Path, name: str | None = None, note: str = "") -> str:

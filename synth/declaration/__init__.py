@@ -1,10 +1,10 @@
 """Declaring a problem: what a family says about requirements, sizes, parts, limits and objectives."""
 
+from synth.declaration.faults import declaring
 from synth.declaration.grids import grid_values
 from synth.declaration.records import (
     Choice,
     Count,
-    DeclarationError,
     Limit,
     NextRowRecord,
     Objective,
@@ -17,6 +17,7 @@ from synth.declaration.records import (
     VariableRecord,
 )
 from synth.declaration.verbs import Block, Declaration, Option, Requirement, Slot, Variable
+from synth.errors import DeclarationError
 
 __all__ = [
     "Block",
@@ -38,5 +39,6 @@ __all__ = [
     "Slot",
     "Variable",
     "VariableRecord",
+    "declaring",
     "grid_values",
 ]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 
-from synth.declaration.records import DeclarationError
+from synth.errors import DeclarationError
 from synth.margins import MARGINS, within
 
 RENARD_STEPS = {"R5": 5, "R10": 10, "R20": 20, "R40": 40}
@@ -48,15 +49,18 @@ def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper:
         mantissas = RENARD_R40[:: 40 // RENARD_STEPS[grid]]
         decades = np.arange(np.floor(np.log10(lower)), np.ceil(np.log10(upper)) + 1)
         values = np.array([float(f"{m}e{int(d)}") for d in decades for m in mantissas])
-    elif isinstance(grid, (int, float)):
-        if not grid > 0:
-            raise DeclarationError(f"a grid step must be above 0, not {grid}")
-        first, last = np.ceil(lower / grid - MARGINS.step), np.floor(upper / grid + MARGINS.step)
+    elif isinstance(grid, Real):
+        step = float(grid)
+        if isinstance(grid, bool) or not 0 < step < np.inf:
+            raise DeclarationError(f"a grid step must be above 0 and finite, not {grid}")
+        first, last = np.ceil(lower / step - MARGINS.step), np.floor(upper / step + MARGINS.step)
         steps = np.arange(first, last + 1)
-        per_unit = round(1 / grid) if grid < 1 else 0
+        per_unit = round(1 / step) if step < 1 else 0
         # Division by the reciprocal of a fractional step keeps 0.1 mm ladders free of 0.30000000000000004.
-        values = steps / per_unit if per_unit and abs(per_unit * grid - 1) < MARGINS.step else steps * grid
+        values = steps / per_unit if per_unit and abs(per_unit * step - 1) < MARGINS.step else steps * step
     else:
         values = np.sort(np.asarray(grid, dtype=float))
+        if not np.isfinite(values).all():
+            raise DeclarationError(f"the values of a grid must be finite, not {grid}")
     inside: np.ndarray = values[within(values, lower, upper, MARGINS.stated)]
     return inside

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from numbers import Number, Real
 from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
 
-from synth.errors import InputError
+from synth.errors import DeclarationError, InputError
 from synth.row_cells import CODE_OF, ELSE, text_code
 
 # A CasADi symbol or an expression of symbols, in SI; no class that formulas could be checked against exists for both.
 Quantity: TypeAlias = Any
-
-
-class DeclarationError(TypeError):
-    """A family declares something that cannot be: a fault of the family, never of its user."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,20 @@ class Count:
     sx: Any
 
 
-@dataclass(frozen=True)
+def _same(record: object, other: object, what: str, instead: str) -> bool:
+    """Whether something is the same record.
+
+    Raises
+    ------
+    DeclarationError
+        It is a text, a number or a formula: what a record stands for is not known in a declaration.
+    """
+    if isinstance(other, (str, Number, np.ndarray, ca.SX)):
+        raise DeclarationError(f"{what} is compared with {other!r}, but not known in a declaration; use {instead}")
+    return record is other
+
+
+@dataclass(frozen=True, eq=False)
 class Choice:
     """A discrete unknown that the search decides; its symbol is the index of the label.
 
@@ -95,6 +105,13 @@ class Choice:
     labels: tuple[str, ...]
     sx: Any
     refused: Mapping[str, str] = field(default_factory=dict)
+
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        """Refuse a comparison with a label or its number, which would be false whatever the search decides."""
+        told = ", ".join(f"{label!r}: ..." for label in self.labels)
+        return _same(self, other, f"choice {self.name}", f"{self.name}.select({{{told}}})")
 
     def expected(self, label: str) -> str:
         """Return what may stand in place of a label that is not offered, with the reason where there is one."""
@@ -122,7 +139,7 @@ class Choice:
         return result
 
 
-@dataclass
+@dataclass(eq=False)
 class Part:
     """One row of a catalogue table, seen through symbols.
 
@@ -140,13 +157,22 @@ class Part:
     columns: dict[str, PartColumn] = field(default_factory=dict)
     texts: dict[str, set[str]] = field(default_factory=dict)  # that formulas ask for, by column
 
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        """Refuse a comparison with a designation or a number, which would be false whatever the search decides."""
+        return _same(self, other, f"part {self.slot}", f"{self.slot}.says(column, text), or a column of numbers")
+
     def __getattr__(self, column: str) -> Any:
         if column.startswith("_"):
             raise AttributeError(column)
-        if column not in self.known:
-            right = f"a number column, which slot {self.slot} uses"
-            raise InputError(f"table {self.table}, column {column}", None, right, ("catalogs", self.table, column))
+        # Whether a table may lack it is known once all is declared: ``Declaration.settle_columns``.
         return self._symbol((column,), required=True)
+
+    def lacking(self, column: str, hint: str = "") -> InputError:
+        """Fault of a table without a column that the problem cannot do without."""
+        right = f"a number column, which slot {self.slot} uses{hint}"
+        return InputError(f"table {self.table}, column {column}", None, right, ("catalogs", self.table, column))
 
     def code(self, column: str) -> Any:
         """Return a number that stands for the text of a column: the same in all tables for the same text."""
@@ -163,6 +189,8 @@ class Part:
 
     def filled(self, column: str, value: float) -> Any:
         """Return a column, and a number in SI where table or row lack it; no row is left out for the lack."""
+        if not (isinstance(value, Real) and np.isfinite(value)):
+            raise DeclarationError(f"slot {self.slot}: {value!r} fills column {column}; it must be a finite number")
         return self._symbol((f"{column}{ELSE}{float(value)!r}",), required=True)
 
     def first_of(self, *columns: str) -> Any:
@@ -262,6 +290,7 @@ class NextRowRecord:
     table: str
     column: str
     beside: RowRange | None
+    typed: bool
 
 
 @dataclass(frozen=True)

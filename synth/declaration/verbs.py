@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, overload
 
 import casadi as ca
 import numpy as np
 
+from synth.declaration.faults import SourceLine, line_of_verb
 from synth.declaration.grids import grid_values
 from synth.declaration.records import (
     Advice,
     Choice,
     Constant,
     Count,
-    DeclarationError,
     Derived,
     Headline,
     Limit,
@@ -30,12 +33,13 @@ from synth.declaration.records import (
     Step,
     VariableRecord,
 )
-from synth.errors import InputError, UnknownOptionError
+from synth.errors import DeclarationError, InputError, UnknownOptionError, shortened
 from synth.feasibility import SMALLEST
 from synth.margins import MARGINS
-from synth.units import parse_unit, to_si
+from synth.units import Unit, parse_unit, to_si
 
 if TYPE_CHECKING:
+    from synth.special import SpecialCall
     from synth.tables.catalogs import Catalogs
 
 # Formulas are plain NumPy functions; in this mode NumPy calls on symbols return plain symbols.
@@ -283,6 +287,7 @@ class Declaration:
         self.advices: list[Advice] = []
         self.headlines = Headline()
         self.late: dict[str, tuple[str, ...]] = {}
+        self.lines: dict[str, SourceLine | None] = {}  # of expressions, by what they are of
         self._symbols: dict[str, str] = {}
 
     # -- names ---------------------------------------------------------------------------------
@@ -297,10 +302,53 @@ class Declaration:
         self._symbols[name] = self._symbols[symbol] = name
         return symbol
 
+    def words(self) -> frozenset[str]:
+        """Every name and symbol in use, those of steps and constants too."""
+        return frozenset(self._symbols)
+
+    def _number(self, what: str, value: Any, unit: Unit | None = None, end: bool = False) -> float:
+        """Convert a number to SI; refuse what is none. ``end`` allows the open end of a range."""
+        right = "a number or inf" if end else "a finite number"
+        si = math.nan
+        if isinstance(value, Real) and not isinstance(value, bool):
+            with suppress(OverflowError):  # an integer of more digits than a float holds
+                si = float(value) if unit is None else float(to_si(float(value), unit))
+        elif isinstance(value, ca.SX):
+            right += "; what depends on quantities is a limit"
+        if math.isnan(si) or (math.isinf(si) and not end):
+            raise DeclarationError(f"{self.problem}: {what} is {shortened(repr(value))}; it must be {right}")
+        return si
+
+    def _unit(self, what: str, unit: str) -> Unit:
+        """Read the unit that a declaration states; refuse what is none."""
+        try:
+            return parse_unit(unit)
+        except InputError as error:
+            raise DeclarationError(f"{self.problem}: {what} has {error}") from error
+
+    def _expression(self, what: str, value: Any) -> ca.SX:
+        """Scalar expression of a declaration; the line that states it is kept for faults that the trace shows."""
+        try:
+            expression = ca.SX(value)
+        except (TypeError, NotImplementedError, RuntimeError):
+            expression = None
+        if expression is None or expression.shape != (1, 1):
+            shape = "" if expression is None else f" of shape {expression.shape}"
+            right = "a number or an expression of quantities"
+            raise DeclarationError(f"{self.problem}: {what} is {type(value).__name__}{shape}; it must be {right}")
+        self.lines[what] = line_of_verb()
+        return expression
+
     def names(self) -> dict[str, str]:
         """Return every accepted spelling (name or symbol) and the name it stands for."""
         silent = {*self.steps, *self.constants, *self.next_rows}
         return {word: name for word, name in self._symbols.items() if name not in silent}
+
+    def tables(self) -> set[str]:
+        """Tables of which a row may be read: by slots, fixed rows, or as what comes next to a quantity."""
+        read = {part.table for part in (*self.slots.values(), *self.rows.values())}
+        following = self.next_rows.values()
+        return read | {x.table for x in following} | {x.beside.table for x in following if x.beside is not None}
 
     # -- verbs ---------------------------------------------------------------------------------
 
@@ -343,8 +391,16 @@ class Declaration:
         symbol, or None for an optional requirement that was not given.
         """
         symbol = self._claim(name, symbol)
-        parsed = parse_unit(unit)
-        numeric = default is None or isinstance(default, (int, float))
+        parsed = self._unit(f"requirement {name}", unit)
+        what = f"of requirement {name}"
+        low = self._number(f"the lower end {what}", -np.inf if lower is None else lower, parsed, end=True)
+        high = self._number(f"the upper end {what}", np.inf if upper is None else upper, parsed, end=True)
+        if low > high or low == np.inf or high == -np.inf:
+            raise DeclarationError(f"{self.problem}: requirement {name} needs lower <= upper, not {lower} .. {upper}")
+        if isinstance(default, Real):
+            default = self._number(f"the default {what}", default, parsed)
+        elif default is not None:
+            default = self._expression(f"the default {what}", default)
         given = name in self._given
         record = RequirementRecord(
             name=name,
@@ -352,9 +408,9 @@ class Declaration:
             symbol=symbol,
             text=text,
             source=source,
-            default=float(to_si(default, parsed)) if numeric and default is not None else default,
-            lower=-np.inf if lower is None else float(to_si(lower, parsed)),
-            upper=np.inf if upper is None else float(to_si(upper, parsed)),
+            default=default,
+            lower=low,
+            upper=high,
             optional=optional,
             given=given,
             group=group,
@@ -419,12 +475,17 @@ class Declaration:
         text: str = "",
         source: str = "",
     ) -> Any:
-        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol."""
+        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol. Equal bounds make a constant."""
         symbol = self._claim(name, symbol)
-        parsed = parse_unit(unit)
-        if not lower < upper:
-            raise DeclarationError(f"{self.problem}: variable {name} needs lower < upper")
-        makeable = grid_values(grid, lower, upper)
+        parsed = self._unit(f"variable {name}", unit)
+        low = self._number(f"the lower end of variable {name}", lower, parsed)
+        high = self._number(f"the upper end of variable {name}", upper, parsed)
+        if low > high:
+            raise DeclarationError(f"{self.problem}: variable {name} needs lower <= upper, not {lower} .. {upper}")
+        try:
+            makeable = grid_values(grid, lower, upper)
+        except DeclarationError as error:
+            raise DeclarationError(f"{self.problem}: variable {name}: {error}") from None
         if grid is not None and not len(makeable):
             raise DeclarationError(f"{self.problem}: the grid of variable {name} has no value from {lower} to {upper}")
         record = VariableRecord(
@@ -433,8 +494,8 @@ class Declaration:
             symbol=symbol,
             text=text,
             source=source,
-            lower=float(to_si(lower, parsed)),
-            upper=float(to_si(upper, parsed)),
+            lower=low,
+            upper=high,
             grid=np.asarray(to_si(makeable, parsed), dtype=float),
             sx=ca.SX.sym(name),
         )
@@ -453,6 +514,8 @@ class Declaration:
     ) -> Any:
         """Declare a stepped unknown; return its symbol."""
         symbol = self._claim(name, symbol)
+        for part, number in (("lower end", lower), ("upper end", upper), ("step", step)):
+            self._number(f"the {part} of count {name}", number)
         if not (step > 0 and lower <= upper):
             raise DeclarationError(f"{self.problem}: count {name} needs lower <= upper and a step above 0")
         values = lower + step * np.arange(int(np.floor((upper - lower) / step + MARGINS.step)) + 1)
@@ -535,10 +598,11 @@ class Declaration:
         ``ceiling`` (in ``unit``) is refused: it would allow what the model does not cover.
         """
         symbol = self._claim(name, symbol)
-        parsed = parse_unit(unit)
+        parsed = self._unit(f"derived {name}", unit)
         guards = (needs,) if isinstance(needs, str) else tuple(needs)
-        highest = np.inf if ceiling is None else float(to_si(ceiling, parsed))
-        record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr), highest)
+        highest = np.inf if ceiling is None else self._number(f"the ceiling of {name}", ceiling, parsed)
+        value = self._expression(f"derived {name}", expr)
+        record = Derived(name, unit, symbol, text, source, guards, value, highest)
         self.derived[name] = record
         return record.sx
 
@@ -550,8 +614,8 @@ class Declaration:
         It is no public result: no column, limit or objective, and the search does not see it.
         """
         symbol = self._claim(name, symbol)
-        parse_unit(unit)
-        record = Step(name, unit, symbol, text, source, ca.SX(expr))
+        self._unit(f"step {name}", unit)
+        record = Step(name, unit, symbol, text, source, self._expression(f"step {name}", expr))
         self.steps[name] = record
         return record.sx
 
@@ -563,7 +627,7 @@ class Declaration:
         It stays a plain number in the formulas: nothing that is computed changes.
         """
         symbol = self._claim(name, symbol)
-        si = float(to_si(value, parse_unit(unit)))
+        si = self._number(f"constant {name}", value, self._unit(f"constant {name}", unit))
         self.constants[name] = Constant(name, unit, symbol, text, source, si)
         return si
 
@@ -574,6 +638,7 @@ class Declaration:
         table: str,
         column: str,
         beside: RowRange | None = None,
+        typed: bool = False,
         text: str = "",
         source: str = "",
     ) -> None:
@@ -591,6 +656,8 @@ class Declaration:
             A catalogue table, and its column of numbers.
         beside : RowRange, optional
             A second table, of which the row is named whose range holds the value that was found in the first.
+        typed : bool
+            Whether the quantity is a size that the user states, which nothing says is needed.
         text, source : str
         """
         self._claim(name, None)
@@ -600,7 +667,8 @@ class Declaration:
         for where, key in lookups:
             self.catalogs.table(where).number(key)  # tells now what is no column of numbers
         unit = self.catalogs.table(table).column(column).unit or "-"
-        self.next_rows[name] = NextRowRecord(name, unit, name, text, source, ca.SX(quantity), table, column, beside)
+        needed = self._expression(f"next row {name}", quantity)
+        self.next_rows[name] = NextRowRecord(name, unit, name, text, source, needed, table, column, beside, typed)
 
     def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
         """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""
@@ -630,9 +698,12 @@ class Declaration:
             raise DeclarationError(f"{self.problem}: limit {name} is declared twice")
         if guard and sense == "equal":
             raise DeclarationError(f"{self.problem}: an equality ({name}) cannot be a guard")
-        parsed = parse_unit(unit)
-        size = SMALLEST if scale is None else float(to_si(scale, parsed))
-        self.limits[name] = Limit(name, sense, unit, text, source, ca.SX(value), ca.SX(limit), guard, size)
+        parsed = self._unit(f"limit {name}", unit)
+        size = SMALLEST if scale is None else self._number(f"the scale of limit {name}", scale, parsed)
+        if not size > 0:
+            raise DeclarationError(f"{self.problem}: limit {name} has scale {scale}; it must be above 0")
+        left, right = (self._expression(f"limit {name}", side) for side in (value, limit))
+        self.limits[name] = Limit(name, sense, unit, text, source, left, right, guard, size)
 
     def objective(self, name: str, sense: str = "min", default: bool = True, resolution: float | None = None) -> None:
         """Offer a named quantity as objective.
@@ -649,7 +720,7 @@ class Declaration:
         """
         if sense not in ("min", "max"):
             raise DeclarationError(f"{self.problem}: objective {name} has sense {sense!r}; write 'min' or 'max'")
-        if resolution is not None and not (np.isfinite(resolution) and resolution > 0):
+        if resolution is not None and not self._number(f"the resolution of objective {name}", resolution) > 0:
             raise DeclarationError(
                 f"{self.problem}: objective {name} has resolution {resolution!r}; it must be above 0"
             )
@@ -669,11 +740,11 @@ class Declaration:
 
     def refuse(self, code: str, when: Any, message: str) -> None:
         """Refuse input (or leave out rows) for which ``when`` holds."""
-        self.refusals.append(Refusal(code, ca.SX(when), message))
+        self.refusals.append(Refusal(code, self._expression(f"refusal {code}", when), message))
 
     def advise(self, code: str, when: Any, message: str, source: str = "") -> None:
         """Print a remark on the designs for which ``when`` holds."""
-        self.advices.append(Advice(code, ca.SX(when), message, source))
+        self.advices.append(Advice(code, self._expression(f"advice {code}", when), message, source))
 
     # -- views ---------------------------------------------------------------------------------
 
@@ -689,6 +760,41 @@ class Declaration:
             yield count.name, "-", "count"
         for derived in self.derived.values():
             yield derived.name, derived.unit, "derived"
+
+    def settle_columns(self, calls: Sequence[SpecialCall]) -> None:
+        """Ask of tables only the columns that results read: what hooks alone read may be without a value.
+
+        Parameters
+        ----------
+        calls : list of SpecialCall
+            Special functions that were used, in order.
+
+        Raises
+        ------
+        InputError
+            A table lacks a column that the problem cannot do without.
+        """
+        read = self._read_by_results(calls)
+        for part in (*self.slots.values(), *self.rows.values()):
+            for key, column in part.columns.items():
+                if not column.required:
+                    continue
+                if str(column.sx) not in read:
+                    part.columns[key] = replace(column, required=False)
+                elif key.isidentifier() and key not in part.known:
+                    raise part.lacking(key)
+
+    def _read_by_results(self, calls: Sequence[SpecialCall]) -> set[str]:
+        """Symbols that defaults, quantities, limits, refusals or remarks depend on."""
+        expressions = [r.default for r in self.requirements.values() if isinstance(r.default, ca.SX)]
+        expressions += [q.sx for q in self.derived.values()]
+        expressions += [side for limit in self.limits.values() for side in (limit.value, limit.limit)]
+        expressions += [x.when for x in self.refusals] + [x.when for x in self.advices]
+        read = {str(s) for s in ca.symvar(ca.SX(ca.vertcat(*expressions)))}
+        for call in reversed(calls):  # the arguments of a call may be the results of earlier ones
+            if str(call.symbol) in read:
+                read |= {str(s) for x in call.arguments for s in ca.symvar(ca.SX(x))}
+        return read
 
     def finish(self) -> None:
         """Check what can only be checked when everything is declared."""

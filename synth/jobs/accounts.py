@@ -9,8 +9,8 @@ import hashlib
 import hmac
 import re
 import secrets
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import sqlalchemy as sa
@@ -19,16 +19,17 @@ from sqlalchemy.exc import IntegrityError
 from synth.errors import InputError
 from synth.jobs.database import Database
 from synth.jobs.job_table import LOCAL
+from synth.jobs.log_lines import BEGINNING
 from synth.jobs.models import BrowserSession, Tenant, Token, moment
+from synth.plain_text import UNSAFE_IN_LINE
 
 READ, SUBMIT, ADMIN = "read", "submit", "admin"
 SCOPES = (READ, SUBMIT, ADMIN)
-BEGINNING = "cs_"  # of every token: programs that look for secrets in texts know them by it
 RANDOM = 32  # bytes of a token, and of the cookie of a browser
 PREFIX_LETTERS = 8  # of a token that are kept, to find it by and to tell it apart
 NAME = 60  # letters of a name at most
-# Neither characters that act on a terminal nor blanks alone.
-NAME_PATTERN = r"^[^\u0000-\u0020\u007f-\u00a0][^\u0000-\u001f\u007f-\u009f]*$"
+# Neither characters that act on whatever shows them nor blanks alone.
+NAME_PATTERN = rf"^[^{UNSAFE_IN_LINE}\u0020\u00a0][^{UNSAFE_IN_LINE}]*$"
 TENANT = re.compile(r"[^\W_][\w.-]*")  # names that programs, addresses and folders can repeat as they are
 HALF = re.compile(r"[\ud800-\udfff]")  # of a letter: what no database keeps
 LONGEST_TOKEN = 100  # letters; what is longer is none, and is not even hashed
@@ -74,6 +75,8 @@ class Principal:
     limits : TenantLimits
     used : float or None
         How many s ago the last use of the token was noted.
+    session : str or None
+        Hash of the cookie of a browser that has shown the token.
     """
 
     tenant: int
@@ -82,6 +85,7 @@ class Principal:
     token: int | None
     limits: TenantLimits
     used: float | None = None
+    session: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -334,7 +338,24 @@ class Accounts:
         with self.engine.connect() as connection:
             valid = (BrowserSession.hash == wanted, BrowserSession.expires > moment(), *_valid())
             row = connection.execute(asked.where(*valid)).one_or_none()
-        return None if row is None else _principal(row)
+        return None if row is None else replace(_principal(row), session=wanted)
+
+    def lapsed(self, principals: Collection[Principal]) -> set[Principal]:
+        """Return those who would not be let in again: their token has ended, or they were or have signed out."""
+        tokens = {one.token for one in principals if one.token is not None}
+        sessions = {one.session for one in principals if one.session is not None}
+        in_time = BrowserSession.expires > moment()
+        with self.engine.connect() as connection:
+            valid = set(connection.scalars(sa.select(Token.id).where(Token.id.in_(tokens), *_valid())))
+            known = sa.select(BrowserSession.hash).where(BrowserSession.hash.in_(sessions), in_time)
+            signed_in = set(connection.scalars(known))
+        nobody_needs_one = not self.any_token()
+        return {
+            one
+            for one in principals
+            if not (nobody_needs_one if one.token is None else one.token in valid)
+            or (one.session is not None and one.session not in signed_in)
+        }
 
     def sign_out(self, cookie: str) -> None:
         """Forget a browser."""

@@ -25,12 +25,15 @@ from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.job_table import BATCH
 from synth.jobs.outputs import BEST, write_outputs
+from synth.jobs.row_checks import PlanProgress, checked_rows
 from synth.jobs.row_groups import RowGroups
 from synth.jobs.row_questions import Fault, Questioner, ReadRow, canonical_position, read_mapping
+from synth.jobs.row_remarks import RowRemarks
 from synth.jobs.row_table import read_table
 from synth.jobs.runner import Runner, Shares
 from synth.jobs.store import Store
 from synth.jobs.warm_starts import WarmStarts
+from synth.kernels.loading import native_code
 from synth.model.registry import families, load
 from synth.output_folder import claimed, settle
 from synth.plain_text import as_meant
@@ -39,12 +42,14 @@ from synth.question.count_domain import stated_value
 from synth.question.names import as_mapping
 from synth.question.request import EXAMPLES, check_grid, listed_objectives
 from synth.question.settings import SearchSettings, check_progress
-from synth.results.provenance import code_digest, native_code, problem_digest, processor
+from synth.results.provenance import code_digest, problem_digest, processor
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from synth.model.problem import DesignProblem
+
+Progress = Callable[[Mapping[str, Any]], None]
 
 
 @dataclass(frozen=True)
@@ -101,13 +106,14 @@ class BatchResult:
         Raises
         ------
         InputError
-            Something asked is wrong, or an extra is not installed; then nothing is written.
+            Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
+            it is written.
         """
         from synth.jobs.batch_report import BatchReportOptions, report_result
 
         how = BatchReportOptions.read(row=row, formats=formats, about=about, fonts=fonts)
         target = self.folder if folder is None else Path(folder)
-        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own)[0]
+        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own).complete()
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:
@@ -302,9 +308,7 @@ class BatchJob:
             ]
         )[:16]
         self.address: Any = database or file_url(folder.resolve() / DATABASE)
-        self.faults: dict[tuple[str, str | None, str], list[int]] = {}  # column, value, right -> lines; the first kinds
-        self.bad = 0
-        self.unused: dict[str, set[str]] = {}  # family -> columns that it does not have
+        self.remarks = RowRemarks(numbers.plan)
         self._store: Store | None = None
 
     @property
@@ -321,8 +325,15 @@ class BatchJob:
 
     # -- plan ----------------------------------------------------------------------------------
 
-    def plan(self) -> bool:
+    def plan(self, workers: int | None = None, progress: Progress | None = None) -> bool:
         """Check all rows and write the job, unless it is there already.
+
+        Parameters
+        ----------
+        workers : int, optional
+            Processes that check; none checks in this one.
+        progress : callable, optional
+            Told how far it is, as :class:`PlanProgress` tells it.
 
         Returns
         -------
@@ -337,7 +348,7 @@ class BatchJob:
         file = Path(str(self.address.database)) if isinstance(self.address, URL) else None
         fresh = file is not None and not file.exists()
         try:
-            return self._planned()
+            return self._planned(workers, progress)
         except BaseException:
             if file is not None and fresh:  # nothing is kept of a job that could not be written
                 self.close()
@@ -345,11 +356,11 @@ class BatchJob:
                     place.unlink(missing_ok=True)
             raise
 
-    def _planned(self) -> bool:
+    def _planned(self, workers: int | None, progress: Progress | None) -> bool:
         if self._is_planned():
             self._reopen()
             return True
-        with self._checked() as rows:
+        with self._checked(workers, progress) as rows:
             job = {
                 "id": self.id,
                 "basis": self.basis,
@@ -396,12 +407,12 @@ class BatchJob:
         for count, row in enumerate(self.questioner.rows(), start=1):
             if row.key is not None or time.monotonic() > end:
                 return
-            if count <= self.numbers.shown_faults:
+            if count <= self.numbers.plan.shown_faults:
                 first.append(row)
         self._refuse(first, count)
 
     @contextmanager
-    def _checked(self) -> Iterator[Iterator[dict[str, Any]]]:
+    def _checked(self, workers: int | None = None, progress: Progress | None = None) -> Iterator[Iterator[Any]]:
         """Check all rows, and give them as they are kept.
 
         Raises
@@ -409,23 +420,28 @@ class BatchJob:
         InputError
             No row asks a question.
         """
+        tell = PlanProgress(progress, self.numbers.plan.pause, self.table)
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
-        with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
-            asked, first, groups = 0, list[ReadRow](), RowGroups(self.numbers.groups)
-            for count, row in enumerate(self.questioner.rows(), start=1):
-                if row.key is not None and row.question is not None:
+        with (
+            tempfile.TemporaryFile(prefix="clutchsynth-") as checked,
+            closing(RowGroups(self.numbers.groups)) as groups,
+        ):
+            asked, first, count = 0, list[ReadRow](), 0
+            rows = checked_rows(self.questioner, self.id, self.catalog_spec, workers, self.numbers.plan)
+            for count, row in enumerate(tell.each(rows, "checked"), start=1):
+                if row.key is not None:
                     asked += 1
                     if self._has_one_objective():
-                        groups.show(row.key, row.place, row.question)
-                if count <= self.numbers.shown_faults and not asked:
+                        groups.show(row.key, row.alike, row.place)
+                if count <= self.numbers.plan.shown_faults and not asked:
                     first.append(row)
-                pickle.dump((self._recorded(row), row.place), checked)
+                pickle.dump((self._recorded(row), row.alike, row.place), checked)
             if not asked:
-                self._refuse(first, count if first else 0)
+                self._refuse(first, count)
             company = _Company(groups, WarmStarts(self.numbers.warm_starts))
-            for record, where in _read_again(checked, count):
-                company.show(record, where)
-            yield (company.placed(record, where) for record, where in _read_again(checked, count))
+            for waiting in tell.each(_read_again(checked, count), "grouped"):
+                company.show(*waiting)
+            yield tell.each((company.placed(*waiting) for waiting in _read_again(checked, count)), "written")
 
     def _rows_per_unit(self) -> int:
         return self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit
@@ -491,14 +507,7 @@ class BatchJob:
         return files if isinstance(self.catalog_spec, Mapping) and set(files) == set(self.catalog_spec) else "memory"
 
     def _recorded(self, row: ReadRow) -> dict[str, Any]:
-        if row.faults:
-            self.bad += 1
-            for fault in row.faults:
-                kind = (fault.column, fault.value, fault.expected)
-                if kind in self.faults or len(self.faults) < self.numbers.shown_faults:
-                    self.faults.setdefault(kind, []).append(fault.line)
-        if row.unused:
-            self.unused.setdefault(row.family, set()).update(row.unused)
+        self.remarks.add(row)
         question = None
         if row.question is not None:
             question = {
@@ -531,7 +540,7 @@ class BatchJob:
     ) -> BatchResult:
         """Plan, work off and write the job, as ``batch`` does; ``keep`` lives as long as the result."""
         with closing(self), claimed(self.folder, self.id):
-            self.plan()
+            self.plan(workers)
             stopped = self.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
             counts = self.write()
         own = self.questioner.own
@@ -604,7 +613,7 @@ def work_off(
     return stopped
 
 
-def _read_again(file: IO[bytes], count: int) -> Iterator[tuple[dict[str, Any], tuple[float, ...]]]:
+def _read_again(file: IO[bytes], count: int) -> Iterator[tuple[dict[str, Any], str, tuple[float, ...]]]:
     """Yield the rows that wait in a file, from the first."""
     file.seek(0)
     for _ in range(count):
@@ -625,18 +634,18 @@ class _Company:
     def __init__(self, groups: RowGroups, school: WarmStarts) -> None:
         self._groups, self._school = groups, school
 
-    def show(self, record: Mapping[str, Any], where: tuple[float, ...]) -> None:
+    def show(self, record: Mapping[str, Any], alike: str, where: tuple[float, ...]) -> None:
         """Show a row: whoever is in no group may teach."""
         question = record["question"]
-        if question is not None and self._groups.member(question["key"]) is None:
+        if question is not None and self._groups.member(question["key"], alike) is None:
             self._school.show(question["structure"], question["key"], where, question["content"])
 
-    def placed(self, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
+    def placed(self, record: dict[str, Any], alike: str, where: tuple[float, ...]) -> dict[str, Any]:
         """Return a row as it is kept: with the group that it is in, or the question whose experience helps it."""
         question = record["question"]
         if question is None:
             return record
-        member = self._groups.member(question["key"])
+        member = self._groups.member(question["key"], alike)
         asked: Mapping[str, Any]
         if member is not None:
             position, asked = member.position(), member.asked(question["content"])

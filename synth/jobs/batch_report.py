@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from synth.analysis.calculation import calculation_of
 from synth.analysis.drawing import drawings_of
 from synth.analysis.evaluate import evaluate_in_si
+from synth.analysis.reporting import NO_REPORTS, WrittenReport, write_report
 from synth.csv_style import unstyled
-from synth.errors import InputError
+from synth.errors import ExtraNeededError, InputError
 from synth.feasibility import Status
 from synth.files import read_bytes, read_json
 from synth.jobs.batch_folder import job_of_folder, job_written, opened_batch
@@ -23,7 +24,7 @@ from synth.jobs.store import Answered, Store
 from synth.jobs.views import row_at
 from synth.margins import MARGINS
 from synth.model.registry import load
-from synth.output_folder import BATCH, check_kind, save_files
+from synth.output_folder import BATCH, check_kind
 from synth.plain_text import as_meant
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
@@ -35,6 +36,7 @@ from synth.results.drawings import report as report_named
 from synth.results.provenance import installed_versions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
+from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
     from synth.jobs.models import Job
@@ -89,20 +91,13 @@ class BatchReportOptions:
         }
 
 
-def report_batch(
-    source: Path, folder: Path, how: BatchReportOptions, database: str | None = None
-) -> tuple[Path, list[str], list[str], bool]:
+def report_batch(source: Path, folder: Path, how: BatchReportOptions, database: str | None = None) -> WrittenReport:
     """Write the report of the batch that stands in a folder.
-
-    Returns
-    -------
-    tuple
-        The folder, the names of the files, what else is to be told, and whether some row has designs.
 
     Raises
     ------
     InputError
-        There is no such batch or row, something asked is wrong, or an extra is not installed; then nothing is written.
+        There is no such batch or row, or something asked is wrong; then nothing is written.
     """
     written = job_written(source)
     with opened_batch(source, database) as store:
@@ -112,7 +107,7 @@ def report_batch(
 
 def report_result(
     source: Path, folder: Path, how: BatchReportOptions, database: Any, job: str, tables: Any = None, own: Any = None
-) -> tuple[Path, list[str], list[str], bool]:
+) -> WrittenReport:
     """Write the report of a batch that was asked from Python; ``tables`` and ``own`` are those that it was given.
 
     Else, returns and raises as :func:`report_batch`.
@@ -124,8 +119,8 @@ def report_result(
 
 def batch_report_files(
     store: Store, job: Job, how: BatchReportOptions, tables: Any = None, own: Any = None, beside: Path | None = None
-) -> tuple[dict[str, str | bytes], list[str], bool]:
-    """Return the files of the report of a batch, what else is to be told, and whether some row has designs.
+) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
+    """Return the files of the report of a batch, what else is to be told, whether some row has designs, what lacks.
 
     Parameters
     ----------
@@ -141,22 +136,21 @@ def batch_report_files(
     """
     make = report_named("batch_files")
     if make is None:
-        raise InputError("report", None, "the package reports, which clutchsynth is installed with")
+        raise InputError("report", None, NO_REPORTS)
     record, notes = _BatchReader(store, job, tables, own).record(how.row, beside)
-    files, told = make({"batch": record, **how.asked()})
-    return dict(files), [*notes, *told], any(row.designs for row in record.rows)
+    files, told, lacking = make({"batch": record, **how.asked()})
+    return dict(files), [*notes, *told], any(row.designs for row in record.rows), tuple(lacking)
 
 
 def _written(
     store: Store, job: Job, source: Path, folder: Path, how: BatchReportOptions, tables: Any, own: Any
-) -> tuple[Path, list[str], list[str], bool]:
+) -> WrittenReport:
     check_kind(folder, BATCH)
     there = job_written(folder)
     if there not in (None, job.id):
         raise InputError("output", str(folder), "another folder: this one holds another batch")
-    files, notes, found = batch_report_files(store, job, how, tables, own, source)
-    save_files(folder, files)
-    return folder, list(files), notes, found
+    files, notes, found, lacking = batch_report_files(store, job, how, tables, own, source)
+    return write_report(folder, files, notes, found, lacking)
 
 
 def _tables_of(job: Job, given: Any) -> Any:
@@ -313,7 +307,7 @@ class _BatchReader:
             if abs(design.objectives[name] - value) > MARGINS.same * max(abs(value), 1e-300):
                 where = f"line {row.line}: {name}"
                 raise InputError(
-                    where, design.objectives[name], f"{value:.6g}, as the batch has found with its program"
+                    where, design.objectives[name], f"{typed_number(value)}, as the batch has found with its program"
                 )
         known = dict(zip(RANKING, cells, strict=False))
         return replace(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import json
+import shutil
 import sqlite3
 import time
 from contextlib import suppress
@@ -22,9 +23,13 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, StoreSettings
 from synth.jobs.models import VERSION_TABLE
+from synth.operating_system import private_file, private_folder
+from synth.plain_text import one_line
 
 HEAD = "2"  # the last of the migrations
 WHOLE = "a job database that is whole"
+BESIDE = ("-wal", "-shm")  # endings of what SQLite keeps beside a file
+DISK_FULL = "53100"  # state that PostgreSQL tells where it has no room
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
 
 
@@ -36,6 +41,43 @@ def encoded(value: Any) -> str:
 def digest(value: Any) -> str:
     """Return the SHA-256 of a value that JSON can hold."""
     return hashlib.sha256(encoded(value).encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def way_back(file: str) -> str:
+    """Return how a SQLite file is replaced by its backup."""
+    old = ", ".join(f"{file}{ending}" for ending in ("", *BESIDE))
+    return f"to go back to a backup, end all that uses it, move {old} away, and copy the backup to {file}"
+
+
+class DamagedError(InputError):
+    """A SQLite file that is no job database, or is damaged; it says the way back.
+
+    Parameters
+    ----------
+    file, reason : str
+    """
+
+    def __init__(self, file: str, reason: str) -> None:
+        super().__init__("--database", file, f"{WHOLE} ({reason}); {way_back(file)}")
+        self.reason = reason
+
+    def __reduce__(self) -> tuple[type[DamagedError], tuple[str, str]]:  # type: ignore[override]
+        """Pickle by what is damaged, and how."""
+        return type(self), (str(self.value), self.reason)
+
+
+def refuse_damaged(engine: sa.Engine) -> None:
+    """Refuse a SQLite file of which pages are damaged.
+
+    Raises
+    ------
+    DamagedError
+    """
+    if engine.dialect.name == "sqlite":
+        with engine.connect() as connection:
+            told = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
+        if told != "ok":
+            raise DamagedError(str(engine.url.database), one_line(told))
 
 
 # ---- opening --------------------------------------------------------------------------------------------------------
@@ -119,7 +161,7 @@ def _tell_fault(context: sa.engine.ExceptionContext) -> None:
     if primary in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
         raise OSError(errno.ENOSPC if primary == sqlite3.SQLITE_FULL else errno.EIO, reason, file) from error
     if primary in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB) or reason.startswith("no such "):
-        raise InputError("--database", file, f"{WHOLE} ({reason})") from error
+        raise DamagedError(file, reason) from error
 
 
 def _prepare_sqlite(connection: Any, patience: float) -> None:
@@ -200,6 +242,7 @@ def _keep_copy(engine: sa.Engine, chain: set[str]) -> None:
         return
     copy = f"{engine.url.database}.v{known}"
     if not Path(copy).exists():
+        private_file(Path(copy))
         with engine.connect() as connection:
             connection.exec_driver_sql("VACUUM INTO ?", (copy,))
 
@@ -229,7 +272,10 @@ def _find_file(file: Path, create: bool) -> None:
         raise InputError("--database", str(file), "a job database that exists")
     if file.exists() and not file.is_file():
         raise InputError("--database", str(file), "a job database; this is no regular file")
-    file.parent.mkdir(parents=True, exist_ok=True)
+    private_folder(file.parent)
+    for name in (file, *(file.with_name(f"{file.name}{ending}") for ending in BESIDE)):
+        if name == file or name.exists():
+            private_file(name)
 
 
 # ---- the database --------------------------------------------------------------------------------------------------
@@ -274,6 +320,23 @@ class Database:
     def version(self) -> str | None:
         """Return of which version the tables are, as the database says now; None where there are none."""
         return version_of(self.engine)
+
+    def probe(self) -> None:
+        """Write what is there already.
+
+        Raises
+        ------
+        OSError, DBAPIError
+            Nothing can be written.
+        """
+        with self.engine.begin() as connection:
+            connection.execute(sa.text(f"UPDATE {VERSION_TABLE} SET version_num = version_num"))
+
+    def free_space(self) -> int | None:
+        """Return how many bytes are free where a SQLite file is; None of a server, which looks after its own."""
+        if self.engine.dialect.name != "sqlite":
+            return None
+        return shutil.disk_usage(Path(str(self.engine.url.database)).absolute().parent).free
 
     def shrink(self, most: int) -> None:
         """Give pages of a SQLite file that hold nothing any more back to the disk; older files keep theirs.

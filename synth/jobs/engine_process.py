@@ -23,7 +23,8 @@ from synth.errors import InputError, where_raised
 from synth.jobs.engine_tasks import task_of
 from synth.jobs.job_settings import JOBS, EngineSettings
 from synth.jobs.served_process import begin_to_serve
-from synth.operating_system import bound_memory, give_way, resident
+from synth.operating_system import bound_memory, give_way, processor_time, resident
+from synth.text.numbers import typed_number
 
 READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"
 
@@ -107,10 +108,10 @@ class EngineProcess:
         """Tell whether it should be replaced before it gets more work: caches grow."""
         return self.calls >= self.settings.calls or resident(self.pid) > self.settings.worn
 
-    def warm(self, timeout: float) -> bool:
-        """Wait until the process has imported what it needs; tell whether it has."""
+    def warm(self, limit: float) -> bool:
+        """Wait until the process has imported what it needs; tell whether it has, in so many s of a processor."""
         if not self.code:
-            message = self.hear(timeout)
+            message = self._hear_within(_Budget(self, limit))
             if message is not None and message.kind == READY:
                 self.code = str(message.content)
         return bool(self.code)
@@ -144,34 +145,41 @@ class EngineProcess:
         except (EOFError, OSError) as error:
             raise EngineCrashedError(self.ended()) from error
 
-    def call(self, task: str, payload: Any, deadline: float) -> Any:
+    def _hear_within(self, budget: _Budget) -> Message | None:
+        """Message that the process sends next; None where its budget is spent before."""
+        while (message := self.hear(self.settings.look)) is None:
+            if budget.is_spent():
+                return None
+        return message
+
+    def call(self, task: str, payload: Any, limit: float) -> Any:
         """Ask, and wait for the answer.
 
         Parameters
         ----------
         task : str
         payload : object
-        deadline : float
-            In s.
+        limit : float
+            In s of a processor: a busy machine ends nobody's work.
 
         Raises
         ------
         InputError
             As the task has raised it.
         EngineTimeoutError
-            It takes longer; the process is of no use any more.
+            It takes more; the process is of no use any more.
         EngineCrashedError
             The process has ended.
         EngineFailedError
             The work has failed by an error of a program.
         """
+        budget = _Budget(self, limit)
         self.ask(task, payload)
-        end = time.monotonic() + deadline
         while True:
-            message = self.hear(max(end - time.monotonic(), 0.0))
+            message = self._hear_within(budget)
             if message is None:
                 self.end()
-                raise EngineTimeoutError(f"{task}: more than {deadline:g} s")
+                raise EngineTimeoutError(f"{task}: more than {typed_number(limit)} s of a processor")
             if message.kind != TOLD:
                 return answer_of(message)
 
@@ -191,6 +199,19 @@ class EngineProcess:
         self._process.kill()
         self._near.close()
         self._process.join(timeout=5.0)
+
+
+class _Budget:
+    """Processor time that a process may use from now on; on the clock it has longer, unless it is stuck."""
+
+    def __init__(self, engine: EngineProcess, seconds: float) -> None:
+        self._pid = engine.pid
+        self._used = processor_time(engine.pid) + seconds
+        self._end = time.monotonic() + engine.settings.stuck * seconds
+
+    def is_spent(self) -> bool:
+        """Whether the time is used up."""
+        return processor_time(self._pid) >= self._used or time.monotonic() >= self._end
 
 
 def answer_of(message: Message) -> Any:
@@ -283,13 +304,15 @@ class Engines:
     count : int
         Processes.
     settings : EngineSettings, optional
-    lazy : bool
-        Whether each is started when it is needed first, which then takes as long as it takes to warm up.
+    at_once : int, optional
+        Those that are started at once, by default all. Each other one is when it is needed first, which then takes as
+        long as it takes to warm up.
     """
 
-    def __init__(self, count: int, settings: EngineSettings = JOBS.engine, *, lazy: bool = False) -> None:
-        self.pool = EnginePool(0 if lazy else count, settings)
-        self._later = count if lazy else 0
+    def __init__(self, count: int, settings: EngineSettings = JOBS.engine, *, at_once: int | None = None) -> None:
+        begun = count if at_once is None else min(at_once, count)
+        self.pool = EnginePool(begun, settings)
+        self._later = count - begun
         self._guard = threading.Lock()
 
     def _add_late(self) -> None:
@@ -300,7 +323,7 @@ class Engines:
             self._later -= 1
         self.pool.add()
 
-    def call(self, task: str, payload: Any, deadline: float) -> Any:
+    def call(self, task: str, payload: Any, limit: float) -> Any:
         """Have a task done; as :meth:`EngineProcess.call`.
 
         Raises
@@ -309,15 +332,16 @@ class Engines:
             As there; a timeout, too, where no process is free in time.
         """
         self._add_late()
-        engine = self.pool.take(deadline)
+        engine = self.pool.take(limit)
+        self._add_late()  # whoever comes next meets one that has begun already
         if engine is None:
             raise EngineTimeoutError(f"{task}: no process is free")
         usable = False
         try:
-            # A process that is just starting is waited for longer: nothing is wrong with the question.
+            # The time of a process that is just starting is its own: nothing is wrong with the question.
             if not engine.warm(self.pool.settings.start):
                 raise EngineTimeoutError(f"{task}: the process is not ready")
-            answer = engine.call(task, payload, deadline)
+            answer = engine.call(task, payload, limit)
             usable = True
         except (InputError, EngineFailedError):
             usable = True

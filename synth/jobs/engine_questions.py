@@ -13,8 +13,10 @@ from synth.jobs.kinds.asked import catalogs_of
 from synth.jobs.kinds.contract import Record
 from synth.jobs.kinds.files import UnknownFileError, files_to_have
 from synth.jobs.kinds.files import render as rendered
+from synth.kernels.loading import native_code
+from synth.model.registry import families as registered
 from synth.model.registry import load
-from synth.results.provenance import code_digest, native_code, problem_digest
+from synth.results.provenance import code_digest, problem_digest
 
 
 def families(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
@@ -24,8 +26,7 @@ def families(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 def declaration(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """Return what a family declares, and the digest of the code that says so; None for a family that is not there."""
-    known = {family["name"] for family in small.families()}
-    if payload["family"] not in known:
+    if payload["family"] not in registered():
         return {"declaration": None, "code": code_digest()}
     return {"declaration": small.declaration(payload["family"], payload["options"]), "code": code_digest()}
 

@@ -20,7 +20,7 @@ FAMILIES_TASK, DECLARATION_TASK, EXAMPLES_TASK = "families", "declaration", "exa
 CHECK_TASK, EVALUATE_TASK, CHANGED_TASK = "check", "evaluate", "changed"
 FILES_TASK, RENDER_TASK, DESIGNS_TASK = "files", "render", "designs"
 UPLOAD_TASK, TABLE_TEXT_TASK, PART_TABLE_TASK = "upload", "table_text", "part_table"
-TABLES_TASK, TABLE_TASK = "tables", "table"
+TABLES_TASK = "tables"
 TASKS: Mapping[str, str] = MappingProxyType(
     {
         ROWS_TASK: "synth.jobs.engine_work:rows",
@@ -42,7 +42,6 @@ TASKS: Mapping[str, str] = MappingProxyType(
         TABLE_TEXT_TASK: "synth.jobs.kinds.brought:text_of_file",
         PART_TABLE_TASK: "synth.jobs.kinds.brought:part_table",
         TABLES_TASK: "synth.jobs.kinds.shipped:tables",
-        TABLE_TASK: "synth.jobs.kinds.shipped:table",
     }
 )
 

@@ -11,7 +11,7 @@ from synth.jobs.kinds import kind
 from synth.jobs.kinds.asked import catalogs_of
 from synth.jobs.kinds.contract import Sources
 from synth.jobs.solve import solve_unit
-from synth.model.registry import families, load
+from synth.model.registry import every_family
 from synth.results.provenance import computing_digest, hash_of, problem_digest
 
 
@@ -24,11 +24,11 @@ def warm_up() -> str:
 
 
 def program_fingerprint() -> str:
-    """Return one hash of everything that decides the digits of an answer: code, compiled or not, processor, families.
+    """One hash of everything that decides the digits of an answer: code, with kernels or without, processor, families.
 
     Units of one job are only worked at by programs that have the same.
     """
-    registered = [type(load(name)) for name in families()]
+    registered = [type(problem) for problem in every_family().values()]
     return hash_of([computing_digest(), problem_digest(registered)])
 
 
@@ -60,7 +60,7 @@ def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     try:
         posed = module.read(request, sources)
     except InputError as fault:
-        if not chosen.checked:
+        if not chosen.checked or not isinstance(request, Mapping):
             raise
         from synth.jobs.kinds.small import all_faults
 

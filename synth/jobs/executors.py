@@ -5,13 +5,19 @@ All are executors of ``concurrent.futures`` with a number of ``slots``. They are
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import multiprocessing
 import os
+import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
+from functools import cache
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
@@ -22,6 +28,7 @@ from synth.jobs.served_process import begin_to_serve
 from synth.jobs.signs import share
 
 LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
+NOISY = ("distributed", "dask", "tornado", "asyncio", "bokeh")  # loggers
 
 
 class Inline(Executor):
@@ -154,16 +161,24 @@ class Cluster(Executor):
         except ImportError:
             wanted = "the extra for clusters: pip install 'clutchsynth[cluster]'"
             raise InputError("--scheduler", address, wanted) from None
-        self._distributed = distributed
         self._address, self._say, self._settings = address, say, settings
+        self._client_type = _quiet_client(distributed.Client)
+        self._is_idle = False  # nobody works there, and that was said
         try:
             self._connect()
-        except (OSError, ValueError) as error:
+        except Exception as error:  # whatever comes of an address of another kind, or of another server there
             wanted = f"the address of a Dask scheduler that answers, such as tcp://host:8786 ({type(error).__name__})"
             raise InputError("--scheduler", address, wanted) from error
 
     def _connect(self) -> None:
-        self._client = self._distributed.Client(self._address, timeout=self._settings.answer, set_as_default=False)
+        import dask
+
+        answer = self._settings.answer
+        with ThreadPoolExecutor(1) as apart:  # a loop of its own: there may be one at work here
+            apart.submit(asyncio.run, _must_be_scheduler(self._address, answer)).result()
+        with dask.config.set({"distributed.comm.timeouts.connect": answer}), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of versions: what matters of them is checked with every unit
+            self._client = self._client_type(self._address, timeout=answer, set_as_default=False)
         self._executor = self._client.get_executor(pure=False)
         self._threads, self._counted = 0, float("-inf")
 
@@ -176,6 +191,9 @@ class Cluster(Executor):
             except LOST:
                 self._threads = 0
             self._counted = time.monotonic()
+            if self._threads == 0 and not self._is_idle:
+                self._say(f"the scheduler at {self._address} has no workers; waiting for them")
+            self._is_idle = self._threads == 0
         return max(2 * self._threads, 2)
 
     def alive(self) -> bool:
@@ -191,6 +209,9 @@ class Cluster(Executor):
             future = Future()
             future.cancel()
             future.set_running_or_notify_cancel()
+        except Exception as error:  # what cannot be sent fails as a unit
+            future = Future()
+            future.set_exception(error)
         return future
 
     def reconnect(self, stopped: Callable[[], bool]) -> bool:
@@ -207,7 +228,7 @@ class Cluster(Executor):
         while time.monotonic() < deadline and not stopped():
             try:
                 self._connect()
-            except (OSError, ValueError):
+            except Exception:  # a scheduler that is just ending, or beginning, may answer anything
                 time.sleep(self._settings.retry)
                 continue
             self._say("the scheduler is back; what it had not finished is asked for again")
@@ -215,14 +236,58 @@ class Cluster(Executor):
         return False
 
     def _close(self) -> None:
-        try:
+        with suppress(Exception):  # it was closed by what happened to the scheduler
             self._client.close(timeout=1)
-        except LOST:
-            return  # it was closed by what happened to the scheduler
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Let go of the cluster; it goes on without us."""
         self._close()
+
+
+async def _must_be_scheduler(address: str, seconds: float) -> None:
+    """Ask who answers at an address; a client would wait for ever for a server that says nothing.
+
+    Raises
+    ------
+    Exception
+        Of any kind, where nobody answers in time or somebody else does.
+    """
+    from distributed.core import rpc
+
+    async def answered() -> str:
+        async with rpc(address) as far:
+            return str((await far.identity())["type"])
+
+    if await asyncio.wait_for(answered(), seconds) != "Scheduler":
+        raise ValueError(f"no scheduler at {address}")
+
+
+@cache
+def _quiet_client(client: type[Any]) -> type[Any]:
+    """Return a client of Dask that keeps its troubles to itself: what they mean is told in sentences of ours."""
+    # It sends tracebacks to standard error by handlers of its own, and by that of last resort; handlers that others
+    # have set up hear of them as before.
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] in NOISY]
+    for name in {*NOISY, *names}:
+        logger = logging.getLogger(name)
+        for handler in list(logger.handlers):
+            if isinstance(handler, logging.StreamHandler) and handler.stream is sys.stderr:
+                logger.removeHandler(handler)
+        logger.addHandler(logging.NullHandler())
+
+    class QuietClient(client):  # type: ignore[misc]
+        """Ends without a word where it was never connected."""
+
+        def __del__(self) -> None:
+            with suppress(Exception):
+                super().__del__()
+
+    return QuietClient
+
+
+def is_foreign(error: BaseException) -> bool:
+    """Tell whether a scheduler or worker could not read what it was sent, as its program is another one."""
+    return isinstance(error, ImportError) or (isinstance(error, RuntimeError) and "deserializ" in str(error))
 
 
 def is_lost(future: Future[Any]) -> bool:

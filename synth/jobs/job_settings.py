@@ -113,13 +113,63 @@ class GroupSettings:
     least : int
         Rows that ask alike, from which on they are: 32 at once take a third of what they take alone, 4 hardly less;
         rows of smaller tables are answered as ``run`` answers them.
+    units : int
+        Groups that a job is divided into at least, as far as they hold ``smallest`` rows: enough for many workers, and
+        for progress that moves.
+    smallest : int
+        Rows below which no group is made smaller for the sake of ``units``: 200 rows took 7 s in one group, 9 s in
+        groups of 32, 12 s of 16, 23 s of 8 and 44 s of 4.
     most : int
         Rows of a group: from 128 to 1 024 a row costs the same; smaller groups are sooner done, shared out more evenly,
         and less is lost with one.
+    cache : int
+        In kB, of what waits to be grouped, that is kept in memory.
+    portion : int
+        Rows that are divided in memory; of more, halves are written to files before.
     """
 
     least: int = 32
+    units: int = 64
+    smallest: int = 16
     most: int = 512
+    cache: int = 16_384
+    portion: int = 65_536
+
+    def size(self, rows: int) -> int:
+        """Most rows of a group in a job of so many rows: a power of two, so that a row more rarely changes it.
+
+        Examples
+        --------
+        >>> [GroupSettings().size(rows) for rows in (200, 1024, 2047, 2048, 10_000, 1_000_000)]
+        [16, 16, 16, 32, 128, 512]
+        """
+        each = max(rows // self.units, self.smallest, 1)
+        return min(1 << each.bit_length() - 1, self.most)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanSettings:
+    """How the rows of a table are checked.
+
+    Parameters
+    ----------
+    few : int
+        Rows that are checked without other processes, as those take longer to begin: a row takes 0.5 to 1 ms.
+    lines : int
+        Rows that a process is given at a time.
+    shown_faults : int
+        Kinds of faults in a table, and its first rows, that are remembered for the screen.
+    shown_lines : int
+        Lines of one kind that are.
+    pause : float
+        In s, between two reports of progress, at least.
+    """
+
+    few: int = 2000
+    lines: int = 500
+    shown_faults: int = 20
+    shown_lines: int = 8
+    pause: float = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +189,12 @@ class EngineSettings:
     calls : int
         After which it is replaced.
     start : float
-        In s, that it may take until it is warm; on a machine that computes already, imports take long.
+        In s of a processor, that it may take until it is warm.
+    stuck : float
+        Times a limit of processor time that may pass on the clock: on a busy machine a process waits for its turn, one
+        that waits for ever is stuck.
+    look : float
+        In s, between two looks at how much processor time it has had.
     tell : float
         In s, between two reports of how far it is.
     """
@@ -149,8 +204,14 @@ class EngineSettings:
     addresses: int = 4 * 1024**3
     worn: int = 1024**3
     calls: int = 500
-    start: float = 120.0
+    start: float = 60.0
+    stuck: float = 10.0
+    look: float = 0.2
     tell: float = 0.25
+
+
+# Somebody waits for the answer: no search of a worker comes before it.
+INTERACTIVE = EngineSettings(nice=0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,14 +270,13 @@ class JobSettings:
     cluster : ClusterSettings
     warm_starts : WarmStartSettings
     groups : GroupSettings
+    plan : PlanSettings
     engine : EngineSettings
     worker : WorkerSettings
     rows_per_unit : int
         Rows of one best design that are a unit of work, each answered alone.
     fronts_per_unit : int
         Rows of a whole front that are.
-    shown_faults : int
-        Kinds of faults in a table, and its first rows, that are remembered for the screen.
     """
 
     store: StoreSettings = field(default_factory=StoreSettings)
@@ -224,11 +284,11 @@ class JobSettings:
     cluster: ClusterSettings = field(default_factory=ClusterSettings)
     warm_starts: WarmStartSettings = field(default_factory=WarmStartSettings)
     groups: GroupSettings = field(default_factory=GroupSettings)
+    plan: PlanSettings = field(default_factory=PlanSettings)
     engine: EngineSettings = field(default_factory=EngineSettings)
     worker: WorkerSettings = field(default_factory=WorkerSettings)
     rows_per_unit: int = 4
     fronts_per_unit: int = 1
-    shown_faults: int = 20
 
 
 JOBS = JobSettings()

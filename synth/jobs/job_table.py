@@ -8,7 +8,7 @@ from __future__ import annotations
 import gzip
 import secrets
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -36,6 +36,7 @@ BATCH, SIZE_RANGE = "batch", "size_range"  # kinds that the store itself knows o
 LOCAL = 1  # the tenant of the command line, and of a service without tokens
 LETTERS = "0123456789abcdefghjkmnpqrstvwxyz"  # of ids: none that is read as another
 RUNNING_LIMIT, OPEN_LIMIT = "running", "open_jobs"  # of a tenant
+KEEP = "keep"  # what is kept with a job of how long it stays without being used, in s
 BODY = "body"  # what is kept with a job of the request that has made it
 
 
@@ -63,7 +64,7 @@ class NewJob:
     parent : str, optional
         The job that it follows from.
     seconds_limit, keep : float, optional
-        In s: how long it may be worked at, and how long it is kept.
+        In s: how long it may be worked at, and how long it is kept after it was used last.
     source : str
         Where it comes from, for people.
     kept : sequence of Record
@@ -231,7 +232,7 @@ class JobTable(Database):
             "idempotency": new.idempotency,
             "parent": new.parent,
             "request": dict(new.request),
-            "content": {**new.content, BODY: new.body},
+            "content": {**new.content, BODY: new.body, **({} if new.keep is None else {KEEP: new.keep})},
             "rows": 0,
             "seconds_limit": new.seconds_limit,
             "pinned": False,
@@ -360,7 +361,7 @@ class JobTable(Database):
             changed = connection.execute(
                 sa.update(Job)
                 .where(Job.id == job, Job.state.in_(before))
-                .values(state=state, updated=moment(), ended=moment())
+                .values(state=state, updated=moment(), ended=moment(), expires=_unused())
             )
             if changed.rowcount == 1:
                 tell_on(connection, job, kind, text, {"state": state})
@@ -377,6 +378,7 @@ class JobTable(Database):
                 error=None if ending.error is None else dict(ending.error),
                 updated=moment(),
                 ended=moment(),
+                expires=_unused(),
             )
         )
         if changed.rowcount != 1:
@@ -387,10 +389,27 @@ class JobTable(Database):
         tell_on(connection, job, ending.state, text, {"state": ending.state, "outcome": ending.outcome})
         return True
 
-    def delete(self, job: str) -> None:
-        """Remove a job with everything that belongs to it; whoever works at it stops."""
+    def delete(self, job: str) -> bool:
+        """Remove a job with everything that belongs to it; whoever works at it stops.
+
+        Returns
+        -------
+        bool
+            False where it is pinned, or there is none: then nothing is removed.
+        """
         with self.engine.begin() as connection:
-            connection.execute(sa.delete(Job).where(Job.id == job))
+            gone = connection.execute(sa.delete(Job).where(Job.id == job, Job.pinned.is_(False)))
+        return bool(gone.rowcount == 1)
+
+    def note_use(self, jobs: Collection[str], keep: float | None = None) -> None:
+        """Let the time begin anew for which some jobs are kept; ``keep`` is that of jobs of earlier versions."""
+        with self.engine.begin() as connection:
+            connection.execute(sa.update(Job).where(Job.id.in_(jobs)).values(expires=_unused(keep)))
+
+    def waits_for(self, job: str) -> str | None:
+        """Return an open job that needs the records of a job; None where there is none."""
+        with self.engine.connect() as connection:
+            return connection.scalar(sa.select(Job.id).where(_REFERRED == job, Job.state.in_(LIVE)).limit(1))
 
     # -- records -------------------------------------------------------------------------------
 
@@ -459,9 +478,17 @@ class JobTable(Database):
     # -- housekeeping --------------------------------------------------------------------------
 
     def prune(self, most: int = 100) -> int:
-        """Remove some of the jobs whose time is over, and files that nobody has used; return how many jobs."""
+        """Remove some of the jobs whose time is over, and files that nobody has used; return how many jobs.
+
+        What another job refers to, or follows from, stays with it: of a chain the last goes first.
+        """
+        named = sa.select(_REFERRED).where(_REFERRED.is_not(None))
+        followed = sa.select(Job.parent).where(Job.parent.is_not(None))
         over = (
-            sa.select(Job.id).where(Job.expires < moment(), Job.pinned.is_(False), Job.state.not_in(LIVE)).limit(most)
+            sa.select(Job.id)
+            .where(Job.expires < moment(), Job.pinned.is_(False), Job.state.not_in(LIVE))
+            .where(Job.id.not_in(named.union_all(followed)))
+            .limit(most)
         )
         with self.engine.begin() as connection:
             gone = list(connection.scalars(over))
@@ -482,6 +509,15 @@ class JobTable(Database):
                 "units": {state: int(count) for state, count in units},
                 "oldest": float(oldest or 0.0),
             }
+
+
+_REFERRED = Job.request["of"].as_string()  # the job whose records another one needs
+
+
+def _unused(keep: float | None = None) -> sa.ColumnElement[Any]:
+    """Return until when a job is kept that is used now; one that is kept without an end stays so."""
+    stays = moment() + sa.func.coalesce(Job.content[KEEP].as_float(), keep)
+    return sa.case((Job.expires.is_(None), None), else_=sa.func.coalesce(stays, Job.expires))
 
 
 def body_digest(body: Any) -> str:

@@ -13,9 +13,9 @@ import sqlalchemy as sa
 from sqlalchemy.exc import DBAPIError
 
 from synth.errors import InputError
-from synth.jobs.database import HEAD, WHOLE, Database, engine_for, version_of
+from synth.jobs.database import HEAD, WHOLE, DamagedError, Database, engine_for, version_of
 from synth.jobs.job_settings import JOBS
-from synth.operating_system import put_in_place
+from synth.operating_system import private_file, put_in_place
 
 SHOWN = 5  # faults of a damaged file that are told
 
@@ -33,6 +33,11 @@ class Finding:
         """Whether its tables are those that this version uses."""
         return self.version == HEAD
 
+    @property
+    def file(self) -> str:
+        """The file of a SQLite database, the name of one on a server."""
+        return str(sa.make_url(self.url).database)
+
 
 def examine(url: str) -> Finding:
     """Look a database over; nothing is changed.
@@ -48,6 +53,8 @@ def examine(url: str) -> Finding:
         if engine.dialect.name == "sqlite" and not Path(str(engine.url.database)).is_file():
             raise InputError("--database", shown, "a job database that exists")
         return Finding(shown, version_of(engine), _faults(engine))
+    except DamagedError as damaged:  # so much that it cannot even be looked through
+        return Finding(shown, None, (damaged.reason,))
     except (DBAPIError, OSError) as error:
         reason = str(getattr(error, "orig", error)).strip().split("\n")[0]
         raise InputError("--database", shown, f"{WHOLE} ({reason})") from error
@@ -93,11 +100,12 @@ def back_up(url: str, file: Path) -> None:
         raise InputError("FILE", str(file), "a file in a folder that is there")
     finding = examine(url)
     if finding.faults:
-        raise InputError("--database", finding.url, f"{WHOLE} ({finding.faults[0]})")
+        raise DamagedError(finding.file, finding.faults[0])
     engine = engine_for(url, JOBS.store.patience)
     half = file.with_name(f"{file.name}.part")
     half.unlink(missing_ok=True)  # left by a backup that was interrupted
     try:
+        private_file(half)
         (_copy_file if engine.dialect.name == "sqlite" else _dump)(engine, half)
         put_in_place(half, file)
     finally:

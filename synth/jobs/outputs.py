@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
@@ -14,9 +16,10 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.files import csv_writer, read_json
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
-from synth.output_folder import BATCH, BATCH_REPORTS, STOPPED, check_kind, claimed, holds, replaced, settle
+from synth.output_folder import BATCH, BATCH_REPORTS, STOPPED, Replacement, check_kind, claimed, holds, replaced, settle
 from synth.plain_text import words
 from synth.results.provenance import installed_versions
+from synth.text.numbers import typed_number
 
 TABLES = ("designs.csv", "rows.csv")
 BATCH_FORMAT = 1  # of batch.json
@@ -36,7 +39,7 @@ ROW_COLUMNS = (
     "explanation",
     "remarks",
 )
-MISSED = re.compile(r"nearest (?:makeable )?design found misses (.+?): ")  # in the explanation of a row
+MISSED = re.compile(r"(?:: |; )([^;:]+?) is [^;]+? where ")  # in the explanation of a row, behind "misses"
 TOLD = 3  # limits of a row that are named
 SAID = ("objectives", "searched", "choices", "parts")  # of a design in words
 SHORT = 12  # digits of a key that tell rows apart
@@ -74,13 +77,10 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
         beside = folder / f"{STOPPED}_{job[:8]}"
         target = folder if record.state == DONE or _job_in(folder) in (None, job) else beside
         with replaced(target) as new:
-            with new.open("designs.csv") as file:
+            with _styled(new, "designs.csv", csv) as file:
                 _write_designs(file, store, job, content)
-            with new.open("rows.csv") as file:
+            with _styled(new, "rows.csv", csv) as file:
                 counts = _write_rows(file, store, job, content)
-            if csv != ENGLISH:
-                for name in TABLES:
-                    new.rewrite(name, csv.text(new.staged(name).read_text(encoding="utf-8"), lists=(BEST,)))
             summary = {
                 "format": BATCH_FORMAT,
                 "job": job,
@@ -97,6 +97,18 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
             if target != beside:
                 new.drop(f"{beside.name}/{name}" for name in BATCH.owned)
     return counts, target
+
+
+@contextmanager
+def _styled(new: Replacement, name: str, csv: CsvStyle) -> Iterator[TextIO]:
+    """Give a file to write a table into; when the block ends the table stands there in a style."""
+    with new.open(name) as file:
+        if csv == ENGLISH:
+            yield file
+            return
+        with tempfile.TemporaryFile("w+", encoding="utf-8", newline="", prefix="clutchsynth-") as plain:
+            yield plain
+            csv.write(plain, file, lists=(BEST,))
 
 
 def _job_in(folder: Path) -> str | None:
@@ -252,11 +264,10 @@ def missed_limits(explanation: str) -> list[str]:
 
     Examples
     --------
-    >>> missed_limits("No combination is feasible. The nearest design found misses wear_life, mass: 9 kg where ...")
-    ['wear_life', 'mass']
+    >>> missed_limits("The nearest design found misses 2 limits: life is 3 h where ...; mass <= 5 kg is 9 kg where ...")
+    ['life', 'mass <= 5 kg']
     """
-    found = MISSED.search(explanation)
-    return found[1].split(", ") if found else []
+    return MISSED.findall(explanation.partition(" misses ")[2])
 
 
 def _reason(row: Answered) -> str:
@@ -289,7 +300,7 @@ def _said(heading: str, cell: str) -> str:
     unit = unit.removesuffix("]")
     if heading == name:
         return f"{name} {cell}"
-    return f"{name} {float(cell):.6g}{'' if unit in ('', '-') else f' {unit}'}"
+    return f"{name} {typed_number(float(cell))}{'' if unit in ('', '-') else f' {unit}'}"
 
 
 def _text(value: Any) -> str:

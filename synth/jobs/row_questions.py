@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from synth.question.spec import read_content
 from synth.units import check_number, parse_quantity, parse_unit, split_header
 
 CARRY, REQUIREMENTS = "carry", "requirements"
+REMEMBERED = 10_000  # questions that are not checked again
 DIGITS = re.compile(r"([0-9]+)")
 LETTER = re.compile(r"[^\W\d_]|[/%°]")  # then the cell has a unit of its own
 
@@ -68,7 +69,11 @@ class Fault:
 
 @dataclass(frozen=True)
 class ReadRow:
-    """A row that was read: its question, or its faults."""
+    """A row that was read: its question, or its faults.
+
+    ``structure`` and ``alike`` are shared by questions that differ in limits, parts and numbers, and in the numbers of
+    their requirements alone.
+    """
 
     line: int
     cells: tuple[str, ...]
@@ -76,6 +81,7 @@ class ReadRow:
     key: str | None
     question: Mapping[str, Any] | None
     structure: str
+    alike: str
     place: tuple[float, ...]
     unused: tuple[str, ...]
     faults: tuple[Fault, ...]
@@ -173,6 +179,8 @@ class Questioner:
         ``parts``, ``limits`` and ``fix`` that all rows share.
     catalogs : optional
         As for ``synthesize``.
+    named : set of str, optional
+        The families that rows name, where they are known.
 
     Raises
     ------
@@ -188,15 +196,17 @@ class Questioner:
         settings: Mapping[str, Any],
         common: Mapping[str, Mapping[str, Any]],
         catalogs: Any,
+        named: set[str] | None = None,
     ) -> None:
-        self.table, self.settings, self.common, self.catalogs = table, dict(settings), common, catalogs
+        self.table, self.mapping, self.settings = table, mapping, dict(settings)
+        self.common, self.catalogs = common, catalogs
         loaded = None if problem is None else load(problem)
         self.default = None if loaded is None else loaded.name
         self.own_options = {} if loaded is None else dict(loaded.options)
         # A problem of the user's own is known by its class; what options it has, its rows have.
         self.own = type(loaded) if loaded is not None and not isinstance(problem, str) else None
-        header = table.header()
-        self.named = self._families_named(header, mapping)
+        header = _header(table, mapping, self.own)
+        self.named = self._families_named(header, mapping) if named is None else named
         self.universe = Universe(self.named, self.own)
         self.columns = read_columns(table, mapping, self.universe)
         self.structural = {c.name: c for c in self.columns if c.name in STRUCTURE and not c.carried}
@@ -211,7 +221,7 @@ class Questioner:
             if column.unit is not None and any(column.name in options for options in self.universe.options.values()):
                 raise InputError(f"{table.name}, line 1", column.title, f"{column.name} without a unit")
         self._variants: dict[str, _Variant | InputError] = {}
-        self._checked: set[str] = set()
+        self._checked: set[str] = set()  # keys of questions, the latest
         self.carried = tuple(c for c in self.columns if c.carried or not self.universe.knows(c.name))
 
     def _families_named(self, header: tuple[str, ...], mapping: Mapping[str, str]) -> set[str]:
@@ -227,9 +237,10 @@ class Questioner:
     def rows(self) -> Iterator[ReadRow]:
         """Read and check the rows, one after the other."""
         for line, cells in self.table.lines():
-            yield self._row(line, cells)
+            yield self.row(line, cells)
 
-    def _row(self, line: int, cells: tuple[str, ...]) -> ReadRow:
+    def row(self, line: int, cells: tuple[str, ...]) -> ReadRow:
+        """Read and check one row."""
         family, structure = "", ""
         try:
             self._check_width(line, cells)
@@ -239,8 +250,9 @@ class Questioner:
             structure = digest([question["family"], question["options"], sorted(question["requirements"])])
             key = self._check(line, question)
         except _Wrong as wrong:
-            return ReadRow(line, cells, family, None, None, structure, (), (), tuple(wrong.faults))
-        return ReadRow(line, cells, family, key, question, structure, place(values), tuple(unused), ())
+            return ReadRow(line, cells, family, None, None, structure, "", (), (), tuple(wrong.faults))
+        where, alike = place(values), alikeness(question)
+        return ReadRow(line, cells, family, key, question, structure, alike, where, tuple(unused), ())
 
     def _check_width(self, line: int, cells: tuple[str, ...]) -> None:
         if len(cells) != len(self.columns):
@@ -432,12 +444,14 @@ class Questioner:
             key = digest(question)
             if key not in self._checked:
                 asked = {name: question[name] for name in (REQUIREMENTS, PARTS, LIMITS, FIX)}
-                grid = self.settings["grid"]
-                instance = Instance(Request(problem=problem, catalogs=catalogs, grid=grid, **asked))
+                asked |= {"objectives": self.settings["objectives"], "grid": self.settings["grid"]}
+                instance = Instance(Request(problem=problem, catalogs=catalogs, **asked))
                 instance.ranges.grids()
                 if given not in variant.checked:
                     chosen_objectives(instance.model, self.settings["objectives"])
                     variant.checked.add(given)
+                if len(self._checked) >= REMEMBERED:
+                    self._checked.clear()
                 self._checked.add(key)
         except InputError as error:
             raise _Wrong([self._located(line, error, titles)]) from None
@@ -458,12 +472,45 @@ class Questioner:
         return Fault(line, "", shown, error.expected)
 
 
+def _header(table: RowTable, mapping: Mapping[str, str], own: Any) -> tuple[str, ...]:
+    """Return the header of a table.
+
+    Raises
+    ------
+    InputError
+        Nothing in its first line is known, and another line is the header.
+    """
+    header, fault = tuple[str, ...](), None
+    try:
+        header = table.header()
+    except InputError as error:
+        fault = error
+    universe = Universe(set(), own)
+
+    def known(cells: Sequence[str]) -> int:
+        names = (mapping.get(title.strip(), title).partition("[")[0].strip() for title in cells)
+        return sum(universe.knows(name) for name in names if name)
+
+    if not known(header):
+        right = table.header_elsewhere(lambda cells: known(cells) > 1)
+        if right:
+            raise InputError(f"{table.name}, line 1", " ".join(header) or None, right)
+    if fault is not None:
+        raise fault
+    return header
+
+
 class _Wrong(Exception):
     """What is wrong with one row; never leaves this module."""
 
     def __init__(self, faults: list[Fault]) -> None:
         super().__init__("a row that asks no question")
         self.faults = faults
+
+
+def alikeness(question: Mapping[str, Any]) -> str:
+    """Digest that is shared by questions which differ in the numbers of their requirements alone."""
+    return digest({**question, REQUIREMENTS: sorted(question[REQUIREMENTS])})
 
 
 def canonical_position(cells: tuple[str, ...]) -> bytes:

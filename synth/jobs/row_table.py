@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError
-from synth.files import check_file, read_bytes
+from synth.errors import Described, InputError
+from synth.files import open_bytes, read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.plain_text import as_list, as_meant
-from synth.tables.delimited_text import DelimitedText, delimited_text
-from synth.tables.workbook import Sheet, cell_text, is_workbook, sheet_of, split_sheet
+from synth.tables.delimited_text import DelimitedText, delimited_file, delimited_text, first_lines
+from synth.tables.table_file import table_file
+from synth.tables.workbook import LOOKED_AT, Sheet, cell_text, header_first, is_workbook, sheet_of, table_elsewhere
 
 ROWS = "a CSV or .xlsx file"
 
@@ -30,10 +32,13 @@ class RowTable:
         How messages call it.
     source : Path or sequence
         A file, or header and cells that are in memory.
+    most : int or None
+        Lines that are read of a file, to look at its head; None for all.
     """
 
     name: str
     source: Path | tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]
+    most: int | None = None
 
     def header(self) -> tuple[str, ...]:
         """Return the cells of the first line.
@@ -48,21 +53,42 @@ class RowTable:
         raise InputError(self.name, "an empty file", "a header such as 'family,load_torque [N*m]' and rows below it")
 
     def lines(self) -> Iterator[tuple[int, tuple[str, ...]]]:
-        """Return the lines below the header that are not blank: number in the file, cells."""
-        records = self._records()
+        """Return the lines below the header that are not blank: number in the file, cells.
+
+        Raises
+        ------
+        InputError
+            A line cannot be read, or they are too many.
+        """
+        records, count = self._records(), 0
         width = len(_checked_header(self.name, next(records)[1]))
         for number, cells in records:
             if any(cell.strip() for cell in cells):
+                count += 1
+                if count > INPUT_LIMITS.rows:
+                    right = f"at most {INPUT_LIMITS.rows} rows; divide the table"
+                    raise InputError(f"{self.name}, line {number}", Described("more rows than that"), right)
                 spare = len(cells) > width and not any(cell.strip() for cell in cells[width:])
                 yield number, cells[:width] if spare else cells
+
+    def header_elsewhere(self, fits: Callable[[Sequence[str]], bool]) -> str:
+        """Return what is right where a header is not in the first line; nothing where no line near it is one."""
+        if isinstance(self.source, Path) and is_workbook(self.source):
+            return table_elsewhere(self.source, "rows", fits, self.name)
+        return next((header_first(k) for k, cells in islice(self._records(), LOOKED_AT) if fits(cells)), "")
+
+    def count(self) -> int:
+        """Rows that are not blank."""
+        return sum(1 for _ in self.lines())
 
     def digest(self) -> str:
         """Return the SHA-256 of the file, or of what is in memory."""
         if isinstance(self.source, Path):
-            file, sheet = split_sheet(self.source)
-            found = hashlib.sha256(read_bytes(file, "rows", ROWS))
-            if sheet:
-                found.update(f"#{sheet}".encode())
+            named = table_file(self.source)
+            with open_bytes(named.path, "rows", ROWS) as content:
+                found = hashlib.file_digest(content, "sha256")
+            if named.path != self.source:
+                found.update(self.source.name.removeprefix(named.path.name).encode())
             return found.hexdigest()
         return hashlib.sha256(repr(self.source).encode("utf-8", "surrogatepass")).hexdigest()
 
@@ -85,12 +111,16 @@ class RowTable:
     @cached_property
     def _sheet(self) -> Sheet:
         assert isinstance(self.source, Path)
-        return sheet_of(self.source, "rows", ROWS, name=self.name)
+        return sheet_of(self.source, "rows", ROWS, name=self.name, most=self.most, most_bytes=INPUT_LIMITS.workbook)
 
     @cached_property
     def _text(self) -> DelimitedText:
         assert isinstance(self.source, Path)
-        return delimited_text(read_bytes(self.source, "rows", ROWS), self.name)
+        named = table_file(self.source)
+        if self.most is None:
+            return delimited_file(partial(open_bytes, named.path, "rows", ROWS), self.name, named.encoding)
+        raw = read_bytes(named.path, "rows", ROWS)
+        return delimited_text(first_lines(raw, self.name, self.most, named.encoding), self.name)
 
 
 def read_table(table: Any) -> RowTable:
@@ -111,8 +141,8 @@ def read_table(table: Any) -> RowTable:
         return table
     if isinstance(table, (str, Path)):
         path = Path(table)
-        file, _ = split_sheet(path)
-        check_file(file, "rows", ROWS)
+        file = table_file(path).path
+        open_bytes(file, "rows", ROWS).close()
         if path.suffix.lower() == ".xls":
             raise InputError("rows", str(table), f"{ROWS}; save the old format .xls as one of these")
         return RowTable(file.name, path)

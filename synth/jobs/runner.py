@@ -15,7 +15,7 @@ from sqlalchemy.exc import OperationalError
 
 from synth.deadline import until
 from synth.errors import InputError
-from synth.jobs.executors import Cluster, Inline, Processes, is_lost
+from synth.jobs.executors import Cluster, Inline, Processes, is_foreign, is_lost
 from synth.jobs.job_queue import Claim
 from synth.jobs.job_settings import JOBS, RunnerSettings
 from synth.jobs.job_table import CANCELLED
@@ -151,8 +151,8 @@ class Runner:
             self.waiting.append(claim)
             return
         error = future.exception()
-        if isinstance(error, OtherCodeError):
-            right = "the same clutchsynth, compiler and kind of processor on all machines"
+        if isinstance(error, OtherCodeError) or (isinstance(self.executor, Cluster) and error and is_foreign(error)):
+            right = "the same clutchsynth, kernels and kind of processor on all machines, that of the scheduler too"
             raise InputError("--scheduler", "workers with other code", right)
         if error is not None:
             self._failed(claim, f"{type(error).__name__}: {error}")

@@ -60,7 +60,7 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
     if work["code"] != computing_digest():
         raise OtherCodeError(
-            "the worker has other code, another kind of processor, or no compiler where others have one"
+            "the worker has other code, another kind of processor, or no kernels where others have them"
         )
     shared = Shared(work["job"], work["catalogs"], work["own"])
     if is_group(work["questions"]):

@@ -18,7 +18,7 @@ from sqlalchemy.exc import IntegrityError
 
 from synth.jobs.database import digest
 from synth.jobs.job_queue import Claim, JobQueue, held_by
-from synth.jobs.job_table import BATCH, BODY, DONE, LOCAL, OPEN, ROWS, Ending, tell_on
+from synth.jobs.job_table import BATCH, BODY, DONE, KEEP, LOCAL, OPEN, ROWS, Ending, tell_on
 from synth.jobs.models import Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 from synth.jobs.solve import GROUP
 
@@ -143,7 +143,9 @@ class Store(JobQueue):
             if held.rowcount != 1:
                 return False
             asked = connection.execute(sa.select(Job.content).where(Job.id == job)).scalar_one()
-            planned = {**content, BODY: asked.get(BODY, "")}  # by which the same request is known when it comes again
+            # By which the same request is known when it comes again, and how long it is kept.
+            kept = {name: asked[name] for name in (BODY, KEEP) if name in asked}
+            planned = {**content, BODY: "", **kept}
             connection.execute(
                 sa.update(Job).where(Job.id == job).values(content=planned, basis=basis, updated=moment())
             )
@@ -226,22 +228,38 @@ class Store(JobQueue):
         )
 
     def _write_units(self, connection: sa.Connection, job: str, rows_per_unit: int) -> int:
+        count = 0
+        waiting: list[list[str]] = []
+        for unit in self._units_of(connection, job, rows_per_unit):
+            waiting.append(unit)
+            count += 1
+            if sum(map(len, waiting)) >= self.settings.chunk:
+                self._add_units(connection, job, waiting, 0)
+                waiting.clear()
+        if waiting:
+            self._add_units(connection, job, waiting, 0)
+        return count
+
+    def _units_of(self, connection: sa.Connection, job: str, rows_per_unit: int) -> Iterator[list[str]]:
+        """Yield the keys of each unit of what is not answered, some at a time."""
         order = (RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         answered = sa.select(Result.key).where(Result.job == job)
         group = RowQuestion.content[GROUP]
-        asked = connection.execute(
+        asked = (
             sa.select(RowQuestion.structure, RowQuestion.key, group["name"].as_string(), group["rows"].as_integer())
             .where(RowQuestion.job == job, RowQuestion.key.not_in(answered))
             .order_by(*order)
-        ).all()
-        units: list[list[str]] = []
-        for (_, _, rows), same in itertools.groupby(asked, key=lambda question: (question[0], *question[2:])):
+            .execution_options(stream_results=True, yield_per=self.settings.chunk)
+        )
+        for (_, _, rows), same in itertools.groupby(
+            connection.execute(asked), key=lambda question: (question[0], *question[2:])
+        ):
+            if rows is None:
+                yield from _chunks((question[1] for question in same), rows_per_unit)
+                continue
             keys = [question[1] for question in same]
             # What is left of a group that was answered before cannot be answered as the group was.
-            units += [keys] if len(keys) == rows else _chunks(keys, rows_per_unit)
-        for some in _chunks(units, self.settings.chunk):
-            self._add_units(connection, job, some, 0)
-        return len(units)
+            yield from [keys] if len(keys) == rows else _chunks(keys, rows_per_unit)
 
     @staticmethod
     def _add_units(connection: sa.Connection, job: str, units: Sequence[Sequence[str]], attempts: int) -> None:
@@ -353,10 +371,14 @@ class Store(JobQueue):
     def rows(self, job: str, canonical: bool) -> Iterator[Answered]:
         """Return the rows beside their answers, some at a time: in canonical order, or as in the table."""
         order = (Row.position, Row.line) if canonical else (Row.line,)
-        asked = answered_rows().where(Row.job == job).order_by(*order)
-        with self.engine.connect().execution_options(stream_results=True, yield_per=self.settings.chunk) as connection:
-            for row in connection.execute(asked):
-                yield Answered(*row)
+        # Lines alone are put in order: to sort rows with all that was found would take as much room again.
+        streamed = {"stream_results": True, "yield_per": self.settings.chunk}
+        asked = sa.select(Row.line).where(Row.job == job).order_by(*order).execution_options(**streamed)
+        with self.engine.connect() as connection:
+            for some in _chunks(connection.scalars(asked), self.settings.chunk):
+                answers = answered_rows().where(Row.job == job, Row.line.in_(some))
+                found = {row[0]: row for row in connection.execute(answers)}
+                yield from (Answered(*found[line]) for line in some)
 
     def questions(self, job: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
         """Return the questions of a job in canonical order: key, structure, content."""

@@ -10,10 +10,8 @@ from typing import Any
 from synth.declaration import Declaration
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
-from synth.model.registry import families, load
+from synth.model.registry import every_family, load, skipping_faulty_families
 from synth.question.catalogs import as_catalogs
-from synth.special import recorded
-from synth.tables.catalogs import Catalogs
 from synth.units import Unit, parse_unit
 
 FAMILY, OPTIONS, LIMITS, FIX, PARTS = "family", "options", "limits", "fix", "parts"
@@ -55,14 +53,6 @@ def words_of(declaration: Declaration, settings: Mapping[str, Any]) -> dict[str,
     return {name: word_of(declaration, name, settings) for name in settings if name not in own} | own
 
 
-def declared(problem: DesignProblem, catalogs: Catalogs) -> Declaration:
-    """Return what a problem declares with the options it has, and no optional requirement given."""
-    declaration = Declaration(problem.name, problem.options, frozenset(), catalogs)
-    with recorded():
-        problem.declare(declaration)
-    return declaration
-
-
 def all_words(
     problem: type[DesignProblem] | DesignProblem, every_option: bool
 ) -> tuple[dict[str, Word], dict[str, str]]:
@@ -75,7 +65,7 @@ def all_words(
         Whether those count that only another choice of an option brings.
     """
     base, catalogs = load(problem), as_catalogs(None)
-    first = declared(base, catalogs)
+    first = base.declaration(frozenset(), catalogs)
     words = words_of(first, base.simulation_settings)
     spellings = {spelling: word.name for spelling, word in words.items()}
     found = {word.name: word for word in words.values()}
@@ -83,7 +73,7 @@ def all_words(
         for label in option.choices:
             if label != option.chosen:
                 try:
-                    other = declared(type(base)(**{**base.options, option.name: label}), catalogs)
+                    other = type(base)(**{**base.options, option.name: label}).declaration(frozenset(), catalogs)
                 except InputError:
                     continue  # a label that is refused brings no names
                 for spelling, name in other.names().items():
@@ -95,7 +85,9 @@ def all_words(
 
 @cache
 def _words_of_registered(family: str, every_option: bool) -> tuple[dict[str, Word], dict[str, str]]:
-    return all_words(load(family), every_option)
+    with skipping_faulty_families():
+        return all_words(load(family), every_option)
+    return {}, {}
 
 
 class Universe:
@@ -109,7 +101,7 @@ class Universe:
     """
 
     def __init__(self, used: Set[str], own: Any = None) -> None:
-        problems: list[Any] = [*families()]
+        problems: list[Any] = [*every_family()]
         if own is not None and not isinstance(own, str):
             problems.append(own)
         self.words: dict[str, list[Word]] = {}

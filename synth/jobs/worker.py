@@ -40,6 +40,7 @@ from synth.jobs.solve import is_group
 from synth.jobs.store import Store
 from synth.jobs.unit_results import sorted_out
 from synth.operating_system import resident
+from synth.text.numbers import typed_number
 
 T = TypeVar("T")
 BROKEN = "something went wrong in the program that computes; what the worker has said tells where"
@@ -316,7 +317,11 @@ class Worker:
         reason = task.abort or SHUTDOWN
         self.restarts[reason] += 1
         if reason in (TIME, MEMORY):
-            limit = f"{task.job.seconds_limit:g} s" if reason == TIME else f"{self.settings.engine.memory >> 20} MiB"
+            limit = (
+                f"{typed_number(task.job.seconds_limit)} s"
+                if reason == TIME
+                else f"{self.settings.engine.memory >> 20} MiB"
+            )
             error = {"code": f"{reason}_limit", "message": f"stopped: it needs more than {limit}"}
             if task.claim.task == ROWS:
                 self._failed(task, str(error["message"]))

@@ -6,6 +6,7 @@ declaration itself (``synth.verification.verify``, ``synth.proof.tree``), so tha
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +15,8 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Limit, Origin
-from synth.feasibility import SMALLEST
+from synth.feasibility import SLACK, SMALLEST
+from synth.model.limit_terms import MOST_TIMES
 from synth.model.program import InputValue
 
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
@@ -37,6 +39,8 @@ class Constraint:
         Of both sides, for reports.
     scale : float
         Smallest size that counts, in SI.
+    terms : int, optional
+        Node of the size of its largest term, where the sides do not tell it (:mod:`synth.model.limit_terms`).
     guard : bool
         Whether formulas exist only where it holds: then it holds strictly.
     origin : Origin
@@ -55,11 +59,17 @@ class Constraint:
     bound: int | float
     unit: str
     scale: float = SMALLEST
+    terms: int | None = None
     guard: bool = False
     origin: Origin = Origin.FAMILY
     quantity: str = ""
     void_without: tuple[int, ...] = ()
     behind: tuple[str, ...] = ()
+
+    @property
+    def most_terms(self) -> float:
+        """Most that its terms count for, in SI: a bound that is given tells a size as well."""
+        return MOST_TIMES * abs(self.bound) if isinstance(self.bound, float) and self.bound else math.inf
 
     @property
     def nodes(self) -> tuple[int, ...]:
@@ -109,7 +119,11 @@ def void_limits(constraints: Sequence[Constraint], data: Sequence[InputValue], c
 
 @dataclass(frozen=True)
 class NodeConstraint:
-    """A limit as the propagation sees it: nodes of both sides (or a constant right side) and its sense."""
+    """A limit as the propagation sees it: nodes of both sides (or a constant right side) and its sense.
+
+    ``terms`` is the node of its largest term, where the sides do not tell it; ``slack`` the share of its size by which
+    bounds loosen it.
+    """
 
     sense: str
     value: int
@@ -117,13 +131,20 @@ class NodeConstraint:
     scale: float
     bound: float = 0.0
     guard: bool = False
+    terms: int | None = None
+    slack: float = SLACK
 
     @staticmethod
-    def of(constraint: Constraint) -> NodeConstraint:
-        """Return the row of a constraint."""
+    def of(constraint: Constraint, slack: float = SLACK) -> NodeConstraint:
+        """Row of a constraint."""
         x = constraint
         node, bound = (x.bound, 0.0) if isinstance(x.bound, int) else (None, x.bound)
-        return NodeConstraint(x.sense, x.value, node, x.scale, bound, x.guard)
+        return NodeConstraint(x.sense, x.value, node, x.scale, bound, x.guard, x.terms, slack)
+
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Nodes that it reads: its sides, then its terms."""
+        return tuple(k for k in (self.value, self.limit, self.terms) if k is not None)
 
 
 @dataclass(frozen=True)

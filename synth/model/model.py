@@ -15,12 +15,13 @@ from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
 from synth.model.constraint import SIGNS, Constraint
+from synth.model.limit_terms import NEAR_ZERO, LimitTerms
 from synth.model.next_rows import next_row
 from synth.model.numbers import numeric
-from synth.model.program import InputValue, Program
+from synth.model.program import InputValue, Program, UnsupportedOperation
 from synth.results.next_row import NextRow
 from synth.special import SpecialCall, expanded
-from synth.units import format_quantity
+from synth.units import typed_quantity
 
 MOST_FUNCTIONS = 512  # that a model keeps
 
@@ -62,6 +63,8 @@ class Evaluation:
     void: dict[str, np.ndarray]
     advice: dict[int, np.ndarray]
     feasible: np.ndarray
+    scales: dict[str, np.ndarray | float]  # per limit: smallest size that counts
+    terms: dict[str, np.ndarray]  # per quantity: the size of its largest term, where its value does not tell it
 
     def also(self, constraints: Sequence[Constraint]) -> Evaluation:
         """Return what it says with further limits on quantities, which count as those of the family do.
@@ -71,18 +74,21 @@ class Evaluation:
         if not constraints:
             return self
         limits, residuals, held, void = dict(self.limits), dict(self.residuals), dict(self.holds), dict(self.void)
-        feasible = self.feasible.copy()
+        feasible, scales = self.feasible.copy(), dict(self.scales)
         for x in constraints:
             value = self.values[x.quantity]
             limits[x.name] = value, np.full(value.shape, float(x.bound))
+            scales[x.name] = x.scale if x.terms is None else np.fmin(self.terms[x.quantity], x.most_terms)
             with np.errstate(all="ignore"):
-                residuals[x.name] = residual(value, float(x.bound), x.sense, x.scale)
+                residuals[x.name] = residual(value, float(x.bound), x.sense, scales[x.name])
             kept = holds(residuals[x.name], x.guard)
             for guard in x.behind:
                 kept = kept | ~self.holds[guard]
             held[x.name], void[x.name] = kept, np.zeros(kept.shape, dtype=bool)
             feasible &= kept
-        return replace(self, limits=limits, residuals=residuals, holds=held, void=void, feasible=feasible)
+        return replace(
+            self, limits=limits, residuals=residuals, holds=held, void=void, feasible=feasible, scales=scales
+        )
 
     def take(self, rows: slice) -> Evaluation:
         """Return what it says of some of the designs."""
@@ -94,6 +100,8 @@ class Evaluation:
             {name: x[rows] for name, x in self.void.items()},
             {k: x[rows] for k, x in self.advice.items()},
             self.feasible[rows],
+            {name: x[rows] if isinstance(x, np.ndarray) else x for name, x in self.scales.items()},
+            {name: x[rows] for name, x in self.terms.items()},
         )
 
 
@@ -108,13 +116,23 @@ class Model:
         What the family declared.
     calls : list of SpecialCall
         Special functions that were used.
+    where_declared : callable
+        Says of a name that is not declared here with what it is; nothing where it is with nothing.
     """
 
-    def __init__(self, title: str, declaration: Declaration, calls: Sequence[SpecialCall] = ()) -> None:
+    def __init__(
+        self,
+        title: str,
+        declaration: Declaration,
+        calls: Sequence[SpecialCall] = (),
+        where_declared: Callable[[str], str] = lambda _: "",
+    ) -> None:
         declaration.finish()
+        declaration.settle_columns(calls)
         self.title = title
         self.declaration = declaration
         self.calls = list(calls)
+        self._where_declared = where_declared
         self.variables = list(declaration.variables.values())
         self.limits = list(declaration.limits.values())
         requirements = declaration.requirements.values()
@@ -124,7 +142,7 @@ class Model:
         keys = [("variable", v.name, "") for v in self.variables] + [i.key for i in self.data_inputs]
         self.input_number = {key: number for number, key in enumerate(keys)}
         self.units = {name: unit for name, unit, _ in declaration.quantities()}
-        self._check_symbols()
+        self._check_expressions()
         named: dict[str, Any] = {v.name: v.sx for v in self.variables}
         named |= {c.name: c.sx for c in declaration.counts.values()}
         named |= {q.name: q.sx for q in declaration.derived.values()}
@@ -133,11 +151,16 @@ class Model:
         outputs += [side for limit in self.limits for side in (limit.value, limit.limit)]
         outputs += [a.when for a in declaration.advices]
         self.program = Program(self.inputs, outputs, calls)
+        self.traced = len(self.program.nodes)  # of formulas; what follows tells sizes, or where a value is lacking
         numbers = iter(self.program.outputs)
         self.quantity_node = {name: next(numbers) for name in named}
         sides = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
         self.advice_nodes = [next(numbers) for _ in declaration.advices]
-        self._evaluate = self.program.compile()
+        self._terms = LimitTerms(self.program, len(self.variables), *self.zeros())
+        # A guard holds strictly: it has no tolerance, and so no size.
+        sized = {x.name: None if x.guard else self._terms.of(sides[x.name], x.scale) for x in self.limits}
+        self._evaluate = self.program.compile([*self.program.outputs, *(k for k in sized.values() if k is not None)])
+        self._terms_of: dict[str, int | None] = {}  # of quantities that somebody limits
         self.refusal_kinds = [self._refusal_inputs(r.code, r.when) for r in declaration.refusals]
         self._function_cache: dict[Any, Any] = {}
         self._null_values, behind = self._behind_guards(sides)
@@ -146,10 +169,11 @@ class Model:
             Constraint(
                 name=x.name,
                 sense=x.sense,
-                value=sides[x.name][0],
+                value=self._value_unless_void(*sides[x.name], void[x.name]),
                 bound=sides[x.name][1],
                 unit=x.unit,
                 scale=x.scale,
+                terms=sized[x.name],
                 guard=x.guard,
                 origin=x.origin,
                 void_without=tuple(void[x.name]),
@@ -229,18 +253,76 @@ class Model:
             inputs += columns("part", slot)
         return inputs
 
-    def _check_symbols(self) -> None:
-        known = {str(s) for s in self.inputs} | {str(c.symbol) for c in self.calls}
+    def zeros(self) -> tuple[dict[int, float], frozenset[int]]:
+        """Inputs that can be zero, with the size below which they count as equally large, and those never negative."""
+        near_zero, not_negative = dict[int, float](), set[int]()
+        for k, v in enumerate(self.variables):
+            if v.lower <= 0.0 <= v.upper:
+                near_zero[k] = NEAR_ZERO * max(-v.lower, v.upper)
+            if v.lower >= 0.0:
+                not_negative.add(k)
+        for k, entry in enumerate(self.data_inputs, start=len(self.variables)):
+            if self._least(entry) >= 0.0:
+                not_negative.add(k)
+        return near_zero, frozenset(not_negative)
+
+    def _least(self, entry: DataInput) -> float:
+        """Least value that a data input can have, as far as the declaration tells."""
         d = self.declaration
-        sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
-        named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
+        if entry.kind == "requirement":
+            return d.requirements[entry.name].lower
+        if entry.kind == "count":
+            return float(d.counts[entry.name].values.min())
+        if entry.kind == "choice":
+            return 0.0
+        part = d.rows[entry.name] if entry.kind == "row" else d.slots[entry.name]
+        table = d.catalogs.table(part.table)
+        values = [table.number(c) for c in entry.columns if table.has(c)]
+        return min((float(np.nanmin(x)) for x in values if not np.isnan(x).all()), default=0.0)
+
+    def terms_of(self, quantity: str) -> int | None:
+        """Node of the largest term of a quantity, where its value does not tell it; made when it is first limited."""
+        if quantity not in self._terms_of:
+            self._terms_of[quantity] = self._terms.of([self.quantity_node[quantity]])
+        return self._terms_of[quantity]
+
+    def _check_expressions(self) -> None:
+        """Refuse expressions that hold symbols from elsewhere, numbers that are none or operations without a form."""
+        d = self.declaration
+        # The first that is wrong is told: what others are computed from stands before them.
+        defaults = [r for r in d.requirements.values() if isinstance(r.default, ca.SX)]
+        named = [(f"the default of requirement {r.name}", r.default) for r in defaults]
+        # What a special function is made of comes into formulas later, when it is written out for solvers.
+        named += [(f"special function {c.function.name}", ca.SX(c.function.formula(*c.arguments))) for c in self.calls]
+        named += [(f"derived {q.name}", q.sx) for q in d.derived.values()]
         named += [(f"step {s.name}", s.sx) for s in d.steps.values()]
+        named += [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
         named += [(f"next row {r.name}", r.sx) for r in d.next_rows.values()]
-        when = [(f"refusal {r.code}", r.when) for r in d.refusals] + [(f"advice {a.code}", a.when) for a in d.advices]
-        for label, expression in sides + named + when:
+        named += [(f"refusal {r.code}", r.when) for r in d.refusals]
+        named += [(f"advice {a.code}", a.when) for a in d.advices]
+        known = {str(s) for s in self.inputs} | {str(c.symbol) for c in self.calls}
+        for label, expression in named:
             strange = sorted({str(s) for s in ca.symvar(expression)} - known)
             if strange:
-                raise DeclarationError(f"{self.title}: {label} uses {strange}, which the declaration does not make")
+                raise self._fault(label, f"uses {strange}, which the declaration does not make")
+        try:
+            program = Program(self.inputs, [expression for _, expression in named], self.calls)
+        except UnsupportedOperation:
+            for label, expression in named:
+                try:
+                    Program(self.inputs, [expression], self.calls)
+                except UnsupportedOperation as error:
+                    raise self._fault(label, f"cannot be computed: {error}") from error
+            raise
+        held = [k for k, node in enumerate(program.nodes) if node.op == ca.OP_CONST and not np.isfinite(node.constant)]
+        if held:
+            marked = program.downstream(held)
+            label, output = next((x, n) for (x, _), n in zip(named, program.outputs, strict=True) if marked[n])
+            number = next(program.nodes[k].constant for k in program.needed([output]) if k in held)
+            raise self._fault(label, f"holds {number}; formulas take finite numbers alone")
+
+    def _fault(self, label: str, fault: str) -> DeclarationError:
+        return DeclarationError(f"{self.title}: {label} {fault}", self.declaration.lines.get(label))
 
     def _void_inputs(self, sides: Mapping[str, tuple[int, int]]) -> dict[str, list[int]]:
         """Return, per limit, the optional data inputs that make it void where they have no value.
@@ -256,6 +338,17 @@ class Model:
                 if limit.origin not in (Origin.USER, Origin.PIN) and any(marked[n] for n in sides[limit.name]):
                     result[limit.name].append(k - first)
         return result
+
+    def _value_unless_void(self, value: int, bound: int, void: Sequence[int]) -> int:
+        """Node of the value of a limit, not-a-number where data inputs without a value make the limit void.
+
+        Bounds know by that alone that it says nothing there.
+        """
+        program, inputs = self.program, [len(self.variables) + k for k in void]
+        node = program.empty_without([k for k in inputs if not program.lost_without(k)[bound]], value)
+        if node != value:
+            program.outputs.append(node)
+        return node
 
     def _refusal_inputs(self, code: str, when: Any) -> frozenset[str]:
         """Return the discrete unknowns (slots, counts, choices) that a refusal speaks of."""
@@ -303,11 +396,12 @@ class Model:
         """
         unit = self.units[quantity]
         return Constraint(
-            name=name or f"{quantity} {SIGNS[sense]} {format_quantity(bound, unit, None)}",
+            name=name or f"{quantity} {SIGNS[sense]} {typed_quantity(bound, unit, None)}",
             sense=sense,
             value=self.quantity_node[quantity],
             bound=float(bound),
             unit=unit,
+            terms=self.terms_of(quantity),
             origin=origin,
             quantity=quantity,
             behind=self.guards_of(quantity),
@@ -332,7 +426,7 @@ class Model:
         allowed = [s for s, n in spellings.items() if n in among]
         close = difflib.get_close_matches(word, allowed, n=3, cutoff=0.6)
         hint = f" (did you mean {' or '.join(close)}?)" if close else ""
-        right = f"{what} of {self.title}{hint}; its description lists them"
+        right = f"{what} of {self.title}{hint}; {self._where_declared(word) or 'its description lists them'}"
         raise InputError(field, word, right, path)
 
     def by_name(self, mapping: Mapping[Any, Any], field: str, among: Sequence[str], what: str) -> dict[str, Any]:
@@ -383,7 +477,10 @@ class Model:
             values = {name: next(numbers) for name in self.quantity_node}
             limits = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
             advice = {k: next(numbers) > 0.5 for k in range(len(self.advice_nodes))}
-            residuals = {x.name: residual(*limits[x.name], x.sense, x.scale) for x in self.constraints}
+            scales: dict[str, np.ndarray | float] = {
+                x.name: x.scale if x.terms is None else next(numbers) for x in self.constraints
+            }
+            residuals = {x.name: residual(*limits[x.name], x.sense, scales[x.name]) for x in self.constraints}
             held = {x.name: holds(residuals[x.name], x.guard) for x in self.constraints}
             void = {x.name: x.void(data, (count,)) for x in self.constraints}
             for name, guards in self._null_values.items():
@@ -398,7 +495,18 @@ class Model:
                 residuals[name] = np.where(void[name], np.nan, residuals[name])
                 held[name] = held[name] | void[name]
                 feasible &= held[name]
-        return Evaluation(values, limits, residuals, held, void, advice, feasible)
+            terms = self._terms_at(variables, data)
+        return Evaluation(values, limits, residuals, held, void, advice, feasible, scales, terms)
+
+    def _terms_at(self, variables: np.ndarray, data: Sequence[InputValue]) -> dict[str, np.ndarray]:
+        """Size of the largest term of each quantity that somebody limits, where its value does not tell it."""
+        nodes = {name: k for name, k in self._terms_of.items() if k is not None}
+        if not nodes:
+            return {}
+        wanted = tuple(nodes.values())
+        compiled = self.function(("terms", wanted), lambda: self.program.compile(wanted))
+        found = compiled([*np.asarray(variables, dtype=float).T, *data])
+        return {name: _column(x, len(variables)) for name, x in zip(nodes, found, strict=True)}
 
     def number(self, expression: Any, values: Mapping[str, float]) -> float:
         """Return the value of an expression of the declaration that no variable is in.

@@ -12,6 +12,7 @@ from synth.results.next_row import NextRow
 if TYPE_CHECKING:
     from synth.declaration.records import NextRowRecord
     from synth.tables.catalogs import Catalogs
+    from synth.tables.table import Table
 
 
 def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRow:
@@ -22,7 +23,7 @@ def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRo
     record : NextRowRecord
         What was declared.
     needed : float
-        SI.
+        What the design needs, or the size that was typed; SI.
     catalogs : Catalogs
         The tables in force.
     """
@@ -38,6 +39,7 @@ def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRo
         last = float(np.fmax.reduce(column)) if len(column) else np.nan
     return NextRow(
         needed=needed,
+        typed=record.typed,
         unit=record.unit,
         table=record.table,
         designation=table.designations[index] if found else None,
@@ -48,6 +50,26 @@ def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRo
         if beside is None or value is None
         else _row_around(beside.table, beside.over, beside.up_to, value, catalogs),
     )
+
+
+def rows_read(record: NextRowRecord, found: NextRow, catalogs: Catalogs) -> list[tuple[str, int]]:
+    """Return rows that are enough to find the same row again: tables, and numbers of rows in them.
+
+    Where no row fits it is one that does not, the largest if it is by size.
+    """
+    table = catalogs.table(record.table)
+    rows = [(record.table, _number_of(table, found.designation, table.number(record.column)))]
+    if record.beside is not None:
+        beside = catalogs.table(record.beside.table)
+        rows.append((record.beside.table, _number_of(beside, found.beside, beside.number(record.beside.up_to))))
+    return [(name, row) for name, row in rows if row >= 0]
+
+
+def _number_of(table: Table, designation: str | None, column: np.ndarray) -> int:
+    """Return the number of a row; without a designation that of the largest value, -1 where the table has no row."""
+    if designation is not None:
+        return table.row_index(designation)
+    return int(np.argmax(np.where(np.isnan(column), -np.inf, column))) if len(column) else -1
 
 
 def _row_around(name: str, over: str, up_to: str, value: float, catalogs: Catalogs) -> str | None:

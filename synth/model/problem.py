@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from synth.declaration import Declaration, DeclarationError, Setting
+from synth.declaration import Declaration, DeclarationError, Setting, declaring
+from synth.errors import InputError
 from synth.interrupts import held_back
 from synth.model.model import Model
 from synth.model.slot_comparison import SlotComparison, refusal_of
@@ -149,12 +152,37 @@ class DesignProblem:
         """The class whose sources decide what is declared."""
         return type(self)
 
-    def declaration(self, given: frozenset[str], catalogs: Catalogs) -> Declaration:
-        """Return what the problem declares, without tracing it into a model: for whoever asks for names alone."""
-        declaration = Declaration(self.name, self.options, given, catalogs)
-        with held_back(), recorded():
+    def declaration(
+        self, given: frozenset[str], catalogs: Catalogs, options: Mapping[str, str] | None = None
+    ) -> Declaration:
+        """Return what the problem declares, without tracing it into a model: for whoever asks for names alone.
+
+        ``options``: in place of its own.
+        """
+        declaration = Declaration(self.name, self.options if options is None else options, given, catalogs)
+        with held_back(), declaring(self.name), recorded() as calls:
             self.declare(declaration)
+        declaration.settle_columns(calls)
         return declaration
+
+    def _where_declared(self, given: frozenset[str], catalogs: Catalogs, word: str) -> str:
+        """Say with which optional requirement or option there is a name that is not declared; nothing if with none."""
+        declared = self.declaration(given, catalogs)
+        for requirement in declared.requirements.values():
+            if requirement.sx is None and self._declares(word, self.options, given | {requirement.name}, catalogs):
+                return f"{word} is there where {requirement.name} is given"
+        for option in declared.options.values():
+            others = {name: label for name, label in self.options.items() if name not in (option.name, option.symbol)}
+            for label in option.choices:
+                if self._declares(word, {**others, option.name: label}, given, catalogs):
+                    return f"{word} is there with {option.name}: {label}"
+        return ""
+
+    def _declares(self, word: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs) -> bool:
+        """Whether the problem declares a name with some options and optional requirements."""
+        with suppress(InputError, DeclarationError):  # what was asked beside it does not go with this option
+            return word in self.declaration(given, catalogs, options).names()
+        return False
 
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
@@ -162,11 +190,12 @@ class DesignProblem:
         known = self._models.pop(key, None)
         if known is None:
             declaration = Declaration(self.name, self.options, given, catalogs)
-            with held_back(), recorded() as calls:
-                self.declare(declaration)
+            with held_back(), declaring(self.name):
+                with recorded() as calls:
+                    self.declare(declaration)
                 declaration.refusals += [refusal_of(comparison, declaration) for comparison in compared]
                 # The catalogues are kept with the model, so that their id stays theirs.
-                known = Model(self.name, declaration, calls), catalogs
+                known = Model(self.name, declaration, calls, partial(self._where_declared, given, catalogs)), catalogs
             while len(self._models) >= MOST_MODELS:
                 self._models.pop(next(iter(self._models)), None)
         self._models[key] = known

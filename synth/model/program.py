@@ -109,17 +109,28 @@ class Program:
         self.nodes: list[Node] = []
         self._numbers: dict[tuple[int, tuple[int, ...], float], int] = {}
         self._dependent: dict[tuple[int, ...], np.ndarray] = {}
-        self.input_nodes = [self._number(ca.OP_INPUT, (), float(k)) for k in range(self.n_inputs)]
+        self.input_nodes = [self.node(ca.OP_INPUT, (), float(k)) for k in range(self.n_inputs)]
         self.specials = list(dict.fromkeys(call.function for call in calls))
         symbols, numbers = list(inputs), list(self.input_nodes)
         for call in calls:
             args = self._read(symbols, numbers, call.arguments)
             position = float(self.specials.index(call.function))
             symbols.append(call.symbol)
-            numbers.append(self._number(OP_SPECIAL, tuple(args), position))
+            numbers.append(self.node(OP_SPECIAL, tuple(args), position))
         self.outputs = self._read(symbols, numbers, outputs)
 
-    def _number(self, op: int, args: tuple[int, ...], constant: float = 0.0) -> int:
+    def node(self, op: int, args: tuple[int, ...], constant: float = 0.0) -> int:
+        """Number of an instruction, which is added where the program lacks it.
+
+        Parameters
+        ----------
+        op : int
+            Of CasADi, or one of those of this module.
+        args : tuple of int
+            Nodes.
+        constant : float
+            Value of a constant in SI.
+        """
         if op == ca.OP_ADD and (select := self._as_select(*args)):
             op, args = OP_SELECT, select
         # Operands stay as they are written, for people who read formulas; which comes first makes no other number.
@@ -127,6 +138,7 @@ class Program:
         if key not in self._numbers:
             self._numbers[key] = len(self.nodes)
             self.nodes.append(Node(op, args, constant))
+            self._dependent.clear()
         return self._numbers[key]
 
     def _as_select(self, first: int, second: int) -> tuple[int, int, int] | None:
@@ -143,21 +155,21 @@ class Program:
         """Return the nodes of some expressions of symbols whose own nodes are known."""
         function = ca.Function("trace", [ca.vertcat(*symbols)], [ca.vertcat(*expressions)])
         # Structural zeros are not instructions, so every output starts as the constant 0.
-        outputs = [self._number(ca.OP_CONST, (), 0.0)] * len(expressions)
+        outputs = [self.node(ca.OP_CONST, (), 0.0)] * len(expressions)
         work: dict[int, int] = {}
         for k in range(function.n_instructions()):
             op = function.instruction_id(k)
             source, target = function.instruction_input(k), function.instruction_output(k)
             if op == ca.OP_CONST:
-                work[target[0]] = self._number(op, (), float(function.instruction_constant(k)))
+                work[target[0]] = self.node(op, (), float(function.instruction_constant(k)))
             elif op == ca.OP_INPUT:
                 work[target[0]] = numbers[source[1]]
             elif op == ca.OP_OUTPUT:
                 outputs[target[1]] = work[source[0]]
             elif op in ARITY_TWO:
-                work[target[0]] = self._number(op, (work[source[0]], work[source[1]]))
+                work[target[0]] = self.node(op, (work[source[0]], work[source[1]]))
             elif op in ARITY_ONE:
-                work[target[0]] = self._number(op, (work[source[0]],))
+                work[target[0]] = self.node(op, (work[source[0]],))
             elif op == ca.OP_ASSIGN:
                 work[target[0]] = work[source[0]]
             else:
@@ -202,6 +214,30 @@ class Program:
             marked[k] = k in wanted or any(marked[a] for a in node.args)
         return marked
 
+    def empty_without(self, inputs: Sequence[int], node: int) -> int:
+        """Node that is not-a-number where an input (given by number) is, and else the same as a node.
+
+        Most nodes that depend on an input are so by themselves; what a condition chooses, or compares, may not be.
+        """
+        for k in inputs:
+            if not self.lost_without(k)[node]:
+                nothing = self.node(ca.OP_MUL, (self.node(ca.OP_CONST, (), 0.0), self.input_nodes[k]))
+                node = self.node(ca.OP_ADD, (node, nothing))
+        return node
+
+    def lost_without(self, given: int) -> np.ndarray:
+        """Nodes that are surely not-a-number where an input (given by number) is, each."""
+        lost = np.zeros(len(self.nodes), dtype=bool)
+        lost[self.input_nodes[given]] = True
+        for k, node in enumerate(self.nodes):
+            if node.op == OP_SELECT:
+                lost[k] = lost[node.args[1]] and lost[node.args[2]]
+            elif node.op == ca.OP_COPYSIGN:
+                lost[k] = lost[node.args[0]]
+            elif node.args and node.op not in COMPARISONS and node.op != ca.OP_IF_ELSE_ZERO:
+                lost[k] = any(lost[a] for a in node.args)
+        return lost
+
     def with_inputs(self, nodes: Sequence[int]) -> Program:
         """Return the same program with some inner nodes as further inputs, behind the others."""
         result = copy.copy(self)
@@ -234,7 +270,9 @@ class Program:
         register: dict[int, int] = {}
         free: list[int] = []
         names: dict[int, str] = {}
-        lines = ["def evaluate(inputs):"]
+        # Plain numbers of Python raise where a formula has no value; those of NumPy are infinite or not-a-number.
+        lines = ["def evaluate(inputs):", "    inputs = [np.float64(x) if type(x) is float else x for x in inputs]"]
+        lines.append('    with np.errstate(all="ignore"):')
         for k in order:
             node = self.nodes[k]
             if node.op == ca.OP_CONST:
@@ -255,8 +293,8 @@ class Program:
                 slot += 1
             register[k] = slot
             names[k] = f"r{slot}"
-            lines.append(f"    r{slot} = {code}")
-        lines.append("    return [" + ", ".join(names[k] for k in wanted) + "]")
+            lines.append(f"        r{slot} = {code}")
+        lines.append("        return [" + ", ".join(names[k] for k in wanted) + "]")
         scope: dict[str, Any] = {"np": np, "specials": [f.formula for f in self.specials]}
         if any("erf(" in line for line in lines):
             from scipy.special import erf  # costly to import; few formulas name it

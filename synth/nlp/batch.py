@@ -15,23 +15,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from synth import deadline
-from synth.compiled.threads import side_by_side
+from synth.feasibility import SMALLEST, size_of_miss
+from synth.kernels.threads import side_by_side
 from synth.model.program import Program
 from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Problems, SparsityPattern
-from synth.nlp.interior_point_c import Solver, native
-from synth.nlp.interior_point_c_interpreted import General, general
 from synth.nlp.interior_point_numpy import InteriorPoint
+from synth.nlp.kernel_solver import KernelSolver, kernel_solver
 from synth.nlp.row_functions import RowFunctions
 from synth.nlp.rows import GUARD_MARGIN, Rows
 from synth.tuning import TUNING, NlpSettings
-
-# How problems are solved: over arrays of NumPy, by code that serves all formulas, or by code of their own.
-Code = Literal["arrays", "general", "own"]
 
 
 @dataclass(frozen=True)
@@ -111,8 +108,6 @@ class BatchNlp:
     program : Program
     n_variables : int
     rows : Rows
-    code : {"arrays", "general", "own"}
-        How problems are solved. Without a compiler, or room for so many rows, it is over arrays.
     edge : float
         By which share the edge of max and min is rounded off; 0: not at all.
     conditions : int
@@ -125,7 +120,6 @@ class BatchNlp:
         program: Program,
         n_variables: int,
         rows: Rows,
-        code: Code = "own",
         edge: float = 0.0,
         conditions: int = 0,
         settings: NlpSettings = TUNING.nlp,
@@ -136,27 +130,16 @@ class BatchNlp:
         self.equal = np.array([c.sense == "equal" for c in rows.constraints], dtype=bool)
         self.guard = np.array([c.guard for c in rows.constraints], dtype=bool)
         self.rigid = self.guard | (np.arange(len(rows.constraints)) >= len(rows.constraints) - conditions)
-        self.solver: InteriorPoint | Solver = self._solver(code)
-        self.compiled = isinstance(self.solver, Solver)
+        made = kernel_solver(self.functions, settings.method)
+        self.solver: InteriorPoint | KernelSolver = made or InteriorPoint(self.functions, settings)
+        self.compiled = made is not None
         self._stored = self.functions.compile_stored()
         self._sides = self._compile_sides(program)
 
-    def _solver(self, code: Code) -> InteriorPoint | Solver:
-        compiled = {"own": native, "general": general}
-        made = compiled[code](self.functions, self.settings) if code != "arrays" else None
-        return made or InteriorPoint(self.functions, self.settings)
-
-    @property
-    def evaluations(self) -> int:
-        """Return how many evaluations all has cost that was solved without code of its own."""
-        if isinstance(self.solver, General):
-            return self.solver.evaluations
-        return self.settings.step_cost * self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
-
     def _compile_sides(self, program: Program) -> Any:
-        """Return a function of both sides of the rows that enter by a scaled difference."""
+        """Return a function of both sides and the terms of the rows that enter by a scaled difference."""
         plain = [c for c, log in zip(self.rows.constraints, self.rows.log_constraints, strict=True) if not log]
-        wanted = [k for c in plain for k in (c.value, c.limit) if k is not None]
+        wanted = [k for c in plain for k in c.nodes]
         return program.compile(wanted) if wanted else None
 
     def solve(
@@ -184,7 +167,7 @@ class BatchNlp:
         void : array of bool (problems, constraints)
             Limits that do not count.
         workers : int
-            Threads that may solve at the same time, where the code is compiled.
+            Threads that may solve at the same time, where the kernel computes.
 
         Returns
         -------
@@ -192,7 +175,7 @@ class BatchNlp:
         """
         count = len(tasks.weights)
         columns = [np.asarray(x, dtype=float) for x in data]
-        chunk = self.settings.compiled_at_once if self.compiled else self.settings.at_once
+        chunk = self.settings.kernel_at_once if self.compiled else self.settings.at_once
 
         def solved(first: int) -> Solutions:
             deadline.check()  # threads beside know of no end
@@ -317,8 +300,8 @@ class BatchNlp:
                 continue
             value = next(sides)
             limit = bounds[j] if constraint.limit is None else next(sides)
-            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), constraint.scale)
-            result.append(1.0 / np.where(np.isfinite(size), size, 1.0))
+            size = size_of_miss(value, limit, constraint.scale if constraint.terms is None else next(sides))
+            result.append(1.0 / np.where(np.isfinite(size) & (size > SMALLEST), size, 1.0))
         return [*result, *(1.0 / tasks.goal_scales)]
 
     def _fixed_inputs(

@@ -27,6 +27,8 @@ SUMS = {ca.OP_ADD, ca.OP_SUB}
 POWER = {ca.OP_POW, ca.OP_CONSTPOW}
 CHOICES = {OP_SELECT, ca.OP_IF_ELSE_ZERO, ca.OP_FMIN, ca.OP_FMAX}
 
+STRIDE = 100  # operations inside each other that are differentiated by functions inside each other
+
 VALUE, LOG = "value", "log"
 Face = tuple[str, int]  # VALUE or LOG of a node
 Gradient = dict[int, int]  # nodes of the derivatives that are not zero, by variable
@@ -169,9 +171,11 @@ class DerivativeSweeps:
         self.gradients: dict[Face, Gradient] = {}
         self.rules: dict[Face, Rule] = {}  # in an order in which parents come first
         self._never_zero: dict[int, bool] = {}
+        self._depths: list[int] = []
 
     def gradient(self, k: int) -> Gradient:
         """Return the derivatives of a node by the variables."""
+        self._prepare(k)
         return self._gradient((VALUE, k))
 
     def define(self, k: int, rule: Rule) -> None:
@@ -181,6 +185,7 @@ class DerivativeSweeps:
 
     def log_gradient(self, k: int) -> Gradient:
         """Return the derivatives of the logarithm of the size of a node by the variables."""
+        self._prepare(k)
         return self._gradient((LOG, k))
 
     def hessian(self, weighted: Sequence[tuple[int, int]]) -> dict[tuple[int, int], int]:
@@ -235,6 +240,24 @@ class DerivativeSweeps:
                 result[place] = g.add(result.get(place, g.constant(0.0)), entry)
 
     # -- forward -------------------------------------------------------------------------------
+
+    def _prepare(self, k: int) -> None:
+        """Differentiate nodes on the way to a deep one first: functions inside each other are few then."""
+        nodes, depths = self.graph.nodes, self._depths
+        for node in nodes[len(depths) :]:
+            depths.append(1 + max((depths[a] for a in node.args), default=0))
+        if depths[k] <= STRIDE:
+            return
+        below, stack = {k}, [k]
+        while stack:
+            for a in nodes[stack.pop()].args:
+                if a not in below:
+                    below.add(a)
+                    stack.append(a)
+        for a in sorted(below):
+            self._sized(a)
+            if depths[a] % STRIDE == 0 and self._moves(a):
+                self._gradient((VALUE, a))
 
     def _gradient(self, face: Face) -> Gradient:
         if face not in self.gradients:
@@ -315,11 +338,16 @@ class DerivativeSweeps:
 
     def _terms(self, k: int) -> list[tuple[int, int]]:
         """Return the terms of a sum of sums with their signs."""
-        node = self.graph.nodes[k]
-        if node.op not in SUMS or not self._moves(k):
-            return [(k, 1)]
-        second = -1 if node.op == ca.OP_SUB else 1
-        return [*self._terms(node.args[0]), *((a, s * second) for a, s in self._terms(node.args[1]))]
+        terms, stack = list[tuple[int, int]](), [(k, 1)]
+        while stack:
+            place, sign = stack.pop()
+            node = self.graph.nodes[place]
+            if node.op in SUMS and self._moves(place):
+                first, second = node.args
+                stack += [(second, -sign if node.op == ca.OP_SUB else sign), (first, sign)]
+            else:
+                terms.append((place, sign))
+        return terms
 
     def _log_of_sum(self, k: int) -> Rule | None:
         """Return the rule of the logarithm of a sum by those of its terms; None where one of them may be zero."""
@@ -328,6 +356,8 @@ class DerivativeSweeps:
         terms = [(a, s) for a, s in every if self._moves(a)]
         if not all(self._sized(a) for a, _ in terms):
             return None
+        if not terms:
+            return Rule()  # all of them are steps
         inverse, rule = g.inverse(k), Rule()
         for a, s in terms:
             share = g.times(a, inverse)

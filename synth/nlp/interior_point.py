@@ -97,6 +97,18 @@ class Ends:
     status: np.ndarray
     evaluations: np.ndarray
 
+    @classmethod
+    def empty(cls, n: int, rows: int, count: int) -> Ends:
+        """Arrays for so many problems, to be written into."""
+        return cls(
+            y=np.empty((n, count)),
+            t=np.empty(count),
+            rows=np.empty((rows, count)),
+            multipliers=np.empty((rows, count)),
+            status=np.empty(count, dtype=np.int64),
+            evaluations=np.empty(count, dtype=np.int64),
+        )
+
 
 class SparsityPattern:
     """Where the nonzero derivatives stand, prepared for sums over rows and columns."""

@@ -34,30 +34,17 @@ class InteriorPoint:
     ----------
     functions : RowFunctions
     settings : NlpSettings
-
-    Attributes
-    ----------
-    steps : int
-        How often all lanes went one step: what the solver has cost.
     """
 
     def __init__(self, functions: RowFunctions, settings: NlpSettings = TUNING.nlp) -> None:
         self.functions, self.settings = functions, settings
-        self.steps = 0
         self.point = functions.compile_point()
         self.layout = SparsityPattern(functions)
 
     def solve(self, problems: Problems) -> Ends:
         """Solve all problems, each from its start."""
         n, rows, count = self.functions.n, self.functions.n_rows, len(problems)
-        ends = Ends(
-            np.empty((n, count)),
-            np.empty(count),
-            np.empty((rows, count)),
-            np.empty((rows, count)),
-            np.empty(count, dtype=np.int64),
-            np.empty(count, dtype=np.int64),
-        )
+        ends = Ends.empty(n, rows, count)
         waiting, most, refill = 0, self.settings.lanes, self.settings.refill
         lanes: InteriorPointBatch | None = None
         with np.errstate(all="ignore"):
@@ -70,7 +57,6 @@ class InteriorPoint:
                 assert lanes is not None
                 deadline.check()
                 lanes.advance(self.point)
-                self.steps += 1
                 lanes = lanes.without_finished(ends)
         return ends
 

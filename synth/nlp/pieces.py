@@ -29,7 +29,7 @@ import numpy as np
 
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SELECT, Program
-from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks, worth_of
+from synth.nlp.batch import BatchNlp, Solutions, Tasks, worth_of
 from synth.nlp.rows import Rows
 from synth.tuning import TUNING, NlpSettings
 
@@ -113,7 +113,9 @@ class Pieces:
         inverse_sizes = [ca.SX.sym(f"inverse_size{k}") for k in range(count)]
         number = {k: position for position, k in enumerate(self.decisions)}
         values: dict[int, Any] = {}
-        for k in program.needed([*rows.nodes, *(a for pair in self._sides for a in pair if a is not None)]):
+        terms = [c.terms for c in rows.constraints if c.terms is not None]
+        decided = [a for pair in self._sides for a in pair if a is not None]
+        for k in program.needed([*rows.nodes, *terms, *decided]):
             node = program.nodes[k]
             if node.op == ca.OP_CONST:
                 values[k] = ca.SX(node.constant)
@@ -131,10 +133,17 @@ class Pieces:
             less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
             conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
         wanted = rows.nodes
-        made = Program([*inputs, *ways, *inverse_sizes], [*(values[k] for k in wanted), *conditions])
-        place = iter(made.outputs)
+        outputs = [*(values[k] for k in wanted), *conditions, *(values[k] for k in terms)]
+        made = Program([*inputs, *ways, *inverse_sizes], outputs)
+        place, sized = iter(made.outputs), iter(made.outputs[len(outputs) - len(terms) :])
         constraints = [
-            replace(c, value=next(place), limit=None if c.limit is None else next(place)) for c in rows.constraints
+            replace(
+                c,
+                value=next(place),
+                limit=None if c.limit is None else next(place),
+                terms=None if c.terms is None else next(sized),
+            )
+            for c in rows.constraints
         ]
         goals = tuple(replace(g, node=next(place)) for g in rows.goals)
         constraints += [NodeConstraint("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
@@ -265,26 +274,17 @@ class PiecedNlp:
     Parameters
     ----------
     pieces : Pieces
-    code : {"arrays", "general", "own"}
-        How problems are solved, as of :class:`synth.nlp.batch.BatchNlp`.
     settings : NlpSettings
     """
 
-    def __init__(self, pieces: Pieces, code: Code = "own", settings: NlpSettings = TUNING.nlp) -> None:
-        self.pieces, self.code, self.settings, self.nlp_settings = pieces, code, settings.pieces, settings
+    def __init__(self, pieces: Pieces, settings: NlpSettings = TUNING.nlp) -> None:
+        self.pieces, self.settings, self.nlp_settings = pieces, settings.pieces, settings
 
     @cached_property
     def nlp(self) -> BatchNlp:
         """The solver of the pieces; made when the first problem needs it."""
         program, rows = self.pieces.written()
-        return BatchNlp(
-            program, self.pieces.n, rows, self.code, conditions=len(self.pieces), settings=self.nlp_settings
-        )
-
-    @property
-    def evaluations(self) -> int:
-        """Return how many evaluations all has cost that was solved without code of its own."""
-        return self.nlp.evaluations if "nlp" in vars(self) else 0
+        return BatchNlp(program, self.pieces.n, rows, conditions=len(self.pieces), settings=self.nlp_settings)
 
     def doubtful(self, found: Solutions, data: Sequence[Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Tell which answers of a solver of the whole formulas may not be optima: on a kink, or stuck."""
@@ -468,7 +468,9 @@ def _reach(low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _cost(tasks: Tasks, found: Solutions) -> np.ndarray:
-    cost: np.ndarray = np.sum(tasks.weights * found.phi, axis=1) + tasks.t_weight * found.t
+    # An objective that does not count may be infinite; zero times that is no number.
+    counted = np.multiply(tasks.weights, found.phi, where=tasks.weights != 0, out=np.zeros(found.phi.shape))
+    cost: np.ndarray = counted.sum(axis=1) + tasks.t_weight * found.t
     return cost
 
 
@@ -488,13 +490,8 @@ class KinkedNlp:
 
     @property
     def compiled(self) -> bool:
-        """Tell whether problems are solved by compiled code."""
+        """True if the kernel solves the problems."""
         return self.first.compiled
-
-    @property
-    def evaluations(self) -> int:
-        """Return how many evaluations all has cost that was solved without code of its own."""
-        return self.first.evaluations + self.pieced.evaluations
 
     def solve(
         self,

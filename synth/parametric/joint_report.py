@@ -67,7 +67,7 @@ class JointReport:
         solves: int,
         same: Mapping[int, int] = NO_OTHER,
     ) -> list[ParetoFront | None]:
-        """Return the front of each question that has designs, ties settled.
+        """Return the front of each question that has designs, ties settled; None where it is better asked alone.
 
         Parameters
         ----------
@@ -89,6 +89,8 @@ class JointReport:
         every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
         solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
         for number, designs in self.designs(found, traded).items():
+            if not self._resolved(designs, traded):
+                continue  # alone it is asked again with objectives measured near its front
             question, own = self.questions[number], int(solved[same.get(number, number)])
             total = question.instance.combinations.count
             certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
@@ -162,6 +164,15 @@ class JointReport:
             nlp_solves_to_find=solves,
             seconds={"total": time.monotonic() - self.started},
         )
+
+    def _resolved(self, designs: Sequence[Design], traded: int) -> bool:
+        """True if no objective was told apart more coarsely than the gap asks for, unless the declaration says so."""
+        objectives = self.form.objectives
+        names = list(designs[0].frame.objectives)[:traded]
+        values = np.abs([[d.values[name] for name in names] for d in designs]).max(axis=0)
+        amounts = (objectives.finest * objectives.scales)[:traded]
+        undeclared = ~objectives.log[:traded] & ~objectives.declared[:traded]
+        return not np.any(undeclared & (amounts > self.gap * values))
 
     def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
         """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""

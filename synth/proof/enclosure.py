@@ -27,7 +27,7 @@ from typing import Any, TypeAlias
 import casadi as ca
 
 from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
-from synth.proof.interval_arithmetic import ANYTHING, DISTINCT, JUMPING, LOOSE, ROUNDING, ZERO, Pair, Ranges, is_thin
+from synth.proof.interval_arithmetic import ANYTHING, DISTINCT, JUMPING, ROUNDING, ZERO, Pair, Ranges, is_thin
 from synth.proof.tape import Expr, Ref, Tape, sign_of
 
 Slopes: TypeAlias = dict[Any, Pair]
@@ -66,7 +66,8 @@ class NodeComparison:
     other: int | Expr
     sense: int
     scale: float = 0.0
-    loose: float = LOOSE
+    terms: int | None = None
+    loose: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,8 @@ class Encloser(Ranges):
         # Which side of a choice is taken in a box depends on the whole box, not on its middle.
         first = [args[0].range] if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) else [args[0].center]
         v = Enclosed(r, r if jumps else self.range_of(node, first + [a.center for a in args[1:]]))
-        v.whole = not jumps and all(a.whole for a in (args[1:] if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) else args))
+        shown = args[1:] if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) else args
+        v.whole = is_thin(r) or (not jumps and all(a.whole for a in shown))
         clip = None if jumps or len(key) > 1 else self._clip_of(key[0], v)
         v.sign = 0 if clip else self._sign(v, key)
         if not jumps and self.with_slopes and any(a.slopes for a in args):
@@ -517,19 +519,22 @@ class Encloser(Ranges):
             else:
                 other = (cut.other, cut.other)
             low, high = v.narrow
+            if cut.terms is not None and cut.terms not in found:
+                continue  # its size is not known yet; the row of the limit says the same
+            scale: Expr = cut.scale if cut.terms is None else found[cut.terms].range[1]
             if cut.sense >= 0:
-                high = self.do("fmin", high, self._loosened(other[1], cut, 1.0))
+                high = self.do("fmin", high, self._loosened(other[1], cut.loose, scale))
             if cut.sense <= 0:
-                low = self.do("fmax", low, self._loosened(other[0], cut, -1.0))
+                low = self.do("fmax", low, self._loosened(other[0], -cut.loose, scale))
             if v.sign:
                 self._mark(v.sign, low, high)
             v.narrow = (low, high)
 
-    def _loosened(self, end: Expr, cut: NodeComparison, direction: float) -> Expr:
-        if cut.loose == 0:
+    def _loosened(self, end: Expr, share: float, scale: Expr) -> Expr:
+        if share == 0:
             return end
-        size = self.do("maximum", self.do("absolute", end), cut.scale)
-        return self.do("add", end, self.do("multiply", direction * cut.loose, size))
+        size = self.do("maximum", self.do("absolute", end), scale)
+        return self.do("add", end, self.do("multiply", share, size))
 
     def carried_back(
         self, nodes: Sequence[Node], order: Sequence[int], found: Mapping[int, Enclosed]

@@ -14,7 +14,6 @@ from synth.proof.tape import Expr, Ref, Tape, sign_of
 Pair: TypeAlias = tuple[Expr, Expr]
 
 INF = math.inf
-LOOSE = 2e-6  # limits are cut looser than the tolerance of feasibility; the proof's own, not that of synth.bounds
 DISTINCT = 1e-6  # a value this far from zero, in relation to its largest, has a useful logarithm
 ROUNDING = 2e-15  # of the larger term of a sum that may cancel
 ZERO: Pair = (0.0, 0.0)

@@ -39,8 +39,10 @@ class LimitSides:
     bound: int | float
     sense: str
     scale: float
+    terms: int | None = None  # instruction of its largest term, where the sides do not tell it
     void: tuple[int, ...] = ()
     guard: bool = False
+    share: float = 1.0  # of the tolerances of limits
 
 
 @dataclass(frozen=True)

@@ -25,11 +25,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.model.limit_terms import LimitTerms
 from synth.model.model import Model
 from synth.model.program import Program
 from synth.proof.clusters import FAR, TINY, Clusters
 from synth.proof.enclosure import Enclosed, Encloser, NodeComparison
-from synth.proof.interval_arithmetic import INF, LOOSE
+from synth.proof.interval_arithmetic import INF
 from synth.proof.multipliers import StraightRows, lifted_value
 from synth.proof.questions import Coordinate, LimitSides, Point, ProofOutcome
 from synth.proof.tape import Expr, Ref, Tape
@@ -37,8 +38,6 @@ from synth.proof.tightening import ProofRow, _Step
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.instance import Instance
 from synth.special import expanded
-
-NO_SCALE = 1e-9  # SI, of limits that the user added; the proof's own reading of what feasibility says
 
 
 @dataclass
@@ -77,6 +76,18 @@ def void_without(model: Model) -> dict[str, list[int]]:
     return found
 
 
+def moved_limits(instance: Instance) -> dict[str, bool]:
+    """Per limit, in order: whether something continuous enters it."""
+    ranges, model = instance.ranges, instance.model
+    free = [
+        k
+        for k, (low, high, grid) in enumerate(zip(ranges.lower, ranges.upper, ranges.grids(), strict=True))
+        if low < high and not len(grid)
+    ]
+    moving = model.program.dependence(free)
+    return {x.name: any(moving[k] for k in x.nodes) for x in instance.constraints}
+
+
 class ProofTree:
     """A question as a tree can prove it; made once, asked for any regions of the objectives.
 
@@ -91,6 +102,8 @@ class ProofTree:
     guided : bool
         Boxes begin with the whole question, carry an inner value that objectives see (``lifted_value``), and are split
         where the limits that hold a design in its place are spread (``synth.proof.multipliers``).
+    share : float
+        Of the tolerances of limits that something continuous moves (``ProofLimits.share_for``).
     """
 
     def __init__(
@@ -99,8 +112,10 @@ class ProofTree:
         objectives: Mapping[str, str],
         limits: ProofLimits = PROOF,
         guided: bool = False,
+        share: float = 1.0,
     ) -> None:
         self.instance, self.limits, self.guided = instance, limits, guided
+        self._shares = {name: share if moved else 1.0 for name, moved in moved_limits(instance).items()}
         self._senses = [1 if sense == "min" else -1 for sense in objectives.values()]
         model = instance.model
         sides: list[Any] = [model.quantity_sx[name] for name in objectives]
@@ -108,6 +123,7 @@ class ProofTree:
         sides += [model.quantity_sx[x.quantity] for x in instance.limits.judging]
         sides += [refusal.when for refusal in instance.selection.joint_refusals]
         self.program = Program(model.inputs, sides, model.calls)
+        self._terms = LimitTerms(self.program, len(model.variables), *model.zeros())
         self._used = set(self.program.needed(self.program.outputs))
         self._coordinates: list[Coordinate] = []
         self._variables: list[
@@ -193,16 +209,21 @@ class ProofTree:
             optional = [self._inputs[first + k] for k in void_inputs[limit.name]]
             if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
                 void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
-                self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))
+                terms = None if limit.guard else self._terms.of([value, bound], limit.scale)
+                share = self._shares[limit.name]
+                self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, terms, void, limit.guard, share))
         for x in self.instance.limits.judging:
-            self._limits.append(LimitSides(next(outputs), float(x.bound), x.sense, NO_SCALE))
+            value = next(outputs)
+            own = LimitSides(value, float(x.bound), x.sense, x.scale, self._terms.of([value]))
+            self._limits.append(replace(own, share=self._shares[x.name]))
         self._refusals = list(outputs)
 
     def _in_order(self) -> list[int]:
         """Return all instructions, the bounds of limits first, so that they can cut the values when those come."""
         first = [x.bound for x in self._limits if isinstance(x.bound, int)]
         order: dict[int, None] = {}
-        for node in [*first, *(x.value for x in self._limits), *self.program.outputs]:
+        terms = [x.terms for x in self._limits if x.terms is not None]
+        for node in [*first, *terms, *(x.value for x in self._limits), *self.program.outputs]:
             order.update(dict.fromkeys(self.program.needed([node])))
         return list(order)
 
@@ -215,10 +236,11 @@ class ProofTree:
         for x in self._limits:
             if not x.void:
                 direction = {"at_most": 1, "at_least": -1, "equal": 0}[x.sense]
-                loose = 0.0 if x.guard else LOOSE  # a guard has no tolerance
-                cuts.setdefault(x.value, []).append(NodeComparison(x.bound, direction, x.scale, loose))
+                loose = 0.0 if x.guard else x.share * self.limits.cut_tolerance  # a guard has no tolerance
+                cuts.setdefault(x.value, []).append(NodeComparison(x.bound, direction, x.scale, x.terms, loose))
                 if isinstance(x.bound, int):
-                    cuts.setdefault(x.bound, []).append(NodeComparison(x.value, -direction, x.scale, loose))
+                    other = NodeComparison(x.value, -direction, x.scale, x.terms, loose)
+                    cuts.setdefault(x.bound, []).append(other)
         return cuts
 
     # -- the root box --------------------------------------------------------------------------
@@ -380,28 +402,38 @@ class ProofTree:
     ) -> list[ProofRow]:
         value = found[x.value]
         bound = found[x.bound] if isinstance(x.bound, int) else Enclosed.constant(x.bound)
+        terms = None if x.terms is None else found[x.terms]
         void = masks[x.void] if x.void else None
         rows = []
         if x.sense in ("at_most", "equal"):
-            rows.append(self._limit_row(encloser, value, bound, x, void))
+            rows.append(self._limit_row(encloser, value, bound, x, void, terms))
         if x.sense in ("at_least", "equal"):
-            rows.append(self._limit_row(encloser, bound, value, x, void))
+            rows.append(self._limit_row(encloser, bound, value, x, void, terms))
         return rows
 
-    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> ProofRow:
+    def _limit_row(
+        self,
+        e: Encloser,
+        small: Enclosed,
+        large: Enclosed,
+        x: LimitSides,
+        void: Ref | None,
+        terms: Enclosed | None = None,
+    ) -> ProofRow:
         """Return small <= large as a row: log(small/large), or their difference over their size."""
-        do, scale, limits = e.do, x.scale, self.limits
-        share = limits.guard_tolerance if x.guard else limits.row_tolerance
-        if small.sign > 0 and large.sign > 0 and scale <= max(small.least, large.least):
+        do, limits = e.do, self.limits
+        share = limits.guard_tolerance if x.guard else x.share * limits.row_tolerance
+        if terms is None and small.sign > 0 and large.sign > 0 and x.scale <= max(small.least, large.least):
             ends = []
             for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
                 ends.append(do("subtract", do("log", do("divide", a[0], b[1])), share))
             slopes = e.merged(e.logarithmic(small), e.logarithmic(large), e.subtract)
             return ProofRow(ends[0], ends[1], ends[2], slopes, void)
-        size = do("maximum", do("absolute", large.center[0]), do("maximum", do("absolute", small.center[0]), scale))
+        least, most = (x.scale, x.scale) if terms is None else (terms.center[0], terms.range[1])
+        size = do("maximum", do("absolute", large.center[0]), do("maximum", do("absolute", small.center[0]), least))
         factor = do("divide", 1.0, size)
         pair = (factor, factor)
-        tolerance = do("multiply", share, do("maximum", e.largest(large.range), scale))
+        tolerance = do("multiply", share, do("maximum", e.largest(large.range), most))
         ends = []
         for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
             ends.append(do("subtract", do("subtract", a[0], b[1]), tolerance))

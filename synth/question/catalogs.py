@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +17,15 @@ ALIKE = 0.75  # of two names of columns, of which one may be a misspelling of th
 _shipped: dict[str, Catalogs] = {}
 
 
-def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) -> Catalogs:
+def catalogs_for(
+    problem: DesignProblem,
+    spec: Any,
+    base: Path | None = None,
+    kept: Mapping[str, Sequence[Mapping[str, Any]]] | None = None,
+) -> Catalogs:
     """Return catalogues for what the user gave with a question.
+
+    ``kept``: rows that a record has kept, as for :class:`Catalogs`.
 
     Raises
     ------
@@ -27,7 +34,7 @@ def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) ->
     """
     if spec is None or isinstance(spec, Catalogs):
         return as_catalogs(spec)
-    catalogs = Catalogs(spec, base=base)
+    catalogs = Catalogs(spec, base=base, kept=kept)
     refuse_unused(problem, catalogs)
     return catalogs
 
@@ -43,8 +50,7 @@ def refuse_unused(problem: DesignProblem, catalogs: Catalogs) -> None:
     if not catalogs.added:
         return
     d = problem.model(frozenset(), catalogs).declaration
-    used = {part.table for part in [*d.slots.values(), *d.rows.values()]}
-    used |= {setting.table for setting in problem.simulation_settings.values() if setting.table}
+    used = d.tables() | {setting.table for setting in problem.simulation_settings.values() if setting.table}
     for name in catalogs.added:
         if name not in used:
             close = difflib.get_close_matches(name, used, n=2, cutoff=0.4)
@@ -75,9 +81,7 @@ def lacking_columns(problem: DesignProblem, catalogs: Catalogs) -> list[InputErr
         if others or (name in table.columns and table.columns[name].numeric):
             continue
         meant = meant_by(name, [column for column in table.columns if column not in part.columns])
-        right = f"a number column, which slot {part.slot} uses" + (f"; did you mean {meant}?" if meant else "")
-        where = f"table {part.table}, column {name}"
-        found.setdefault((part.table, name), InputError(where, None, right, ("catalogs", part.table, name)))
+        found.setdefault((part.table, name), part.lacking(name, f"; did you mean {meant}?" if meant else ""))
     return list(found.values())
 
 

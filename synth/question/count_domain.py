@@ -18,6 +18,7 @@ from synth.declaration import Count
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
+from synth.text.numbers import typed_number
 from synth.units import parse_quantity
 
 COMPARES = re.compile(r"^\s*[<>=]|\.\.")
@@ -82,8 +83,8 @@ def values_of_set(count: Count, value: Any, field: str) -> np.ndarray:
     for entry in given:
         wanted = parse_quantity(entry, count.unit, label)
         if np.min(np.abs(steps - wanted)) > MARGINS.step:
-            step = f" in steps of {steps[1] - steps[0]:g}" if len(steps) > 1 else ""
-            raise InputError(label, entry, f"values from {steps[0]:g} to {steps[-1]:g}{step}")
+            step = f" in steps of {typed_number(steps[1] - steps[0])}" if len(steps) > 1 else ""
+            raise InputError(label, entry, f"values from {typed_number(steps[0])} to {typed_number(steps[-1])}{step}")
     numbers = np.array([parse_quantity(entry, count.unit, label) for entry in given])
     return np.asarray(steps[np.any(np.abs(steps[:, None] - numbers[None, :]) <= MARGINS.step, axis=1)])
 
@@ -96,7 +97,7 @@ def shown_set(values: Sequence[float] | np.ndarray) -> str:
     >>> shown_set([8.0, 12.0, 4.5])
     '[8, 12, 4.5]'
     """
-    return f"[{', '.join(f'{x:.12g}' for x in values)}]"
+    return f"[{', '.join(typed_number(x, 12) for x in values)}]"
 
 
 def stated(asked: Mapping[Any, Any] | None) -> dict[Any, Any]:

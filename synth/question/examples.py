@@ -9,7 +9,7 @@ from typing import Any
 
 from synth.files import read_text
 from synth.model.problem import DesignProblem
-from synth.model.registry import families, load
+from synth.model.registry import every_family
 from synth.question.spec import read_content
 
 ENDING = ".yaml"
@@ -46,7 +46,7 @@ class Example:
 
 def examples() -> list[Example]:
     """Return the examples of all registered families, by family and name."""
-    return [example for family in families() for example in examples_of(load(family))]
+    return [example for problem in every_family().values() for example in examples_of(problem)]
 
 
 def examples_of(problem: DesignProblem) -> list[Example]:

@@ -7,20 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth.kernels.loading import native_code
 from synth.model.model import Model
 from synth.model.program import InputValue
 from synth.model.slot_comparison import SlotComparison, comparisons_of
 from synth.question.combinations import Combinations
 from synth.question.inputs import inputs_of_combination
 from synth.question.names import known_requirements
+from synth.question.objectives import quantities_compared
 from synth.question.offers import select
 from synth.question.refusals import leave_out_refused, leave_out_without_partner, refuse_requirements
 from synth.question.requirement_values import RequirementValues
+from synth.question.rows_without_value import leave_out_without_value
 from synth.question.search_space import SearchSpace
 from synth.question.selection import Selection
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
-from synth.results.provenance import Fingerprint, code_digest, hash_of, joined, native_code, problem_digest, processor
+from synth.results.provenance import Fingerprint, code_digest, hash_of, joined, problem_digest, processor
 
 if TYPE_CHECKING:
     from synth.question.request import Request
@@ -65,6 +68,9 @@ class Instance(SearchSpace):
         if restrict and refuse:
             leave_out_refused(model, self.values, selection, limits.fixed)
             leave_out_without_partner(model, self.compared, selection)
+        if restrict:
+            needed = [*quantities_compared(model, request.objectives), *(x.quantity for x in limits.judging)]
+            leave_out_without_value(model, ranges, self.values, selection, needed)
         labels = {c.name: c.labels for c in model.declaration.choices.values()}
         super().__init__(model, ranges, limits, selection, Combinations(selection, labels))
 

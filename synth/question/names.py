@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Collection, Mapping
+from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
-from synth.declaration import Declaration
+from synth.declaration import Declaration, RequirementRecord
 from synth.errors import InputError
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.tables.catalogs import Catalogs
+from synth.units import TORQUE_OF_POWER, parse_quantity, parse_unit
+
+POWER = re.compile(r"(?:\w*_)?power(?:_\w*)?|leistung|p", re.IGNORECASE)
 
 
 @lru_cache(maxsize=128)
@@ -65,7 +70,43 @@ def requirement_named(word: str, value: Any, problem: DesignProblem, model: Mode
     """
     if word not in model.declaration.names():
         _refuse_of_other_options(problem, word, value, model, catalogs)
+        refuse_power(word, value, model.declaration.requirements.values())
     return model.name_of(word, "requirements", list(model.declaration.requirements), "a requirement")
+
+
+def refuse_power(word: str, value: Any, requirements: Collection[RequirementRecord]) -> None:
+    """Refuse a power where a torque is asked, and say how that follows from it.
+
+    Parameters
+    ----------
+    word : str
+        What is stated, and none of the requirements.
+    value : object
+        Its value.
+    requirements : collection of RequirementRecord
+        Those that can be stated.
+
+    Raises
+    ------
+    InputError
+        The word is that of a power, or the value is one.
+    """
+    needed = [r for r in requirements if r.default is None and not r.optional]
+    torques = dict.fromkeys(r.name for r in needed if parse_unit(r.unit).kind == "torque")
+    close = get_close_matches(word, [r.name for r in requirements], n=1, cutoff=0.6)
+    if torques and not close and (POWER.fullmatch(word) or _is_power(value)):
+        right = f"{' or '.join(torques)}: {TORQUE_OF_POWER}"
+        raise InputError(f"requirement {word}", value, right, ("requirements", word))
+
+
+def _is_power(value: Any) -> bool:
+    if not isinstance(value, str) or not value.strip()[-1:].isalpha():
+        return False  # a bare number is one of anything
+    try:
+        parse_quantity(value, "W", "power")
+    except InputError:
+        return False
+    return True
 
 
 def _refuse_of_other_options(problem: DesignProblem, word: str, value: Any, model: Model, catalogs: Catalogs) -> None:

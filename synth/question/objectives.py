@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from synth.errors import InputError
 from synth.model.model import Model
-from synth.question.instance import Instance
-from synth.question.spec_keys import shown_kind
+from synth.question.spec_keys import is_number, shown_kind
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
@@ -54,6 +53,13 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
     return result
 
 
+def quantities_compared(model: Model, asked: Any) -> list[str]:
+    """Quantities that are objectives of a question; none of objectives that are refused when the question is posed."""
+    with suppress(InputError):
+        return list(chosen_objectives(model, asked))
+    return []
+
+
 def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
     """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
     result = dict(chosen)
@@ -66,14 +72,13 @@ def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
     return result
 
 
-def weights_of(instance: Instance, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
+def weights_of(model: Model, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
     """Return the weights of the chosen objectives, 1 where none is asked; refuse what is no weight."""
     values = dict.fromkeys(chosen, 1.0)
-    for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
-        number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan
-        if not (math.isfinite(number) and number >= 0):
+    for name, weight in model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
+        if not (is_number(weight) and weight >= 0):
             raise InputError(f"weights: {name}", weight, "a number that is not negative", ("weights", name))
-        values[name] = float(number)
+        values[name] = float(weight)
     if not any(values.values()):
         raise InputError("weights", dict(asked), "at least one weight above 0", ("weights",))
     return list(values.values())

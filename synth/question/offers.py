@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -20,6 +21,7 @@ from synth.question.user_limits import UserLimits
 from synth.tables.catalogs import Catalogs
 from synth.tables.conditions import may_be_condition, parse_condition
 from synth.tables.table import Table
+from synth.text.numbers import typed_number
 
 
 def select(model: Model, catalogs: Catalogs, rules: Mapping[str, Any], limits: UserLimits) -> Selection:
@@ -62,21 +64,63 @@ def offers(part: Part, table: Table) -> np.ndarray:
     """Return which rows of a table meet the conditions of the slot."""
     keep = np.ones(len(table), dtype=bool)
     for text in part.where:
-        keep &= table.once(("meets", text), partial(_meets, text, table))
+        keep &= _meets_once(text, table)
     return keep
+
+
+@dataclass(frozen=True)
+class _Rule:
+    """A rule for the rows of a slot: which meet it, and of which an empty cell decides that (rows,)."""
+
+    text: str
+    met: np.ndarray
+    undecided: np.ndarray
+
+
+def _meets_once(text: str, table: Table) -> np.ndarray:
+    """Rows that meet one condition of a slot, found once per table."""
+    return table.once(("meets", text), partial(_meets, text, table))
+
+
+def _undecided(rule: Any, table: Table) -> np.ndarray:
+    """Rows of which an empty cell decides whether they meet a rule: none where it is no condition on columns."""
+    if _is_condition(rule, table):
+        condition = parse_condition(rule).local()
+        if all(table.has(c) for c in condition.columns if "." not in c):
+            return condition.undecided(table)
+    return np.zeros(len(table), dtype=bool)
+
+
+def _undecided_of_user(text: str, table: Table) -> np.ndarray:
+    """Rows of the user's own of which an empty cell decides whether they meet a condition of the slot."""
+    return table.user_rows & _undecided(text, table) if table.user_rows.any() else table.user_rows.copy()
 
 
 def _rows_of(
     part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
 ) -> np.ndarray:
     """Return which rows of the table may fill a slot; note those that are not complete."""
-    keep = offers(part, table)
+    # Of shipped rows the family knows which its conditions leave out; a user learns which of theirs lack what decides.
+    rules = [
+        _Rule(text, _meets_once(text, table), table.once(("undecided", text), partial(_undecided_of_user, text, table)))
+        for text in part.where
+    ]
     if part.slot in wanted:
+        asked = wanted[part.slot]
         with at("parts", part.slot):
-            keep &= _part_rule(part, table, wanted[part.slot])
+            rules.append(_Rule(str(asked), _part_rule(part, table, asked), _undecided(asked, table)))
     if part.slot in limits.fixed:
         with at("fix", part.slot):
-            keep &= np.arange(len(table)) == table.row_index(str(limits.fixed[part.slot]))
+            pinned = np.arange(len(table)) == table.row_index(str(limits.fixed[part.slot]))
+            rules.append(_Rule("", pinned, np.zeros(len(table), dtype=bool)))
+    keep, perhaps = np.ones(len(table), dtype=bool), np.ones(len(table), dtype=bool)
+    for rule in rules:
+        keep, perhaps = keep & rule.met, perhaps & (rule.met | rule.undecided)
+    for row in np.flatnonzero(perhaps & ~keep):
+        text = next(rule.text for rule in rules if not rule.met[row])
+        empty = " or ".join(c for c in sorted(parse_condition(text).columns) if table.has(c) and table.empty(c)[row])
+        reason = f"no value in column {empty}, which the condition {text} asks for"
+        selection.leave_out(part.slot, table.designations[row], reason)
     for column in part.columns.values():
         if not column.required:
             continue
@@ -101,7 +145,8 @@ def _refuse_empty(
     lacking = sorted({e["reason"] for e in selection.left_out if e["slot"] == part.slot})
     failing = [c for c in part.where if not _meets(c, table)[rows].any()]
     if not rows.any():
-        expected = f"rules for this slot that leave at least one row of table {part.table}"
+        told = f" ({'; '.join(lacking)})" if lacking else ""
+        expected = f"rules for this slot that leave at least one row of table {part.table}{told}"
     elif failing:
         expected = f"a row of table {part.table} with {' and '.join(failing)}"
     elif lacking:
@@ -125,10 +170,15 @@ def _meets(text: str, table: Table) -> np.ndarray:
     return mask
 
 
+def _is_condition(rule: Any, table: Table) -> bool:
+    """Whether a rule of the user is a condition on columns."""
+    return isinstance(rule, str) and rule not in table.designations and may_be_condition(rule)
+
+
 def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
     """Return which rows a rule of the user allows: a condition, a designation, or a list of these."""
     keep = np.zeros(len(table), dtype=bool)
-    if isinstance(rule, str) and rule not in table.designations and may_be_condition(rule):
+    if _is_condition(rule, table):
         return parse_condition(rule).local().mask(table)
     if not isinstance(rule, (str, Sequence)):
         raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")
@@ -166,9 +216,12 @@ def _values_of(count: Count, limits: UserLimits) -> np.ndarray:
     if len(values):
         return values
     low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
-    asked = [f"{SIGNS[x.sense]} {x.bound:g}" for x in bounding] + [f"in {shown_set(steps)}" for steps in sets]
-    asked += [f"== {limits.fixed[count.name]:g}"] if pinned else []
-    expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
+    asked = [f"{SIGNS[x.sense]} {typed_number(x.bound)}" for x in bounding] + [
+        f"in {shown_set(steps)}" for steps in sets
+    ]
+    asked += [f"== {typed_number(limits.fixed[count.name])}"] if pinned else []
+    ends = f"from {typed_number(low)} to {typed_number(high)}"
+    expected = f"conditions that leave a value {ends} in steps of {typed_number(step)}"
     raise InputError(count.name, " and ".join(asked), expected, ("fix" if pinned else "limits", count.name))
 
 

@@ -17,7 +17,8 @@ from synth.model.slot_comparison import SlotComparison
 from synth.question.requirement_values import RequirementValues
 from synth.question.selection import Selection, SlotRows
 from synth.special import expanded
-from synth.units import format_quantity
+from synth.text.numbers import typed_number
+from synth.units import typed_quantity
 
 # Rows of slots together whose comparison is looked at before the search. Part of the question, not of how it is
 # searched: it decides which rows a result tells as left out.
@@ -41,7 +42,7 @@ def _refused(model: Model, values: RequirementValues, refusal: Refusal) -> Refus
     """Return the fault of what the family refuses: in requirements, or where it speaks of none in options."""
     d, used = model.declaration, {str(s) for s in ca.symvar(expanded(refusal.when, model.calls))}
     shown = {
-        r.name: f"{r.name} = {format_quantity(values.requirements[r.name], r.unit)}"
+        r.name: f"{r.name} = {typed_quantity(values.requirements[r.name], r.unit)}"
         for r in d.requirements.values()
         if r.name in values.requirements and str(r.sx) in used
     }
@@ -91,7 +92,7 @@ def _leave_out_one(
     )
     if not bad.any():
         return
-    labels = _labels(model, selection, name)
+    labels = labels_of(model, selection, name)
     for k in np.flatnonzero(bad):
         selection.leave_out(name, labels[k], f"{refusal.code}: {refusal.message}")
     if bad.all():
@@ -111,14 +112,14 @@ def _alternatives(model: Model, selection: Selection, name: str) -> list[dict[st
     return [{symbols[key]: float(values[k]) for key, values in slot.columns.items()} for k in range(len(slot.rows))]
 
 
-def _labels(model: Model, selection: Selection, name: str) -> list[str]:
-    """Return what each alternative of a slot, count or choice is called."""
+def labels_of(model: Model, selection: Selection, name: str) -> list[str]:
+    """Names of the alternatives of a slot, count or choice."""
     slot, choice = selection.slot(name), model.declaration.choices.get(name)
     if slot is not None:
         return slot.labels()
     if choice is not None:
         return [choice.labels[int(v)] for v in selection.choices[name]]
-    return [f"{v:g}" for v in selection.counts[name]]
+    return [typed_number(v) for v in selection.counts[name]]
 
 
 # -- conditions that compare slots -------------------------------------------------------------

@@ -15,7 +15,7 @@ from synth.margins import MARGINS, within
 from synth.model.model import Model
 from synth.question.inputs import fixed_designation, fixed_row_values
 from synth.tables.catalogs import Catalogs
-from synth.units import Quantity, format_quantity, from_si, parse_quantity, parse_unit
+from synth.units import TORQUE_OF_POWER, Quantity, from_si, parse_quantity, parse_unit, typed_quantity
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -139,7 +139,8 @@ def value_of(r: RequirementRecord, typed: Any) -> float:
 
 def missing(r: RequirementRecord) -> InputError:
     """Return what is said of a requirement that must be stated and is not."""
-    right = f"a value in {r.unit}, for example {_example(r)}"
+    of_power = f"; from a power, {TORQUE_OF_POWER}" if parse_unit(r.unit).kind == "torque" else ""
+    right = f"a value in {r.unit}, for example {_example(r)}{of_power}"
     return InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
 
 
@@ -154,7 +155,7 @@ def _example(requirement: RequirementRecord) -> str:
 def _check_range(r: RequirementRecord, typed: Any, value: float) -> None:
     if within(value, r.lower, r.upper, MARGINS.stated):
         return
-    low, high = format_quantity(r.lower, r.unit), format_quantity(r.upper, r.unit)
+    low, high = typed_quantity(r.lower, r.unit), typed_quantity(r.upper, r.unit)
     if np.isfinite(r.lower) and np.isfinite(r.upper):
         expected = f"{low} to {high}"
     else:

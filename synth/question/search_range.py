@@ -11,7 +11,8 @@ import numpy as np
 from synth.declaration import Count, VariableRecord
 from synth.errors import InputError
 from synth.margins import MARGINS, within
-from synth.units import format_quantity
+from synth.text.numbers import typed_number
+from synth.units import typed_quantity
 
 if TYPE_CHECKING:
     from synth.model.model import Evaluation, Model
@@ -28,9 +29,10 @@ def shown_range(unknown: VariableRecord | Count) -> str:
     '2 to 60 in steps of 2'
     """
     low, high = _ends(unknown)
-    text = f"{format_quantity(low, unknown.unit)} to {format_quantity(high, unknown.unit)}"
+    first, last = typed_quantity(low, unknown.unit), typed_quantity(high, unknown.unit)
+    text = first if low == high else f"{first} to {last}"
     steps = _steps(unknown)
-    return f"{text} in steps of {steps[1] - steps[0]:g}" if len(steps) > 1 else text
+    return f"{text} in steps of {typed_number(steps[1] - steps[0])}" if len(steps) > 1 else text
 
 
 def outside(model: Model, values: Mapping[str, float]) -> dict[str, str]:
@@ -47,7 +49,7 @@ def outside(model: Model, values: Mapping[str, float]) -> dict[str, str]:
         inside = within(value, low, high, MARGINS.end)
         steps = _steps(unknown)
         if not inside or (len(steps) and np.min(np.abs(steps - value)) > MARGINS.step):
-            result[unknown.name] = f"{format_quantity(value, unknown.unit)}, searched is {shown_range(unknown)}"
+            result[unknown.name] = f"{typed_quantity(value, unknown.unit)}, searched is {shown_range(unknown)}"
     return result
 
 
@@ -60,7 +62,7 @@ def refuse_other_sign(model: Model, values: Mapping[str, float]) -> None:
     """
     for unknown in _unknowns(model):
         value, (low, high) = values.get(unknown.name, math.nan), _ends(unknown)
-        zero = format_quantity(0.0, unknown.unit)
+        zero = typed_quantity(0.0, unknown.unit)
         for wrong, expected in (
             (low > 0 >= value, f"above {zero}"),
             (low == 0 > value, f"at least {zero}"),
@@ -68,7 +70,7 @@ def refuse_other_sign(model: Model, values: Mapping[str, float]) -> None:
             (high == 0 < value, f"at most {zero}"),
         ):
             if wrong:
-                shown = format_quantity(value, unknown.unit)
+                shown = typed_quantity(value, unknown.unit)
                 right = f"a value {expected} (searched is {shown_range(unknown)})"
                 raise InputError(f"values: {unknown.name}", shown, right, ("values", unknown.name))
 

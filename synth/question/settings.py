@@ -9,7 +9,7 @@ from typing import Any
 
 from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
-from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_finite, is_gap, read_keys
+from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_gap, is_number, read_keys
 
 Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
 LEAST_SECONDS = 1e-3  # for a search when all that goes before it has taken the time there is
@@ -53,7 +53,7 @@ class SearchSettings:
         self._hold("workers", whole_number(self.workers, "workers", INPUT_LIMITS.workers, path=("workers",)))
         self._hold("seed", whole_number(self.seed, "seed", INPUT_LIMITS.seed, least=0, path=("seed",)))
         limit = self.time_limit
-        if limit is not None and not (is_finite(limit) and limit > 0):
+        if limit is not None and not (is_number(limit) and limit > 0):
             raise InputError("time_limit", limit, "a positive number of seconds", ("time_limit",))
 
     def _hold(self, name: str, value: float) -> None:

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from synth.question.request import Request
     from synth.question.settings import SearchSettings
 
+# Whole numbers that Python does not read.
+_LONG, _SHORTER = "a number of thousands of digits", "numbers below 1e308"
+
 
 @dataclass(frozen=True)
 class Spec:
@@ -47,6 +50,7 @@ class Spec:
     weights: Mapping[str, float]
     robust: Mapping[str, Any]
     values: Mapping[str, Any] | None
+    rows: Mapping[str, Mapping[str, Any]]
     points: int | None
     gap: float | None
     grid: bool | None
@@ -128,14 +132,16 @@ def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
 
 
 class _StrictLoader(yaml.SafeLoader):
-    """YAML without its surprises: no duplicate keys, no aliases, no octal or base-60 numbers, no dates."""
+    """YAML without its surprises: no duplicate keys, no aliases, no tags, no octal or base-60 numbers, no dates."""
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012  (PyYAML's own habit)
 
     def compose_node(self, parent: Any, index: Any) -> Any:
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         if self.check_event(yaml.events.AliasEvent):
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
-            raise yaml.composer.ComposerError(None, None, "an alias (*name); write the value out", mark)
+            raise yaml.composer.ComposerError(None, None, "an alias (*name); write the value out", event.start_mark)
+        if getattr(event, "tag", None) is not None:
+            raise yaml.composer.ComposerError(None, None, "a tag (!name)", event.start_mark)
         return super().compose_node(parent, index)
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
@@ -160,7 +166,11 @@ for _tag, _pattern, _first in (
 
 
 def _decimal(loader: yaml.SafeLoader, node: Any) -> int:
-    return int(loader.construct_scalar(node))  # PyYAML's own would read 010 as eight
+    text = loader.construct_scalar(node)
+    try:
+        return int(text)  # PyYAML's own would read 010 as eight
+    except ValueError:
+        raise yaml.constructor.ConstructorError(None, None, _LONG, node.start_mark) from None
 
 
 _StrictLoader.add_constructor("tag:yaml.org,2002:int", _decimal)
@@ -249,7 +259,7 @@ def _parse_json(text: str, shown: str) -> Any:
     except RecursionError as error:
         raise InputError(shown, Described("brackets nested too deeply"), "JSON of a spec") from error
     except ValueError as error:  # of a number
-        raise InputError(shown, Described("a number of thousands of digits"), "numbers that can be meant") from error
+        raise InputError(shown, Described(_LONG), _SHORTER) from error
 
 
 def _parse_yaml(text: str, shown: str) -> Any:
@@ -288,6 +298,7 @@ _SLIPS = (
     _Slip("sequence entries are not allowed", "a dash where no list can begin"),
     _Slip("expected the node content, but found (?!another)", "a sign where a value should begin"),
     _Slip("expected <block end>|expected '<document start>'", "an entry that does not go on with those above it"),
+    _Slip(_LONG, _LONG, _SHORTER),
     _Slip("another document", "a second document after ---"),
 )
 

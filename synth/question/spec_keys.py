@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from numbers import Real
 from types import MappingProxyType
 from typing import Any
@@ -18,17 +18,23 @@ GAP_EXPECTED = "a fraction from 1e-6 to 0.5, for example 0.001"
 
 def is_gap(value: Any) -> bool:
     """Tell whether something can be the gap of a question: by how much a design may be better that is not excluded."""
-    return is_finite(value) and LEAST_GAP <= value <= LARGEST_GAP
+    return is_number(value) and LEAST_GAP <= value <= LARGEST_GAP
 
 
-def is_finite(value: Any) -> bool:
-    """Tell whether something is a finite number of any type; truth values are none."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+def is_number(value: Any) -> bool:
+    """Whether something is a number that a float holds, of any type; words and truth values are none."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        return False
 
 
 # What would be right, where whoever knows of commands may say which.
 ONE_FAMILY = "one family; to ask several is a comparison"
 A_QUESTION = "a question without values; a given design is evaluated, not searched"
+ROW_EXPECTED = "a row of a table as clutchsynth has written it"
 A_DESIGN = "the variables, counts and choices of the design; without them it is a question"
 
 
@@ -73,11 +79,6 @@ def shown_families(family: Any) -> str:
     """Return the family or the families in words."""
     entries = [family] if isinstance(family, str) else family
     return ", ".join(str(x["family"]) if isinstance(x, Mapping) else str(x) for x in entries)
-
-
-def is_number(value: Any) -> bool:
-    """Tell whether something is a finite number; words and truth values are none."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _text(where: str, value: Any) -> str:
@@ -146,13 +147,20 @@ def _scalars(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[s
     def check(where: str, value: Any) -> Mapping[str, Any]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
-            if sets and isinstance(entry, (list, tuple)) and all(isinstance(x, str) or is_number(x) for x in entry):
-                continue
-            if isinstance(entry, (Mapping, list, tuple)):
+            if sets and isinstance(entry, (list, tuple)):
+                _check_set(where, name, entry)
+            elif isinstance(entry, (Mapping, list, tuple)):
                 raise InputError(f"{where}: {name}", shown_kind(entry), f"one value, for example '{example}'", (name,))
         return checked
 
     return check
+
+
+def _check_set(where: str, name: str, entries: Sequence[Any]) -> None:
+    for k, entry in enumerate(entries):
+        if not isinstance(entry, str) and not is_number(entry):
+            right = "a finite number, or text such as '2 mm'"
+            raise InputError(f"{where}: {name}, entry {k + 1}", shown_kind(entry), right, (name, k))
 
 
 def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
@@ -163,7 +171,9 @@ def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str
         for name, entry in checked.items():
             listed = isinstance(entry, (list, tuple))
             entries = entry if listed else [entry]
-            if not entries or not all(isinstance(x, str) or (sets and listed and is_number(x)) for x in entries):
+            if sets and listed and entries:
+                _check_set(where, name, entry)
+            elif not entries or not all(isinstance(x, str) for x in entries):
                 right = f"text or a list of texts, for example '{example}'"
                 raise InputError(f"{where}: {name}", shown_kind(entry), right, (name,))
         return checked
@@ -197,6 +207,21 @@ def _catalogs(where: str, value: Any) -> Any:
         if not isinstance(table, str) or not all(isinstance(x, str) for x in entries):
             raise InputError(f"{where}: {table}", shown_kind(source), expected, (str(table),))
     return MappingProxyType(dict(value))
+
+
+def _rows(where: str, value: Any) -> Mapping[str, Mapping[str, Any]]:
+    """Return rows of tables as a design has kept them, in SI: TABLE/DESIGNATION -> column -> number or text."""
+    rows = _mapping("units/B: {designation: B, table: units, mass: 4.0, hash: ...}")(where, value)
+    for name, row in rows.items():
+        told = isinstance(row, Mapping) and all(
+            isinstance(row.get(key), str) for key in ("designation", "table", "hash")
+        )
+        cells = [x for column, x in row.items() if column != "units"] if told else []
+        units = row.get("units", {}) if told else {}
+        told &= isinstance(units, Mapping) and all(isinstance(x, str) for x in units.values())
+        if not told or not all(x is None or isinstance(x, str) or is_number(x) for x in cells):
+            raise InputError(f"{where}: {name}", shown_kind(row), ROW_EXPECTED, (name,))
+    return rows
 
 
 def _weights(where: str, value: Any) -> Mapping[str, float]:
@@ -252,6 +277,7 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
     "weights": _weights,
     "robust": _mapping("friction: catalogue range"),
     "values": _scalars("friction_surfaces: 10"),
+    "rows": _rows,
     "points": _whole(1, INPUT_LIMITS.points),
     "gap": _gap,
     "grid": _grid,
@@ -263,7 +289,8 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
 
 # What is asked, how it is searched, and what may concern one family of several alone.
 SEARCHED = ("points", "gap", "seed", "time_limit", "workers")
-ASKED = tuple(key for key in FIELDS if key not in ("values", *SEARCHED))
+OF_A_DESIGN = ("values", "rows")  # stand only in a DESIGN.yaml
+ASKED = tuple(key for key in FIELDS if key not in (*OF_A_DESIGN, *SEARCHED))
 OWN = ("family", "options", "requirements", "limits", "fix", "parts", "robust")
 
 

@@ -18,7 +18,7 @@ NONE = "none"  # in place of a range: does not scatter here
 SAMPLES, LEAST_SAMPLES = 4096, 64
 CONFIDENCE = 0.95
 KEYS = ("friction", "wear", "tolerance", "mode", "samples", "seed", "confidence", "scenarios")
-EXAMPLE = "'+-5 %', '+-0.1 mm' or '10 .. 20 mm'"
+EXAMPLE = "'+-5 %', '+10 %', '+-0.1 mm' or '10 .. 20 mm'"
 
 
 @dataclass(frozen=True)
@@ -78,8 +78,9 @@ def read_block(robust: Any, where: str = "robust") -> Uncertainty:
         return robust
     if not isinstance(robust, Mapping):
         raise InputError(where, robust, "names with ranges, for example {'friction': 'catalogue range'}", ("robust",))
-    block = {str(key): value for key, value in robust.items()}
-    tolerance = block.get("tolerance") or {}
+    empty = ("tolerance", "scenarios")  # may stand with nothing under them
+    block = {str(key): value for key, value in robust.items() if value is not None or key not in empty}
+    tolerance = block.get("tolerance", {})
     if not isinstance(tolerance, Mapping):
         expected = "variables with tolerances, for example {'length': '+-0.1 mm'}"
         raise InputError(f"{where}: tolerance", tolerance, expected, ("robust", "tolerance"))
@@ -102,7 +103,7 @@ def read_block(robust: Any, where: str = "robust") -> Uncertainty:
     with at("robust", "confidence"):
         confidence = _confidence(block.get("confidence", CONFIDENCE), f"{where}: confidence")
     with at("robust", "scenarios"):
-        scenarios = _scenarios(block.get("scenarios") or {}, f"{where}: scenarios")
+        scenarios = _scenarios(block.get("scenarios", {}), f"{where}: scenarios")
     return Uncertainty(
         MappingProxyType(ranges),
         MappingProxyType({str(k): v for k, v in tolerance.items()}),
@@ -127,9 +128,10 @@ def read_remaining(robust: Any, where: str = "robust") -> Uncertainty | None:
     if not isinstance(robust, Mapping):
         return read_block(robust, where)
     block = _scattering(robust)
-    if isinstance(block.get("tolerance"), Mapping):
-        block["tolerance"] = _scattering(block["tolerance"])
-    left = {**block.get("tolerance", {}), **{k: v for k, v in block.items() if k not in KEYS[2:]}}
+    tolerance = block.get("tolerance")
+    if isinstance(tolerance, Mapping):
+        block["tolerance"] = tolerance = _scattering(tolerance)
+    left = [k for k, v in block.items() if k not in KEYS[2:] or (k == "tolerance" and v)]
     return None if block != robust and not left else read_block(block, where)
 
 

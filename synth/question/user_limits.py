@@ -16,7 +16,7 @@ from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.question.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.question.variable_ranges import VariableRanges
-from synth.units import format_quantity, parse_quantity
+from synth.units import parse_quantity, typed_quantity
 
 SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
 SENSES |= {"≤": "at_most", "≥": "at_least"}
@@ -129,8 +129,8 @@ class UserLimits:
         name, unit = limit.quantity, limit.unit
         ceiling = self._model.declaration.derived[name].ceiling
         if limit.sense != "at_least" and limit.bound > ceiling:
-            right = f"at most {format_quantity(ceiling, unit)}"
-            raise InputError(f"limits: {name}", format_quantity(limit.bound, unit), right)
+            right = f"at most {typed_quantity(ceiling, unit)}"
+            raise InputError(f"limits: {name}", typed_quantity(limit.bound, unit), right)
         for other in self.judging:
             if other.quantity == name and contradict(other.sense, other.bound, limit.sense, limit.bound):
                 right = "limits that do not exclude each other"

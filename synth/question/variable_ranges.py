@@ -11,7 +11,8 @@ from synth.declaration import VariableRecord
 from synth.errors import InputError
 from synth.margins import MARGINS, within
 from synth.model.constraint import Constraint
-from synth.units import format_quantity
+from synth.question.search_range import shown_range
+from synth.units import typed_quantity
 
 
 class VariableRanges:
@@ -55,8 +56,8 @@ class VariableRanges:
             self.lower[k] = max(self.lower[k], limit.bound)
         if self.lower[k] > self.upper[k]:
             v = self.variables[k]
-            right = f"limits that leave something of {_declared(v)}"
-            raise InputError(f"limits: {v.name}", format_quantity(limit.bound, v.unit), right)
+            right = f"limits that leave something of {shown_range(v)}"
+            raise InputError(f"limits: {v.name}", typed_quantity(limit.bound, v.unit), right)
 
     def pin(self, name: str, typed: Any, value: float) -> None:
         """Let a variable have one value; any other name changes nothing.
@@ -79,7 +80,7 @@ class VariableRanges:
             return
         v = self.variables[k]
         if not within(value, v.lower, v.upper, MARGINS.stated):
-            raise InputError(f"fix: {v.name}", typed, _declared(v))
+            raise InputError(f"fix: {v.name}", typed, shown_range(v))
         self.lower[k] = self.upper[k] = value
         self.pinned[k] = True
 
@@ -96,14 +97,8 @@ class VariableRanges:
             values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
             inside = within(values, self.lower[k], self.upper[k], MARGINS.stated)
             if len(values) and not inside.any():
-                low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
+                low, high = typed_quantity(self.lower[k], v.unit), typed_quantity(self.upper[k], v.unit)
                 right = "a range that holds a makeable value (or grid: false)"
                 raise InputError(f"limits: {v.name}", f"{low} .. {high}", right, ("limits", v.name))
             result.append(values[inside])
         return result
-
-
-def _declared(variable: VariableRecord) -> str:
-    """Return the range that the family declares, in words."""
-    low, high = format_quantity(variable.lower, variable.unit), format_quantity(variable.upper, variable.unit)
-    return f"{low} to {high}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from synth.results.certificate import Certificate
     from synth.results.design import Design, Frame, PartRow, design_columns, design_row, shown_value
-    from synth.results.front import ParetoFront, foremost
+    from synth.results.front import ParetoFront, foremost, named_designs
 
 __all__ = [
     "Certificate",
@@ -19,6 +19,7 @@ __all__ = [
     "design_columns",
     "design_row",
     "foremost",
+    "named_designs",
     "shown_value",
 ]
 
@@ -32,6 +33,7 @@ _HOME = {
     "shown_value": "synth.results.design",
     "ParetoFront": "synth.results.front",
     "foremost": "synth.results.front",
+    "named_designs": "synth.results.front",
 }
 
 

@@ -68,6 +68,13 @@ def _objectives(designs: Sequence[Design], objectives: Mapping[str, str]) -> np.
     return np.array([[d.values[n] for n in objectives] for d in designs])
 
 
+def without_design(certificate: Certificate, interrupted: str) -> Status:
+    """Status of a front without designs: infeasible only where that is proven."""
+    if certificate.kind == "global":
+        return Status.INFEASIBLE
+    return Status.NOT_SOLVED if interrupted else Status.NOT_FOUND
+
+
 def front_of(
     question: Any,
     frame: Frame,
@@ -105,7 +112,7 @@ def front_of(
     if designs:
         status = Status.OPTIMAL if certificate.kind == "global" else Status.FEASIBLE
     else:
-        status = Status.NOT_SOLVED if interrupted else Status.INFEASIBLE
+        status = without_design(certificate, interrupted)
     return ParetoFront(
         frame=frame,
         designs=list(designs),

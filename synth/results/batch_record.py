@@ -12,12 +12,13 @@ from synth.results.front import ParetoFront
 
 # How rows stand, those with designs first, then what somebody must look at.
 WITH_DESIGNS = ("optimal", "feasible")
-FAILURES = ("failed", "refused", "bad_input", "infeasible")
+FAILURES = ("failed", "refused", "bad_input", "infeasible", "not_found")
 STATUSES = (*WITH_DESIGNS, *FAILURES, "not_solved")
 IN_WORDS = {
     "optimal": "with proven designs",
     "feasible": "with designs that are not proven",
     "infeasible": "without a feasible design",
+    "not_found": "without a design found",
     "bad_input": "with bad input",
     "refused": "refused by the search",
     "failed": "failed",
@@ -27,6 +28,7 @@ STATES = {  # of one row
     "optimal": "proven",
     "feasible": "not proven",
     "infeasible": "not feasible",
+    "not_found": "none found",
     "bad_input": "bad input",
     "refused": "refused",
     "failed": "failed",

@@ -17,11 +17,11 @@ from typing import Any
 from synth.errors import InputError
 from synth.feasibility import holds, residual, utilisation
 from synth.files import read_json
-from synth.plain_text import percent
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import digest_of, finite
 from synth.row_cells import CODE_OF, cell_value, named_column, text_code
+from synth.text.numbers import percent
 
 CALCULATION_FORMAT = 1
 CALCULATION = "calculation.json"

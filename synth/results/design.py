@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from synth.errors import InputError
-from synth.feasibility import Status
-from synth.files import yaml_text
+from synth.feasibility import Status, binds
+from synth.files import found_from, named_from, yaml_text
 from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
+from synth.results.plain import finite
 from synth.results.ratings import DesignRating
-from synth.units import finite_from_si, format_quantity, header, in_words
+from synth.units import finite_from_si, header, in_words, typed_quantity, written_quantity
 
 SOURCE = re.compile(r" \[[^\[\]]*\]$")  # behind a remark
 
@@ -21,11 +24,25 @@ SOURCE = re.compile(r" \[[^\[\]]*\]$")  # behind a remark
 class PartRow(Mapping[str, Any]):
     """One catalogue row that fills a slot: designation, columns in SI, source, confidence, table.
 
-    ``str()`` is the designation.
+    ``str()`` is the designation. ``units`` holds units of columns that no shipped table has, as people read them.
     """
 
-    def __init__(self, table: str, digest: str, columns: Mapping[str, Any]) -> None:
+    def __init__(
+        self, table: str, digest: str, columns: Mapping[str, Any], units: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
         self._columns = {**columns, "table": table, "hash": digest}
+        self.units = units
+
+    @classmethod
+    def read(cls, told: Mapping[str, Any]) -> PartRow:
+        """Return what a file says of it."""
+        cells = {name: x for name, x in told.items() if name not in ("table", "hash", "units")}
+        return cls(told["table"], told["hash"], cells, dict(told.get("units", {})))
+
+    def record(self) -> dict[str, Any]:
+        """Return what files say of it."""
+        cells = {name: finite(x) for name, x in self.items()}
+        return {**cells, "units": dict(self.units)} if self.units else cells
 
     def __getitem__(self, key: str) -> Any:
         return self._columns[key]
@@ -39,6 +56,11 @@ class PartRow(Mapping[str, Any]):
     def __str__(self) -> str:
         return str(self._columns["designation"])
 
+    @property
+    def key(self) -> str:
+        """What tells it from the rows of all tables."""
+        return f"{self['table']}/{self}"
+
     def __repr__(self) -> str:
         return f"PartRow({self._columns['table']}: {self})"
 
@@ -49,7 +71,7 @@ class Frame:
 
     ``restated`` holds what a DESIGN.yaml must repeat so that a check sees the same question: limits, catalogs;
     ``headline`` names what people decide by beside the objectives, ``sized_by`` the limit whose sides are what a design
-    carries and what it is sized for.
+    carries and what it is sized for. ``tables`` holds hashes of the user's own tables by name.
     """
 
     family: str
@@ -66,6 +88,25 @@ class Frame:
     restated: Mapping[str, Any] = field(default_factory=dict)
     headline: tuple[str, ...] = ()
     sized_by: str = ""
+    tables: Mapping[str, str] = field(default_factory=dict)
+
+    def placed(self, folder: Path) -> Frame:
+        """Return the frame with tables named from a folder, as files in it name them."""
+        return self._renamed(lambda text: named_from(text, folder))
+
+    def located(self, folder: Path) -> Frame:
+        """Return the frame with tables that files in a folder name found again."""
+        return self._renamed(lambda text: found_from(text, folder))
+
+    def _renamed(self, rename: Callable[[str], str]) -> Frame:
+        named = self.restated.get("catalogs")
+        if not isinstance(named, Mapping):
+            return self
+        renamed = {
+            table: rename(source) if isinstance(source, str) else [source[0], *map(rename, source[1:])]
+            for table, source in named.items()
+        }
+        return replace(self, restated={**self.restated, "catalogs": renamed})
 
 
 class DesignSteps(dict[str, float]):
@@ -85,10 +126,10 @@ class Design:
     ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells which
     values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds quantities
     on the way to others by name in SI, which hooks read, ``next_rows`` the rows of tables that come next to some of its
-    quantities. ``robust`` tells, where that was asked, how the design
-    stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and ``yield_high``, ``worst_limit``,
-    and per limit its worst point. ``digits`` is how many of a variable its file needs to say the same design (0:
-    all of them); None: it says all of them as text, counts too.
+    quantities, ``rows`` those of the user's own tables that it reads beside its parts. ``robust`` tells, where that was
+    asked, how the design stands what scatters: ``holds``, ``verdict``, ``proof``, ``yield`` with ``yield_low`` and
+    ``yield_high``, ``worst_limit``, and per limit its worst point. ``digits`` is how many of a variable its file needs
+    to say the same design (0: all of them); None: it says all of them as text, counts too.
     """
 
     frame: Frame
@@ -115,6 +156,11 @@ class Design:
     steps: Mapping[str, float] = field(default_factory=DesignSteps)
     next_rows: Mapping[str, NextRow] = field(default_factory=dict)
     digits: int | None = None
+    rows: tuple[PartRow, ...] = ()
+
+    def placed(self, folder: Path) -> Design:
+        """Return the design with tables named from a folder, as files in it name them."""
+        return replace(self, frame=self.frame.placed(folder))
 
     @property
     def names(self) -> set[str]:
@@ -132,7 +178,7 @@ class Design:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""
         frame = self.frame
         named = [n for n, kind in frame.kinds.items() if kind in ("variable", "count")]
-        return self._spec({n: format_quantity(self.values[n], frame.units[n], None) for n in named})
+        return self._spec({n: typed_quantity(self.values[n], frame.units[n], None) for n in named})
 
     def _spec(self, sizes: Mapping[str, Any]) -> dict[str, Any]:
         """Return the mapping of a DESIGN.yaml with sizes as they are written there."""
@@ -145,6 +191,9 @@ class Design:
         spec.update(frame.restated)
         spec["values"] = values
         spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
+        kept = [row for row in (*self.parts.values(), *self.rows) if row["table"] in frame.tables]
+        if kept:
+            spec["rows"] = {row.key: row.record() for row in kept}
         return spec
 
     def _repr_html_(self) -> str:
@@ -169,8 +218,9 @@ class Design:
         frame, sizes = self.frame, dict[str, Any]()
         for name, kind in frame.kinds.items():
             if kind in ("variable", "count"):
-                digits = self.digits if kind == "variable" and self.digits else None
-                text = format_quantity(self.values[name], frame.units[name], digits)
+                si, unit = self.values[name], frame.units[name]
+                short = kind == "variable" and self.digits
+                text = written_quantity(si, unit, self.digits) if short else typed_quantity(si, unit, None)
                 sizes[name] = _number_or_text(text)
         return yaml_text(self._spec(sizes))
 
@@ -210,3 +260,8 @@ def design_row(frame: Frame, design: Design) -> list[Any]:
 def shown_value(value: float, unit: str) -> float | None:
     """Return an SI value in the unit of its column; None where it does not exist."""
     return finite_from_si(value, unit, None)
+
+
+def reached_limits(design: Design) -> list[str]:
+    """Return the limits that a design reaches."""
+    return [name for name, used in design.utilisation.items() if binds(used, design.frame.limit_senses[name])]

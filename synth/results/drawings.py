@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 from typing import Any
 
 from synth.plugins import installed
 
 REPORTS = "clutchsynth.reports"
 PLOT = "front.svg"  # the picture of a front in its folder
+# Format of a report -> the package that makes it, the option that asks for it, the extra that brings the package.
+EXTRAS = {
+    "pdf": ("typst", "--pdf", "pdf"),
+    "xlsx": ("xlsxwriter", "--xlsx", "excel"),
+    "dxf": ("ezdxf", "--dxf", "dxf"),
+    "step": ("build123d", "--step", "step"),
+    "glb": ("build123d", "--step", "step"),
+}
+
+
+def can_make(word: str) -> bool:
+    """True if a format of reports needs no extra, or its extra is installed."""
+    return word not in EXTRAS or find_spec(EXTRAS[word][0]) is not None
 
 
 def report(name: str) -> Callable[..., Any] | None:

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.csv_style import ENGLISH, CsvStyle
+from synth.errors import InputError, derived
 from synth.feasibility import Status
 from synth.files import csv_text
-from synth.output_folder import FRONT, save_result
-from synth.pareto import Scale
+from synth.output_folder import FRONT, save_files, save_result
+from synth.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
 from synth.results.drawings import front_picture, report
-from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text
+from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text, result_digest
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.notebook import NotebookFrame, notebook_html
 from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
-from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
@@ -66,33 +67,71 @@ class ParetoFront:
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
-        """Write designs.csv, front.json, calculation.json and one design_NN.yaml per design; return the folder.
+        """Write designs.csv, front.json and one design_NN.yaml per design, then calculation.json; return the folder.
 
-        All of them or none.
+        The first are written all or none, before anything is derived from them: where the calculation cannot be made
+        the front is kept, and a warning says so.
 
         A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, csv.files(self.files()), FRONT, bool(self.interrupted))
+        if self.question is None:
+            return save_result(folder, lambda place: csv.files(self.files(place)), FRONT, bool(self.interrupted))
+        written = save_result(
+            folder, lambda place: csv.files(self.record_files(folder=place)), FRONT, bool(self.interrupted)
+        )
+        if derived_files := self.derived_files(written):
+            save_files(written, derived_files)
+        return written
 
-    def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text.
+    def placed(self, folder: Path) -> ParetoFront:
+        """Return the front with tables named from a folder, as files in it name them."""
+        return replace(self, frame=self.frame.placed(folder), designs=[d.placed(folder) for d in self.designs])
+
+    def files(self, folder: Path | None = None) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text; without what cannot be derived, with a warning.
+
+        Tables are named from the folder where the files will stand.
 
         Raises
         ------
         InputError
             The calculation of a front that was loaded cannot be read.
         """
-        if self.question is None and not (self.record or {}).get("calculation"):
-            return self.record_files()  # it was saved before there were calculations
+        files = self.record_files(folder=folder) | self.derived_files(folder)
+        first = {name: files.pop(name) for name in ("designs.csv", FRONT_FILE, CALCULATION) if name in files}
+        return {**first, **files}
+
+    def derived_files(self, folder: Path | None = None) -> dict[str, str]:
+        """Return the calculation and the record that names it; nothing, with a warning, where it cannot be made.
+
+        Raises
+        ------
+        InputError
+            The calculation of a front that was loaded cannot be read.
+        """
         import synth  # it knows how formulas are read; results do not
 
-        calculation = synth.calculation(self)
-        files = self.record_files(calculation.digest)
-        first = {name: files.pop(name) for name in ("designs.csv", FRONT_FILE)}
-        return {**first, CALCULATION: calculation.to_json(), **files}
+        if self.question is not None:
+            calculation = derived(CALCULATION, lambda: synth.calculation(self))
+        else:  # one that was saved before there were calculations has none
+            calculation = synth.calculation(self) if (self.record or {}).get("calculation") else None
+        if calculation is None:
+            return {}
+        record = self.record_files(calculation.digest, folder)[FRONT_FILE]
+        return {FRONT_FILE: record, CALCULATION: calculation.to_json()}
 
-    def record_files(self, calculation: str = "") -> dict[str, str]:
-        """Return the files that follow from the record alone; ``calculation`` is the digest of what belongs to it."""
+    def record_files(self, calculation: str = "", folder: Path | None = None) -> dict[str, str]:
+        """Return the files that follow from the record alone.
+
+        ``calculation`` is the digest of what belongs to it, ``folder`` where they will stand: by default where the
+        front was read from.
+        """
+        place = self.folder if folder is None else folder
+        own = self if place is None else self.placed(place)
+        return own._record_files(calculation)
+
+    def _record_files(self, calculation: str) -> dict[str, str]:
+        """Return the files with tables as they are named here."""
         width = max(2, len(str(len(self.designs))))
         found = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, calculation))}
         if any(design.robust for design in self.designs):
@@ -203,7 +242,8 @@ class ParetoFront:
         Raises
         ------
         InputError
-            Something asked is wrong, or an extra is not installed; then nothing is written.
+            Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
+            it is written.
         """
         from importlib import import_module  # results do not know who reports them
 
@@ -219,7 +259,7 @@ class ParetoFront:
             fonts=fonts,
             problem=problem,
             catalogs=catalogs,
-        )[0]
+        ).complete()
         return place
 
     def explore(
@@ -249,6 +289,11 @@ class ParetoFront:
             self, height, about=about, problem=problem, catalogs=catalogs
         )
         return frame
+
+    @property
+    def result_digest(self) -> str:
+        """Checksum of the result alone: a search for the same with the same versions gives it again."""
+        return result_digest(self.record or front_record(self))
 
     def svg(self) -> str:
         """Return the front drawn as an SVG file; nothing where it has no two designs or objectives."""
@@ -281,7 +326,11 @@ class ParetoFront:
         count = "1 design" if len(self.designs) == 1 else f"{len(self.designs)} designs"
         return notebook_html(
             f"{self.frame.title}: {count}",
-            [self.certificate.sentence(), self.interrupted and f"stopped: {self.interrupted}"],
+            [
+                self.certificate.sentence(),
+                self.interrupted and f"stopped: {self.interrupted}",
+                robust_sentence(self.designs) if any(d.robust for d in self.designs) else "",
+            ],
             [columns[k] for k in keep],
             [[row[k] for k in keep] for row in rows],
             level,
@@ -301,8 +350,8 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
     """Return the content of the front.json of a front; ``calculation`` is the digest of its calculation."""
     rows: dict[str, dict[str, Any]] = {}
     for design in front.designs:
-        for row in design.parts.values():
-            rows.setdefault(f"{row['table']}/{row}", {k: finite(v) for k, v in row.items()})
+        for row in (*design.parts.values(), *design.rows):
+            rows.setdefault(row.key, row.record())
     frame = front.frame
     content = {
         "format": FRONT_FORMAT,
@@ -320,6 +369,7 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         "restated": plain(frame.restated),
         **({"headline": list(frame.headline)} if frame.headline else {}),
         **({"sized_by": frame.sized_by} if frame.sized_by else {}),
+        **({"tables": dict(frame.tables)} if frame.tables else {}),
         "settings": dict(front.settings),
         "versions": installed_versions(),
         "status": front.status.value,
@@ -333,13 +383,37 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         **({"calculation": calculation} if calculation else {}),
         "designs": [design_record(d) for d in front.designs],
     }
+    content["result"] = result_digest(content)
     content["digest"] = digest_of(content)
     return content
 
 
+def named_designs(front: ParetoFront, words: Iterable[Any]) -> list[Design]:
+    """Return the designs of a front that are named by rank, or as its knee; each once.
+
+    Of a front without designs the first and the knee are none.
+
+    Raises
+    ------
+    InputError
+        There is no such design.
+    """
+    names = [str(word).strip() for word in words]
+    known = {str(d.rank): d for d in front.designs}
+    if known:
+        known[KNEE] = front.designs[knee_of([d.note for d in front.designs])]
+    elif names in (["1"], [KNEE]):
+        return []
+    for name in names:
+        if name not in known:
+            right = f"a rank from 1 to {len(front.designs)}, or {KNEE}" if known else "a front with designs"
+            raise InputError("design", name, right, ("design",))
+    return list({known[name].rank: known[name] for name in names}.values())
+
+
 def foremost(front: ParetoFront, count: int) -> list[Design]:
     """Return the designs that are told first: rank 1, the knee, the best of each objective, then by rank."""
-    wanted = list(front.designs[:1]) + [d for d in front.designs if "knee" in d.note]
+    wanted = list(front.designs[:1]) + [d for d in front.designs if KNEE in d.note]
     for name, sense in front.frame.objectives.items():
         if front.designs:
             sign = 1 if sense == "min" else -1

@@ -31,6 +31,17 @@ def changed(content: Mapping[str, Any]) -> str:
     return "" if fits else "front.json was changed after it was saved: its checksum does not fit"
 
 
+# Of a record: what the search took, what follows from the rest, and where tables lie.
+NOT_THE_RESULT = ("digest", "result", "statistics", "calculation")
+
+
+def result_digest(content: Mapping[str, Any]) -> str:
+    """Return the checksum of what was asked and found, without what differs from one search for it to the next."""
+    told = {name: value for name, value in content.items() if name not in NOT_THE_RESULT}
+    told["restated"] = {name: value for name, value in told.get("restated", {}).items() if name != "catalogs"}
+    return digest_of(told)
+
+
 def design_record(design: Design) -> dict[str, Any]:
     """Return what front.json says of a design."""
     return {
@@ -43,7 +54,8 @@ def design_record(design: Design) -> dict[str, Any]:
         "objectives": _clean(design.objectives),
         "values": _clean(design.values),
         "choices": dict(design.choices),
-        "parts": {slot: f"{row['table']}/{row}" for slot, row in design.parts.items()},
+        "parts": {slot: row.key for slot, row in design.parts.items()},
+        **({"rows": [row.key for row in design.rows]} if design.rows else {}),
         "limits": {n: [finite(v), finite(x)] for n, (v, x) in design.limits.items()},
         "residuals": _clean(design.residuals),
         "utilisation": {n: None if u is None else finite(u) for n, u in design.utilisation.items()},

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
+from synth.plain_text import counted
 from synth.results.told import UNTOLD, Told, Untold
 
 
@@ -53,6 +54,13 @@ class LeastInfeasible(Told):
     conflicts: Sequence[MissedLimit] | Untold = UNTOLD
     nearest: Mapping[str, str] | Untold = UNTOLD
     parts: Mapping[str, str] | Untold = UNTOLD
+
+    @property
+    def headline(self) -> str:
+        """Return the message where the limits that are missed stand beside it, so that they are told once."""
+        message, count = str(self.message or "No design is feasible."), len(self.conflicts or ())
+        nearest, misses, _ = message.partition(" misses ")
+        return f"{nearest} misses {counted(count, 'limit')}:" if count and misses else message
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> Self:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from synth.pareto import Scale
 from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
-from synth.results.front_record import FRONT_FORMAT, changed
+from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.next_row import NextRow
 from synth.results.ratings import DesignRating
@@ -42,6 +43,18 @@ def load_front(folder: str | Path) -> ParetoFront:
     if fault:
         raise InputError("front", str(path), f"a front.json as clutchsynth has written it; {fault}")
     return front_of_record(content, path)
+
+
+def rows_kept(folder: Path | None) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return the rows that the front in a folder has kept, by table and designation; none without a front there."""
+    with suppress(InputError, AttributeError, KeyError, TypeError):
+        if folder is not None and (folder / FRONT_FILE).is_file():
+            _, content = _read(folder / FRONT_FILE)
+            found = dict[str, dict[str, dict[str, Any]]]()
+            for row in content["parts"].values():
+                found.setdefault(str(row["table"]), {})[str(row["designation"])] = dict(row)
+            return found
+    return {}
 
 
 def unchecked_front(folder: str | Path) -> ParetoFront:
@@ -111,7 +124,8 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         restated=dict(content["restated"]),
         headline=tuple(content.get("headline", ())),
         sized_by=content.get("sized_by", ""),
-    )
+        tables=dict(content.get("tables", {})),
+    ).located(folder)
     if not frame.objectives:
         raise ValueError("objectives: there is none")
     rows = content["parts"]
@@ -137,14 +151,11 @@ def _certificate_from_json(told: dict[str, Any]) -> Certificate:
 
 
 def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str, Any]]) -> Design:
-    parts = {}
-    for slot, key in d["parts"].items():
-        row = rows[key]
-        parts[slot] = PartRow(row["table"], row["hash"], {k: v for k, v in row.items() if k not in ("table", "hash")})
     return Design(
         frame=frame,
         values={n: _number(v) for n, v in d["values"].items()},
-        parts=parts,
+        parts={slot: PartRow.read(rows[key]) for slot, key in d["parts"].items()},
+        rows=tuple(PartRow.read(rows[key]) for key in d.get("rows", ())),
         choices=d["choices"],
         objectives={n: _number(v) for n, v in d["objectives"].items()},
         limits={n: (_number(v), _number(x)) for n, (v, x) in d["limits"].items()},

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from synth.units import format_quantity, parse_unit
+from synth.units import parse_unit, typed_quantity
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class NextRow:
     Attributes
     ----------
     needed : float
-        What the design needs.
+        What the design needs, or the size that was typed.
     unit : str
         In which people read it.
     table : str
@@ -28,6 +28,8 @@ class NextRow:
         The largest value that the table has; None where it has none.
     beside_table, beside : str or None
         The second table that was asked, and its row for the value; None where none was asked, or none fits.
+    typed : bool
+        Whether ``needed`` is a size that the user stated.
     """
 
     needed: float
@@ -38,14 +40,15 @@ class NextRow:
     last: float | None
     beside_table: str | None = None
     beside: str | None = None
+    typed: bool = False
 
     def __str__(self) -> str:
         """Return what to take, in one short line."""
-        needed = format_quantity(self.needed, self.unit, 5)
+        needed = f"{typed_quantity(self.needed, self.unit, 5)} {'typed' if self.typed else 'needed'}"
         if self.designation is None or self.value is None:
-            ends = "has no row" if self.last is None else f"ends at {format_quantity(self.last, self.unit, 5)}"
-            return f"none, {needed} needed and table {self.table} {ends}"
-        line = f"{self.designation} ({format_quantity(self.value, self.unit, 5)}, {needed} needed)"
+            ends = "has no row" if self.last is None else f"ends at {typed_quantity(self.last, self.unit, 5)}"
+            return f"none, {needed} and table {self.table} {ends}"
+        line = f"{self.designation} ({typed_quantity(self.value, self.unit, 5)}, {needed})"
         if self.beside_table is None:
             return line
         return f"{line} with {self.beside}" if self.beside else f"{line}, for which {self.beside_table} has no row"
@@ -63,4 +66,5 @@ class NextRow:
         value, last = (None if told[key] is None else float(told[key]) for key in ("value", "last"))
         unit = str(told["unit"])
         parse_unit(unit)
-        return cls(float(told["needed"]), unit, str(told["table"]), designation, value, last, beside_table, beside)
+        needed, table, typed = float(told["needed"]), str(told["table"]), bool(told.get("typed", False))
+        return cls(needed, unit, table, designation, value, last, beside_table, beside, typed)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from synth.text.numbers import page_text
+
 MOST_ROWS = 30
 LEVELS = {"good": "#14663b", "open": "#7a4d00", "bad": "#9b1c1c", "": "inherit"}
 
@@ -72,5 +74,5 @@ def _cell(value: Any) -> str:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "<td></td>"
     if isinstance(value, float):
-        return f'<td style="text-align:right">{value:.5g}</td>'
+        return f'<td style="text-align:right">{page_text(value)}</td>'
     return f"<td>{escape(str(value))}</td>"

@@ -7,17 +7,18 @@ import importlib.util
 import json
 import platform
 import sys
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from synth.native_switch import c_compiler, native_wanted
+from synth.kernels.loading import native_code
+from synth.plugins import AROUND_THE_ENGINE, SHIPPED_FAMILIES
 
 PACKAGE = "synth"
-SOURCES = (".py", ".c")
+SOURCES = (".py", ".c", ".h")
 RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
 
 
@@ -57,7 +58,7 @@ def joined(hashes: Iterable[str]) -> str:
 def code_digest() -> str:
     """Return the SHA-256 of the sources of the engine and of the versions it computes with."""
     total = hashlib.sha256(repr(sorted(installed_versions().items())).encode())
-    _add_sources(total, package_folder())
+    _add_sources(total, package_folder(), {name.rpartition(".")[2] for name in AROUND_THE_ENGINE})
     return total.hexdigest()
 
 
@@ -74,7 +75,8 @@ def problem_digest(problems: Iterable[type[Any]]) -> str:
     places = set[Path]()
     for problem in problems:
         module = sys.modules.get(problem.__module__)
-        package = sys.modules.get(problem.__module__.split(".", 1)[0])
+        shipped = problem.__module__.startswith(f"{SHIPPED_FAMILIES}.")
+        package = sys.modules.get(SHIPPED_FAMILIES if shipped else problem.__module__.split(".", 1)[0])
         file = getattr(package, "__file__", None) or getattr(module, "__file__", None)
         total.update(f"{problem.__module__}.{problem.__qualname__}\0".encode())
         if file is not None:
@@ -83,11 +85,6 @@ def problem_digest(problems: Iterable[type[Any]]) -> str:
     for place in sorted(places):
         _add_sources(total, place)
     return total.hexdigest()
-
-
-def native_code() -> str:
-    """Return "on" where compiled code computes, or "off": the two differ in the last digits."""
-    return "on" if native_wanted() and c_compiler() is not None else "off"
 
 
 def computing_digest() -> str:
@@ -107,9 +104,12 @@ def processor() -> str:
     return " ".join([platform.system(), platform.machine(), *extensions["baseline"], *extensions["found"]])
 
 
-def _add_sources(total: Any, place: Path) -> None:
+def _add_sources(total: Any, place: Path, without: Container[str] = ()) -> None:
+    """Add names and contents of the sources in a folder, but those in some of its folders."""
     for path in [place] if place.is_file() else sorted(p for p in place.rglob("*") if p.suffix in SOURCES):
         name = path.name if place.is_file() else path.relative_to(place).as_posix()
+        if name.split("/", 1)[0] in without:
+            continue
         total.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from synth.plain_text import percent
+from synth.text.numbers import gap_text, number_text
 
 
 class Verdict(StrEnum):
@@ -48,10 +48,11 @@ class Verification:
 
     def sentence(self) -> str:
         """Return the outcome in words."""
-        effort = f"({self.nodes} boxes, {self.seconds:.2g} s)"
+        effort = f"({self.nodes} boxes, {number_text(self.seconds, 2)} s)"
         listed = "1 design is" if self.designs == 1 else f"{self.designs} designs are"
         if not self.holds:
-            proven = "" if self.proven_gap is None else f"; what could be proven is a gap of {percent(self.proven_gap)}"
+            shown = self.proven_gap
+            proven = "" if shown is None else f"; what could be proven is a gap of {gap_text(shown)}"
             if self.findings:
                 count = f"{len(self.findings)} finding{'s' * (len(self.findings) > 1)}"
                 return f"does not hold: {count}{proven} {effort}"
@@ -63,5 +64,5 @@ class Verification:
             return f"holds: proven again that no design is feasible {effort}"
         return (
             f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
-            f"{percent(self.claimed_gap or 0.0)} in every objective{self.amounts} {effort}"
+            f"{gap_text(self.claimed_gap or 0.0)} in every objective{self.amounts} {effort}"
         )

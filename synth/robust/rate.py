@@ -20,9 +20,9 @@ from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty, read_block
 from synth.results import Design, Frame, ParetoFront, design_columns, design_row
-from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
 from synth.robust.counterpart import nominal
-from synth.robust.rating import PROVEN, Rater
+from synth.robust.rating import Rater
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,7 +42,7 @@ class Ratings:
 
     def sentence(self) -> str:
         """Return how many designs keep their limits over the range, and how far that is certain."""
-        return told_of(self.designs, self.asked["samples"])
+        return robust_sentence(self.designs)
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers."""
@@ -81,31 +81,6 @@ class Ratings:
         first = self.designs[0]
         columns = ["rank", *COLUMNS, *design_columns(first.frame, first.choices, first.parts)]
         return columns, [[d.rank, *rating_row(d), *design_row(d.frame, d)] for d in self.designs]
-
-
-def told_of(designs: Sequence[Design], samples: int) -> str:
-    """Return in words how designs stand the range."""
-    rated = [d for d in designs if d.robust]
-    if not rated:
-        return "no design was rated"
-    holding = [d for d in rated if d.robust["holds"]]
-    proven = sum(d.robust["proof"] == PROVEN for d in holding)
-    of = "1 design" if len(rated) == 1 else f"{len(rated)} designs"
-    if not holding and len(rated) == 1:
-        return "the design does not keep all limits over the whole range"
-    if not holding:
-        return f"none of {of} keeps all limits over the whole range"
-    keeps = "keeps" if len(holding) == 1 else "keep"
-    how = "proven" if proven == len(holding) else f"{proven} of them proven, else at the corners and {samples} samples"
-    if not proven:
-        how = f"not proven: at the corners and at {samples} samples"
-    return f"{len(holding)} of {of} {keeps} all limits over the whole range ({how})"
-
-
-def taken_off(count: int) -> str:
-    """Return in words how many designs are missing because they do not stand the range."""
-    designs = "1 design was" if count == 1 else f"{count} designs were"
-    return f"{designs} taken off: not all limits hold over the whole range"
 
 
 def rater_for(frame: Frame, asked: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:

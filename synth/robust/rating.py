@@ -1,8 +1,8 @@
 """How designs stand the scatter of their surroundings: worst limits and yield, proven where that is possible.
 
 Of every limit the worst value over the range is wanted. Where intervals of derivatives show that the limit is monotone
-in everything that scatters, it is the value at one corner, exactly. Elsewhere it is the worst of all corners and of a
-scrambled Sobol sequence; intervals may still prove that the limit holds over the whole range.
+in everything that scatters, it is the value at one corner, exactly. Elsewhere it is the worst point that an ascent from
+corners and samples finds; that the limit holds counts as shown only where intervals prove it over the whole range.
 """
 
 from __future__ import annotations
@@ -11,28 +11,30 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
-from synth.feasibility import holds, utilisation
-from synth.model.program import OP_SELECT, InputValue
-from synth.proof.enclosure import Enclosed, Encloser, Slopes
-from synth.proof.interval_arithmetic import ZERO, Pair
-from synth.proof.tape import Tape
+from synth.feasibility import SMALLEST, holds, most_used, utilisation
+from synth.feasibility import residual as limit_residual
+from synth.model.constraint import Constraint
+from synth.model.model import Evaluation
+from synth.model.program import InputValue
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.question.uncertainty import Uncertainty
 from synth.results import Design
-from synth.results.ratings import DesignRating, LimitRating
+from synth.results.ratings import SAMPLED, DesignRating, LimitRating
+from synth.robust.limit_bounds import LimitBounds, MonotoneLimit, MovingInput
 from synth.robust.uncertainty import Member, check_values, scattered
+from synth.robust.worst_points import stretched, worst_point
 from synth.row_cells import cell_value
 from synth.tuning import TUNING, RobustLimits
 
-PROVEN, BOUNDED, SAMPLED = "proven", "bounded", "sampled"
+PROVEN, BOUNDED = "proven", "bounded"
 
 
 class Rater:
@@ -68,7 +70,6 @@ class Rater:
         self.corners = np.array(list(product((0.0, 1.0), repeat=count)))
         self.samples = _sobol(count, asked.samples, asked.seed)
         program = self.model.program
-        self._depends = program.dependence([k for _, _, k in self.moving])
         # What a limit depends on, per thing.
         marked = [program.dependence([k for i, _, k in self.moving if i == j]) for j in range(count)]
         self.matters = {x.name: [any(bool(m[k]) for k in x.nodes) for m in marked] for x in self.limits}
@@ -111,36 +112,25 @@ class Rater:
         return done, reason
 
     def one(self, design: Design) -> DesignRating:
-        """Return the rating of one design: see ``Design.robust``."""
+        """Rating of one design: see ``Design.robust``."""
         corners, samples = self.residuals(design, self.corners), self.residuals(design, self.samples)
         with np.errstate(all="ignore"):
-            proofs = self._proofs(design)
-        every = np.concatenate([self.corners, self.samples])
-        worst: list[tuple[int, float]] = []
-        for j in range(len(self.limits)):
-            values = np.concatenate([corners[j], samples[j]])
-            corner = proofs[j].corner
-            row = int(np.argmax(values)) if corner is None else int(np.flatnonzero((self.corners == corner).all(1))[0])
-            worst.append((row, float(values[row])))
-        rows = [row for row, _ in worst]
-        sides = self.sides(design, every[rows])
+            worst = self._worst_points(design, np.concatenate([corners, samples], axis=1))
+        sides = self.sides(design, np.array([w.position for w in worst]).reshape(-1, len(self.things)))
         told: dict[str, LimitRating] = {}
-        for j, limit in enumerate(self.limits):
-            row, r = worst[j]
-            if r == -math.inf:
-                continue  # void for these parts
+        for j, (limit, w) in enumerate(zip(self.limits, worst, strict=True)):
+            if w.residual == -math.inf:
+                continue
             value, bound = float(sides[j][0][j]), float(sides[j][1][j])
-            fine = bool(holds(r, limit.guard))
-            proof = proofs[j].kind if fine or proofs[j].kind != BOUNDED else SAMPLED
             told[limit.name] = LimitRating(
-                holds=fine,
-                proof=proof,
-                residual=_finite(r),
+                holds=w.holds,
+                proof=w.proof,
+                residual=_finite(w.residual),
                 value=_finite(value),
                 limit=_finite(bound),
                 utilisation=_finite(float(utilisation(value, bound, limit.sense))),
-                at=self.at(design, every[row], limit.name),
-                position=[float(p) for p in every[row]],
+                at=self.at(design, w.position, limit.name),
+                position=[float(p) for p in w.position],
             )
         return self._summary(told, samples)
 
@@ -149,14 +139,21 @@ class Rater:
         for x, own in zip(self.limits, samples, strict=True):
             fine &= holds(own, x.guard)
         hits, count = int(fine.sum()), samples.shape[1]
-        holding = all(x["holds"] for x in told.values())
-        proven = holding and all(x["proof"] != SAMPLED for x in told.values())
-        low, high = (1.0, 1.0) if proven else _interval(hits, count, self.asked.confidence)
-        name = max(told, key=lambda n: math.inf if told[n]["residual"] is None else told[n]["residual"], default="")
+        verdicts = [x["holds"] for x in told.values()]
+        holding = False if False in verdicts else None if None in verdicts else True
+        low, high = (1.0, 1.0) if holding else _interval(hits, count, self.asked.confidence)
+        share = hits / count if holding or hits < count else low  # samples alone never show a yield of 1
+        if holding is False:
+            high = min(high, math.nextafter(1.0, 0.0))
+        # What decides comes first: limits that fail, then those that are not shown to hold.
+        leading = {name: x["utilisation"] for name, x in told.items() if x["holds"] is holding}
+        # What has no share to tell is past all bounds, or cannot be computed.
+        name = next(iter(most_used({n: math.inf if used is None else used for n, used in leading.items()})), "")
+        proven = holding or (holding is False and told[name]["proof"] == PROVEN)
         return DesignRating(
             holds=holding,
-            proof=PROVEN if proven or (not holding and told[name]["proof"] == PROVEN) else SAMPLED,
-            share_good=hits / count,
+            proof=PROVEN if proven else SAMPLED,
+            share_good=share,
             yield_low=low,
             yield_high=high,
             confidence=self.asked.confidence,
@@ -183,10 +180,7 @@ class Rater:
 
     def _residuals(self, design: Design, positions: np.ndarray) -> np.ndarray:
         result = self.instance.evaluate(*self._inputs(design, positions))
-        rows = []
-        for x in self.limits:
-            r, held = result.residuals[x.name], result.holds[x.name]
-            rows.append(np.where(np.isnan(r), np.where(held, -np.inf, np.inf), r))
+        rows = [_residual_of(result, x) for x in self.limits]
         return np.array(rows).reshape(len(self.limits), len(positions))
 
     def at(self, design: Design, position: np.ndarray, limit: str) -> dict[str, float]:
@@ -239,151 +233,91 @@ class Rater:
             lambda entry: float(first_value([self._cells(design, entry.name, c) for c in entry.columns])[0]),
         )
 
-    # -- proofs --------------------------------------------------------------------------------
+    # -- worst points --------------------------------------------------------------------------
 
-    def _proofs(self, design: Design) -> list[_Proof]:
-        """Return, per limit, what intervals prove of it."""
-        whole = [(0.0, 1.0)] * len(self.things)
-        found = self._enclosed(design, whole, range(len(self.limits)))
-        proofs = [found[j].proof(len(self.things), self.settings.steep) for j in range(len(self.limits))]
-        unproven = [j for j, proof in enumerate(proofs) if proof.kind == SAMPLED]
-        for j in self._bounded(design, whole, unproven):
-            proofs[j] = _Proof(BOUNDED)
-        return proofs
+    def _worst_points(self, design: Design, residuals: np.ndarray) -> list[_Worst]:
+        """Worst point of every limit, and what is known of the rest of the range.
 
-    def _bounded(self, design: Design, whole: list[tuple[float, float]], limits: list[int]) -> list[int]:
-        """Return those limits that intervals over parts of the range show to hold in all of them."""
-        stack = [(whole, limits)]
-        failed: set[int] = set()
-        for _ in range(self.settings.parts):
-            if not stack:
-                break
-            box, rest = stack.pop()
-            rest = [j for j in rest if j not in failed]
-            found = self._enclosed(design, box, rest)
-            rest = [j for j in rest if not found[j].below()]
-            if not rest:
+        Parameters
+        ----------
+        design : Design
+        residuals : array (limits, points)
+            At the corners and the samples.
+        """
+        moving = [MovingInput(j, k, partial(self._moved, design, j, m)) for j, m, k in self.moving]
+        values = [*(float(design.values[v.name]) for v in self.model.variables), *self._data(design)]
+        bounds = LimitBounds(self.model.program, values, moving, len(self.things), self.matters, self.settings)
+        at_corners = self.sides(design, self.corners)
+        worst: list[_Worst] = []
+        for j, monotone in enumerate(bounds.monotone(self.limits)):
+            limit, own = self.limits[j], residuals[j]
+            if own.max() == -math.inf:
+                worst.append(_Worst(self.corners[0], -math.inf, PROVEN, True))  # void for these parts
                 continue
-            middle = [0.5 * (low + high) for low, high in box]
-            r = self._residuals(design, np.array([middle]))[:, 0]
-            failed.update(j for j in rest if not r[j] < 0.0)
-            rest = [j for j in rest if j not in failed]
-            steepest = [sum(found[j].reach(k) for j in rest) for k in range(len(box))]
-            widths = [high - low for low, high in box]
-            known = [s if math.isfinite(s) else math.inf for s in steepest]
-            k = max(range(len(box)), key=lambda i: (known[i], widths[i]) if widths[i] > 0 else (-1.0, 0.0))
-            if math.isinf(known[k]):
-                k = max(range(len(box)), key=lambda i: widths[i])
-            halves = ((box[k][0], middle[k]), (middle[k], box[k][1]))
-            stack += [([*box[:k], half, *box[k + 1 :]], rest) for half in halves]
-        left = {j for _, rest in stack for j in rest}
-        return [j for j in limits if j not in failed and j not in left]
+            if monotone.complete:
+                row = int(np.flatnonzero((self.corners == monotone.worst).all(1))[0])
+                fails = not holds(own[row], limit.guard)
+                value, bound = (float(side[row]) for side in at_corners[j])
+                proven = fails or (
+                    bool(np.all(holds(own, limit.guard))) and monotone.holds_everywhere(limit, value, bound)
+                )
+                if proven:
+                    worst.append(_Worst(self.corners[row], float(own[row]), PROVEN, not fails))
+                    continue
+            worst.append(self._searched(design, j, own, bounds, monotone))
+        return worst
 
-    def _enclosed(self, design: Design, box: Sequence[tuple[float, float]], limits: Sequence[int]) -> dict[int, _Sides]:
-        """Return both sides of limits over a part of the range, with their slopes."""
-        program = self.model.program
-        inputs, reach = self._leaves(design, box)
-        wanted = [n for j in limits for n in self.limits[j].nodes]
-        encloser = Encloser(Tape(), program)
-        found = encloser.run(program.nodes, program.needed(wanted), inputs)
-        result = {}
-        for j in limits:
-            x = self.limits[j]
-            sides = [found[n] if isinstance(n, int) else Enclosed.constant(float(n)) for n in (x.value, x.bound)]
-            small, large = sides if x.sense == "at_most" else sides[::-1]
-            result[j] = _Sides(encloser, small, large, self._smooth(x.nodes, found), reach)
-        return result
+    def _searched(
+        self, design: Design, j: int, own: np.ndarray, bounds: LimitBounds, monotone: MonotoneLimit
+    ) -> _Worst:
+        """Worst point found of a limit that is not shown to be monotone, and whether bounds show that it holds."""
+        limit = self.limits[j]
 
-    def _smooth(self, nodes: Sequence[int], found: Mapping[int, Enclosed]) -> bool:
-        """Tell whether no choice that reaches these nodes is open: then nothing jumps over the range."""
-        program = self.model.program
-        for k in program.needed(nodes):
-            node = program.nodes[k]
-            if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) and self._depends[node.args[0]]:
-                low, high = found[node.args[0]].range
-                if not (low == high or low > 0 or high < 0):
-                    return False
-        return all(found[k].whole for k in nodes)
+        def residual(positions: np.ndarray) -> np.ndarray:
+            return np.asarray(self.residuals(design, positions)[j])
 
-    def _leaves(self, design: Design, box: Sequence[tuple[float, float]]) -> tuple[list[Enclosed], list[float]]:
-        """Return the inputs over a part of the range, and half the width of each coordinate."""
-        model = self.model
-        values = [*(float(design.values[v.name]) for v in model.variables), *self._data(design)]
-        inputs = [Enclosed.constant(float(x)) for x in values]
-        reach = [0.0] * len(self.things)
-        for j, thing in enumerate(self.things):
-            ends = [sorted(float(self._moved(design, j, m, p)) for p in box[j]) for m in thing.members]
-            log = all(low > 0 for low, _ in ends)
-            numbers = {m.key: k for i, m, k in self.moving if i == j}
-            for member, (low, high) in zip(thing.members, ends, strict=True):
-                middle = math.sqrt(low * high) if log else 0.5 * (low + high)
-                half = 0.5 * (math.log(high / low) if log else high - low)
-                if member == thing.members[0]:
-                    reach[j] = half
-                # Further members move in proportion to the first: by the same logarithm.
-                own = 1.0 if log or not reach[j] else half / reach[j]
-                sign = 1 if low > 0 else -1 if high < 0 else 0
-                least = min(abs(low), abs(high)) if sign else 0.0
-                pair = (low, high)
-                if member.key in numbers:
-                    inputs[numbers[member.key]] = Enclosed(
-                        pair, (middle, middle), log, {j: (own, own)}, sign, pair, pair, least
-                    )
-        return inputs, reach
+        def used(positions: np.ndarray) -> np.ndarray:
+            result = self.instance.evaluate(*self._inputs(design, positions))
+            own, share = _residual_of(result, limit), limit_residual(*result.limits[limit.name], limit.sense, SMALLEST)
+            return np.where(np.isfinite(own) & ~np.isnan(share), share, own)
+
+        points = np.concatenate([self.corners, self.samples])
+        row = int(np.argmax(own))
+        free = np.flatnonzero(np.isnan(monotone.worst))
+        starts = np.concatenate([points, stretched(self.samples)])
+        starts = np.where(np.isnan(monotone.worst), starts, monotone.worst)
+        place, r = worst_point(residual, starts, free, self.settings.ascent)
+        if own[row] > r:
+            place, r = points[row], float(own[row])
+        if not holds(r, limit.guard):
+            return _Worst(place, r, SAMPLED, False)
+        found = bounds.search(limit, monotone, residual)
+        if found.violated is not None:
+            place, r = worst_point(residual, found.violated[None, :], free, self.settings.ascent)
+            return _Worst(place, r, SAMPLED, False)
+        if limit.terms is not None:
+            # It holds as far as is known: people read where most of it is used, whatever the size of its terms is.
+            place, _ = worst_point(used, starts, free, self.settings.ascent)
+            r = float(residual(place[None, :])[0])
+            if not holds(r, limit.guard):
+                return _Worst(place, r, SAMPLED, False)
+        return _Worst(place, r, BOUNDED, True) if found.proven else _Worst(place, r, SAMPLED, None)
 
 
 @dataclass(frozen=True)
-class _Proof:
-    """What intervals prove of a limit: ``proven`` (with its worst corner), ``bounded`` (it holds) or nothing."""
+class _Worst:
+    """Worst point of a limit: its position, residual, what is known of the rest, and whether the limit holds."""
 
-    kind: str
-    corner: tuple[float, ...] | None = None
+    position: np.ndarray
+    residual: float
+    proof: str
+    holds: bool | None  # None: neither shown nor refuted
 
 
-class _Sides:
-    """Both sides of a limit ``small <= large`` over a box of the range."""
-
-    def __init__(self, encloser: Encloser, small: Enclosed, large: Enclosed, smooth: bool, reach: list[float]) -> None:
-        self.small, self.large, self.smooth, self._reach = small, large, smooth, reach
-        self.log = small.sign > 0 and large.sign > 0
-        own = encloser.logarithmic(small) if self.log else encloser.linear(small)
-        its = encloser.logarithmic(large) if self.log else encloser.linear(large)
-        self.slopes: Slopes = encloser.merged(own, its, encloser.subtract)
-
-    def slope(self, k: int) -> Pair:
-        """Return the range of the derivative of small over large (or small less large) with something that scatters."""
-        return self.slopes.get(k, ZERO)
-
-    def reach(self, k: int) -> float:
-        """Return by how much one thing moves the limit."""
-        return float(max(abs(self.slope(k)[0]), abs(self.slope(k)[1])) * self._reach[k])
-
-    def proof(self, count: int, least: float) -> _Proof:
-        """Return the worst corner where the limit is monotone in everything; slopes below ``least`` have no sign."""
-        if not self.smooth:
-            return _Proof(SAMPLED)
-        corner = []
-        for k in range(count):
-            low, high = (float(x) for x in self.slope(k))
-            steep = least * max(1.0, abs(low), abs(high)) if math.isfinite(low + high) else least
-            if low >= -steep:
-                corner.append(1.0)
-            elif high <= steep:
-                corner.append(0.0)
-            else:
-                return _Proof(SAMPLED)
-        return _Proof(PROVEN, tuple(corner))
-
-    def below(self) -> bool:
-        """Tell whether the limit holds everywhere in the box."""
-        most, least = self.small.range[1], self.large.range[0]
-        if bool(most < least):
-            return True
-        reach = sum(self.reach(k) for k in self.slopes)
-        top, bottom = self.small.center[1], self.large.center[0]
-        if self.log:
-            return bool(top > 0 and bottom > 0 and math.log(top) - math.log(bottom) + reach < 0.0)
-        return bool(top - bottom + reach < 0.0)
+def _residual_of(result: Evaluation, limit: Constraint) -> np.ndarray:
+    """Residual of a limit: infinite where it is not met at all, minus infinite where void."""
+    r = result.residuals[limit.name]
+    return np.where(np.isnan(r), np.where(result.holds[limit.name], -np.inf, np.inf), r)
 
 
 def _sobol(dimensions: int, count: int, seed: int) -> np.ndarray:

@@ -60,7 +60,8 @@ def robust_front(
 
     Designs that keep all limits that were posed, but not everywhere in the range, tell where they fail: there those
     limits are posed as well, and the search begins again from what is known. What still fails in the end is taken off
-    the front. Each question asked leaves out limits at most, so that its bounds hold for all robust designs.
+    the front; what is neither shown to hold nor to fail stays, and says so. Each question asked leaves out limits at
+    most, so that its bounds hold for all robust designs.
 
     Parameters
     ----------
@@ -114,12 +115,12 @@ class _RatedFront:
 
     @property
     def failing(self) -> list[int]:
-        """Return the places of the designs that do not keep all limits."""
-        return [j for j, told in enumerate(self.ratings) if not told["holds"]]
+        """Return the places of the designs that break a limit somewhere in the range."""
+        return [j for j, told in enumerate(self.ratings) if told["holds"] is False]
 
     @property
     def holding(self) -> int:
-        """Return how many designs keep all limits."""
+        """Return of how many designs no limit is known to fail."""
         return len(self.ratings) - len(self.failing)
 
     def scenarios(self) -> dict[str, list[tuple[float, ...]]]:
@@ -127,7 +128,7 @@ class _RatedFront:
         found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
         for j in self.failing:
             for name, limit in self.ratings[j]["limits"].items():
-                if not limit["holds"]:
+                if limit["holds"] is False:
                     worst = math.inf if limit["residual"] is None else limit["residual"]
                     found.setdefault(name, []).append((worst, tuple(limit["position"])))
         few = {name: sorted(points, key=lambda x: -x[0])[: self.limits.scenarios] for name, points in found.items()}

@@ -19,7 +19,8 @@ from synth.declaration import Declaration
 from synth.errors import InputError, at
 from synth.margins import MARGINS, within
 from synth.question.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_of_ranges, words_of
-from synth.units import format_quantity, parse_quantity, parse_unit, to_si
+from synth.text.numbers import typed_number
+from synth.units import as_decimal, parse_quantity, parse_unit, to_si, typed_quantity
 
 if TYPE_CHECKING:
     from synth.question.selection import SlotRows
@@ -29,6 +30,7 @@ CATALOGUE, NEW_AND_WORN = "catalogue range", "new and worn"
 SLIDING, LEAST, MOST = "mu_dynamic", "mu_min", "mu_max"
 WORN = re.compile(r"^(?:.*_)?wear$")
 AROUND = re.compile(r"^\s*(?:\+\s*/?\s*-|±)\s*(.+)$", re.DOTALL)
+ONE_SIDED = re.compile(r"^\s*([-+\u2212])\s*([0-9.][^:]*)$", re.DOTALL)  # +10 %: from the nominal value on
 NUMBER = re.compile(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\s*$")
 
 
@@ -108,7 +110,7 @@ class Scattered:
     def shown(self, position: float | None) -> str:
         """Return a position in words."""
         words = {None: "nominal", 0.0: "low", 1.0: "high"}
-        return f"{self.name} {words.get(position) or f'at {position:.6g} of its range'}"
+        return f"{self.name} {words.get(position) or f'at {typed_number(position)} of its range'}"
 
 
 # ---- what the block means for a problem -----------------------------------------------------------------------------
@@ -174,7 +176,7 @@ class _RangeReader:
             words = f"'{CATALOGUE}' or "
             span = Range("columns") if words_of(text) == CATALOGUE else self._range(text, "-", field, words)
             largest = float(np.nanmax(self.d.catalogs.table(part.table).number(SLIDING)))
-            if (span.kind == "ends" and span.low <= 0) or (span.kind == "offset" and span.high >= largest):
+            if (span.kind == "ends" and span.low <= 0) or (span.kind == "offset" and -span.low >= largest):
                 raise InputError(field, text, f"{words}a range above zero, for example '+-10 %' or '0.08 .. 0.12'")
             moving = [SLIDING, *(c for c in part.columns if c.startswith("mu_") and c in part.known and c != SLIDING)]
             members = tuple(Member("part", part.slot, c) for c in moving)
@@ -226,7 +228,7 @@ class _RangeReader:
             if span.kind == "ends" and not all(
                 within(x, r.lower, r.upper, MARGINS.stated) for x in (span.low, span.high)
             ):
-                low, high = (format_quantity(x, r.unit) if math.isfinite(x) else "any" for x in (r.lower, r.upper))
+                low, high = (typed_quantity(x, r.unit) if math.isfinite(x) else "any" for x in (r.lower, r.upper))
                 raise InputError(field, text, f"a range within {low} .. {high}")
             return Scattered(name, r.unit, span, (Member("requirement", name),), text)
         slot, dot, column = key.partition(".")
@@ -245,20 +247,30 @@ class _RangeReader:
 
     def _range(self, text: str, unit: str, field: str, words: str = "") -> Range:
         """Return the range that a text stands for."""
-        around = AROUND.match(text)
-        if around is None:
-            span = Range("ends", *_ends(text, unit, field, words))
-        elif around.group(1).strip().endswith("%"):
-            if _difference(unit) != unit:
-                raise InputError(field, text, "a range in degrees: '0 .. 60 degC' or '+-10 K'")
-            share = parse_quantity(around.group(1), "-", field)
-            span = Range("share", -share, share)
+        around, one_sided = AROUND.match(text), ONE_SIDED.match(text)
+        if around is not None:
+            span = self._deviation(around.group(1), -1.0, 1.0, unit, field)
+        elif one_sided is not None and ".." not in text:
+            low, high = (0.0, 1.0) if one_sided.group(1) == "+" else (-1.0, 0.0)
+            span = self._deviation(one_sided.group(2), low, high, unit, field)
+        elif text.strip().endswith("%") and (unit != "-" or text.lstrip().startswith(("+", "-"))):
+            span = Range("share", *_ends(text, "-", field, words))  # -5 .. +10 %
         else:
-            reach = parse_quantity(around.group(1), _difference(unit), field)
-            span = Range("offset", -reach, reach)
+            span = Range("ends", *_ends(text, unit, field, words))
         if not span.low < span.high or (span.kind == "share" and span.low <= -1):
             raise InputError(field, text, f"{words}a range from a smaller to a larger value, for example {EXAMPLE}")
         return span
+
+    @staticmethod
+    def _deviation(text: str, low: float, high: float, unit: str, field: str) -> Range:
+        """Return so many times a deviation either way, which is a share of the nominal value or has its unit."""
+        if not text.strip().endswith("%"):
+            reach = parse_quantity(text, _difference(unit), field)
+            return Range("offset", low * reach, high * reach)
+        if _difference(unit) != unit:
+            raise InputError(field, text, "a range in degrees: '0 .. 60 degC' or '+-10 K'")
+        share = parse_quantity(text, "-", field)
+        return Range("share", low * share, high * share)
 
 
 def _difference(unit: str) -> str:
@@ -272,7 +284,7 @@ def _ends(text: str, unit: str, field: str, words: str = "") -> tuple[float, flo
     if not sign or ":" in last or (".." in text and ":" in text) or not first.strip() or not last.strip():
         raise InputError(field, text, f"{words}a range, for example {EXAMPLE}")
     if NUMBER.match(first):
-        own = re.sub(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "", last)
+        own = re.sub(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "", as_decimal(last))
         first = f"{first.strip()} {own.strip()}".strip()
     low, high = (parse_quantity(x.strip(), unit, field) for x in (first, last))
     return low, high
@@ -299,7 +311,7 @@ def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str
             continue
         nominal = rows[first.name].columns[first.column]
         if not np.any((nominal >= x.range.low) & (nominal <= x.range.high)):
-            low, high = (format_quantity(float(f(nominal)), x.unit) for f in (np.nanmin, np.nanmax))
+            low, high = (typed_quantity(float(f(nominal)), x.unit) for f in (np.nanmin, np.nanmax))
             held = low if low == high else f"one from {low} to {high}"
             right = f"a range that holds the nominal {first.column}, {held}"
             raise InputError(f"{where}: {x.name}", x.text, right, ("robust", x.name))
@@ -334,9 +346,9 @@ def check_values(
             low, high = (x.moved(member, lambda m: values[m.name], p, None) for p in (0.0, 1.0))
             slack = MARGINS.end * max(abs(low), abs(high))
             if not low - slack <= own <= high + slack:
-                right = f"a range that holds the nominal {format_quantity(own, r.unit)}"
+                right = f"a range that holds the nominal {typed_quantity(own, r.unit)}"
                 raise InputError(field, x.text, right, path)
             if low < r.lower - slack or high > r.upper + slack:
-                shown = [format_quantity(end, r.unit) for end in (low, high)]
+                shown = [typed_quantity(end, r.unit) for end in (low, high)]
                 right = f"a range that {d.problem} allows; this one is {shown[0]} .. {shown[1]}"
                 raise InputError(field, x.text, right, path)

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.pareto import non_dominated
 from synth.search.dominance import SortedPoints, sorted_points
-from synth.search.dominance_code import DominanceCode, dominance_code
+from synth.search.dominance_code import dominance_code
 from synth.tuning import TUNING, Tuning
 
 
@@ -51,7 +51,6 @@ class Archive:
         self.variables = np.empty((0, variables))
         self.phi = np.empty((0, objectives))
         self._sorted: tuple[np.ndarray, bytes, SortedPoints] | None = None  # phi, tolerance, and what was made of them
-        self._asked = 0
 
     def __len__(self) -> int:
         return len(self.combination)
@@ -92,7 +91,7 @@ class Archive:
                 place = np.searchsorted(at, lower[:, 1 - k], side="right")
                 result[:, k] = np.where(place > 0, least[place - 1], np.inf)
         else:
-            result = self._sorted_known(known, tolerance).least(lower, self.code(len(lower)))
+            result = self._sorted_known(known, tolerance).least(lower, dominance_code())
         return result
 
     def _sorted_known(self, known: np.ndarray, tolerance: np.ndarray) -> SortedPoints:
@@ -102,11 +101,6 @@ class Archive:
             kept = self.phi, tolerance.tobytes(), sorted_points(known, self.tuning.dominance)
             self._sorted = kept
         return kept[2]
-
-    def code(self, boxes: int) -> DominanceCode | None:
-        """Return compiled code for telling which designs cover some more boxes; None while they are too few for it."""
-        self._asked += boxes
-        return dominance_code(self._asked, self.tuning.dominance)
 
     def covering(self, tolerance: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return, for each of two objectives, values of the other in order and the least that is covered from there."""

@@ -9,7 +9,7 @@ import numpy as np
 from synth import deadline
 from synth.bounds.bounding import Bounding
 from synth.bounds.boxes import Boxes, Subtrees
-from synth.bounds.compiled_subtrees import CutoffTables, Growth
+from synth.bounds.kernel_subtrees import CutoffTables, Growth
 from synth.margins import above
 from synth.search.archive import Archive
 from synth.search.counters import SearchCounters
@@ -65,10 +65,8 @@ class BoxOperations:
         boxes = self._boxes(self.cells.whole())
         if self.bounding.question.root.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
-        if self.bounding.compiled.at_once:
-            # The code that all other boxes are tightened with: cutoffs of infinity say nothing.
-            return self.contract(boxes, np.full(self.goals, np.inf), passes)
-        return self.contract(boxes, None, passes, every_goal=True)
+        # With the instructions that all other boxes are tightened with: cutoffs of infinity say nothing.
+        return self.contract(boxes, np.full(self.goals, np.inf), passes)
 
     def roots(self, scenarios: int) -> Boxes:
         """Return the box of everything, once for each of the clusters of at most so many scenarios."""
@@ -146,13 +144,13 @@ class BoxOperations:
         deadline.check()
         values = None if cutoffs is None else self.objectives.values_of(cutoffs)
         self.counters.contracted += len(boxes)
-        found = self.bounding.compiled.contract(boxes, values, passes, every_goal)
+        found = self.bounding.kernel.contract(boxes, values, passes, every_goal)
         if found is None:
             found = self._over_arrays(boxes, values, passes, every_goal)
         return self._without_refused(found)
 
     def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Growth | None:
-        """Begin to tighten and split boxes, and what comes of them; None where no code is compiled.
+        """Begin to tighten and split boxes, and what comes of them; None where there is no kernel.
 
         That goes on beside whatever is done before the subtrees are asked for, and reads nothing that changes by then.
 
@@ -164,7 +162,7 @@ class BoxOperations:
         levels : int
             Generations.
         """
-        growth = self.bounding.compiled.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
+        growth = self.bounding.kernel.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
         return None if growth is None else growth.then(self._allowed)
 
     def _allowed(self, found: Subtrees) -> Subtrees:
@@ -181,7 +179,7 @@ class BoxOperations:
         return replace(boxes, low=low, high=high)
 
     def _over_arrays(self, boxes: Boxes, values: np.ndarray | None, passes: int, every: bool) -> Boxes:
-        """Tighten boxes without compiled code, so many at a time that arrays stay in the cache."""
+        """Tighten boxes over arrays, so many at a time that arrays stay in the cache."""
         kept, at_once = [], self.tuning.arrays.boxes
         for first in range(0, len(boxes), at_once):
             deadline.check()
@@ -240,7 +238,7 @@ class BoxOperations:
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
-        found = self.bounding.compiled.split(boxes) if len(boxes) else None
+        found = self.bounding.kernel.split(boxes) if len(boxes) else None
         return self._split(boxes) if found is None else found
 
     def _split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:

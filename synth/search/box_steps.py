@@ -1,6 +1,6 @@
 """A step of a tree: a batch of boxes is tightened, looked into for designs and split.
 
-Compiled code tightens and splits them beside whatever goes on meanwhile, as looking for designs in the batch before.
+The kernel tightens and splits them beside whatever goes on meanwhile, as looking for designs in the batch before.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from synth.search.fathoming import left_open
 from synth.search.pruning import of_use
 
 if TYPE_CHECKING:
-    from synth.bounds.compiled_subtrees import Growth
+    from synth.bounds.kernel_subtrees import Growth
     from synth.search.formulation import Formulation
     from synth.search.primal_heuristics import PrimalHeuristics
     from synth.search.pruning import TabledPruningRule
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class BoxStep:
     """A batch of boxes under way; it has to be ended, by finishing it or without.
 
-    Where compiled code is at it, it goes by what designs must keep to be of use when it begins.
+    Where the kernel is at it, it goes by what designs must keep to be of use when it begins.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class BoxStep:
             self._growth.stop()
 
     def _grown(self, boxes: Boxes, levels: int) -> Growth | None:
-        """Begin to take boxes some generations further; None where no compiled code can."""
+        """Begin to take boxes some generations further; None where there is no kernel."""
         tables = self.rule.tables(self.form) if self._alone and len(boxes) else None
         return None if tables is None else self.form.boxes.grow(boxes, tables, levels)
 

@@ -84,7 +84,7 @@ def branch_and_bound(
     boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck, given_up = nothing, [boxes], nothing, False
-    steps: list[BoxStep] = []  # the batch at hand, and the next one, which compiled code is at meanwhile
+    steps: list[BoxStep] = []  # the batch at hand, and the next one, which the kernel is at meanwhile
     try:
         while (steps or len(queue) or fresh) and looked <= node_limit:
             if not steps and not len(queue):

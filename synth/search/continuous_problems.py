@@ -10,11 +10,10 @@ import numpy as np
 
 from synth.bounds.branching import BranchingWeights
 from synth.bounds.question_bounds import QuestionBounds
-from synth.compiled.compilation import NotCompiled, switched_on
-from synth.compiled.execution import Execution
+from synth.kernels.loading import native_wanted
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
 from synth.model.program import InputValue
-from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.nlp.rows import Rows
 from synth.search.counters import SearchCounters
@@ -75,8 +74,9 @@ class ContinuousProblems:
     kinks : tuple of int
         Decisions of formulas that may go either way.
     counters : SearchCounters
-        Counts what is solved; much work makes code of its own worth compiling.
-    execution : Execution
+        Counts what is solved.
+    workers : int
+        Threads that may solve at the same time, where kernels compute.
     tuning : Tuning
     """
 
@@ -88,13 +88,13 @@ class ContinuousProblems:
         rows: Rows,
         kinks: tuple[int, ...],
         counters: SearchCounters,
-        execution: Execution,
+        workers: int,
         tuning: Tuning = TUNING,
     ) -> None:
         self.question, self.branching = question, branching
         self.instance, self.constraints = question.instance, constraints
         self.rows, self.kinks, self.counters = rows, kinks, counters
-        self.execution, self.tuning = execution, tuning
+        self.workers, self.tuning = workers, tuning
         self.model, self.n = self.instance.model, len(self.instance.model.variables)
 
     @property
@@ -107,10 +107,23 @@ class ContinuousProblems:
 
     def batch_nlp(self) -> BatchNlp | KinkedNlp:
         """Return the NLP of this question for many designs at once; built once per model and set of rows."""
-        try:
-            return self._batch_nlp()
-        except NotCompiled:
-            return self._batch_nlp()  # over arrays: compiled code is switched off now
+        model, rows, kinks, nlp = self.model, self.rows, self.kinks, self.tuning.nlp
+        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
+        edge = nlp.edge if self.has_edges else 0.0
+        first: BatchNlp = model.function(
+            ("batch", rows, edge, nlp, native_wanted()),
+            lambda: BatchNlp(model.program, self.n, rows, edge, settings=nlp),
+        )
+        if not kinks:
+            return first
+        positive = tuple(dict.fromkeys(k for d in kinks for k in sides(model.program, d) if self._positive(k)))
+
+        def made() -> KinkedNlp:
+            pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
+            return KinkedNlp(first, PiecedNlp(pieces, nlp))
+
+        kinked: KinkedNlp = model.function(("kinked", rows, edge, kinks, positive, nlp, native_wanted()), made)
+        return kinked
 
     def solve_many(
         self,
@@ -147,58 +160,17 @@ class ContinuousProblems:
         high = np.broadcast_to(self.instance.ranges.upper, (count, self.n)) if high is None else high
         void = void_limits(self.constraints, data, count)
         void = void if skipped is None else void | skipped
-        start, bounds, workers = np.clip(start, low, high), self.question.right_sides, self.execution.workers
+        start, bounds = np.clip(start, low, high), self.question.right_sides
 
-        def solved() -> Solutions:
-            nlp = self.batch_nlp()
-            before = nlp.evaluations
-            if isinstance(nlp, KinkedNlp):
-                found = nlp.solve(tasks, data, start, low, high, bounds, void, workers, rough)
-            else:
-                found = nlp.solve(tasks, data, start, low, high, bounds, void, workers)
-            self.counters.work += (nlp.evaluations - before) * len(self.model.program.nodes)
-            return found
-
-        try:
-            return solved()
-        except NotCompiled:
-            return solved()  # pieces ask for code of their own; compiled code is switched off now
+        nlp = self.batch_nlp()
+        if isinstance(nlp, KinkedNlp):
+            return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers, rough)
+        return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers)
 
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
         prices = np.concatenate([found.constraint_multipliers, found.goal_multipliers + tasks.weights], axis=1)
         self.branching.learn(prices[found.converged], importance[found.converged])
-
-    def _batch_nlp(self) -> BatchNlp | KinkedNlp:
-        model, rows, kinks, nlp, code = self.model, self.rows, self.kinks, self.tuning.nlp, self._code()
-        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
-        edge = nlp.edge if self.has_edges else 0.0
-        first: BatchNlp = model.function(
-            ("batch", rows, code, edge, nlp),
-            lambda: BatchNlp(model.program, self.n, rows, code, edge, settings=nlp),
-        )
-        if not kinks:
-            return first
-        positive = tuple(dict.fromkeys(k for d in kinks for k in sides(model.program, d) if self._positive(k)))
-
-        def made() -> KinkedNlp:
-            pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
-            # Few problems are solved again where the formulas are solved as they stand.
-            return KinkedNlp(first, PiecedNlp(pieces, "general" if code == "own" and not edge else code, nlp))
-
-        kinked: KinkedNlp = model.function(("kinked", rows, code, edge, kinks, positive, nlp), made)
-        return kinked
-
-    def _code(self) -> Code:
-        """Return which code is used: that of the question, if it is worth compiling, or of all, or arrays."""
-        if not switched_on():
-            return "arrays"
-        compiling, execution = self.tuning.compiling, self.execution
-        # A single question begins with what is compiled for all: its first answer shall not wait for more.
-        large = self.instance.combinations.count * execution.similar_questions >= compiling.combinations
-        many = large and execution.similar_questions > 1
-        worthwhile = many or self.counters.work > compiling.work
-        return "own" if execution.compiled and worthwhile else "general"
 
     def _positive(self, node: int | None) -> bool:
         return node is not None and not self.question.root.empty and self.question.surely_positive(node)

@@ -1,7 +1,7 @@
 """Which known designs cover boxes, for three objectives and more: the same answers as comparing all with all, sooner.
 
 Of points and boxes with lower bounds is asked, per objective, the least value among the points that lie at or below the
-box in all other objectives. The points are sorted once; compiled code and arrays read what was made of them alike.
+box in all other objectives. The points are sorted once; the kernel and arrays read what was made of them alike.
 """
 
 from __future__ import annotations

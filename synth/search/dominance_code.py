@@ -1,4 +1,4 @@
-"""Dominance in compiled code: one library for all questions, with the very numbers that arrays give."""
+"""Dominance as a kernel, with the very numbers that arrays give."""
 
 from __future__ import annotations
 
@@ -8,10 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from synth.compiled.c_text import template
-from synth.compiled.compilation import switched_on
-from synth.compiled.compiler import LibraryBeside
-from synth.tuning import DominanceSettings
+from synth.kernels.loading import kernel
 
 TABLE = ("points", "shift", "blocks", "strict"), ("ordered", "place", "value", "corner")
 SETS = ("points", "objectives", "block", "rows", "words", "strict"), ("ordered", "place", "inside")
@@ -30,7 +27,7 @@ class _Sets(ctypes.Structure):
 
 
 class DominanceCode:
-    """Compiled answers about which points cover boxes.
+    """Answers of the kernel about which points cover boxes.
 
     Parameters
     ----------
@@ -66,27 +63,10 @@ def _answer(function: Callable[..., None], record: ctypes.Structure, lower: np.n
     return least
 
 
-def dominance_code(asked: int, settings: DominanceSettings) -> DominanceCode | None:
-    """Return the compiled code; None where too few boxes are asked about, or it is not there.
-
-    It is compiled once for all questions, beside the search that asks first: nobody waits for it, as arrays give the
-    same numbers.
-
-    Parameters
-    ----------
-    asked : int
-        Boxes that were asked about by one search until now.
-    settings : DominanceSettings
-    """
-    if asked < settings.compiled_from or not switched_on():
-        return None
-    loaded = _beside(settings).loaded()
+def dominance_code() -> DominanceCode | None:
+    """The kernel; None where there is none."""
+    loaded = kernel("dominance")
     return None if loaded is None else _code(loaded)
-
-
-@cache
-def _beside(settings: DominanceSettings) -> LibraryBeside:
-    return LibraryBeside("dominance", template("search", "dominance"), settings.effort)
 
 
 @cache

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
 from synth.bounds.bounding import Bounding
 from synth.bounds.question_bounds import QuestionBounds
-from synth.compiled.execution import EXECUTION, Execution
+from synth.feasibility import SLACK
 from synth.model.constraint import Goal, NodeConstraint
 from synth.question.requirement_values import RequirementValues
 from synth.question.search_space import SearchSpace
@@ -46,6 +46,10 @@ class Formulation:
         What the search in it goes by, its heuristics too.
     counters : SearchCounters, optional
         Those of an earlier formulation of the question, which go on.
+    slack : float
+        Share of their size by which limits are loosened that something continuous moves.
+    sizes : mapping
+        Objective -> its size in SI near the front, where that is known; the median over the question elsewhere.
     """
 
     def __init__(
@@ -54,11 +58,13 @@ class Formulation:
         objectives: Mapping[str, str],
         traded: int,
         infeasibility: bool = False,
-        execution: Execution = EXECUTION,
+        workers: int = 1,
         tuning: Tuning = TUNING,
         counters: SearchCounters | None = None,
+        slack: float = SLACK,
+        sizes: Mapping[str, float] = MappingProxyType({}),
     ) -> None:
-        self.instance, self.tuning, self.execution = instance, tuning, execution
+        self.instance, self.tuning, self.workers = instance, tuning, workers
         self.model = model = instance.model
         self.n, self.names, self.traded = len(model.variables), list(objectives), traded
         self.goals = [
@@ -66,22 +72,23 @@ class Formulation:
         ]
         self.constraints = instance.constraints
         # All that the search knows of limits is made of these rows, one of each constraint.
-        self.node_constraints = [NodeConstraint.of(x) for x in self.constraints]
-        self.bounds = [constraint.bound for constraint in self.node_constraints]
-        # A single objective needs bounds of the next one as well, which settles ties.
-        self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
         self.lower, self.upper = instance.ranges.lower, instance.ranges.upper
         self.makeable = MakeableValues(instance.ranges.grids(), tuning.tolerances.margins)
         self.gridded = self.makeable.gridded
+        self._immovable = self.unmoved(gridded=False)
+        slacks = np.where(self._immovable, SLACK, slack).tolist()
+        self.node_constraints = [NodeConstraint.of(*x) for x in zip(self.constraints, slacks, strict=True)]
+        self.bounds = [constraint.bound for constraint in self.node_constraints]
+        # A single objective needs bounds of the next one as well, which settles ties.
+        self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
         self.infeasibility = infeasibility
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
         question = QuestionBounds(
             instance, self.node_constraints, self.goals, self.bounded, infeasibility, tuning.branching
         )
-        self.bounding = Bounding(question, execution, tuning)
-        self.objectives = self._log_objectives()
-        self._immovable = self.unmoved(gridded=False)
+        self.bounding = Bounding(question, workers, tuning)
+        self.objectives = self._log_objectives(sizes)
         self._rows = rows_of_question(question, self.objectives.log.tolist())
         self._kinks = open_kinks(question, self._rows)
         self._begin(SearchCounters() if counters is None else counters)
@@ -101,12 +108,11 @@ class Formulation:
         Formulation, optional
             That knows no design yet; None as for :meth:`QuestionBounds.among`.
         """
-        execution = replace(self.execution, workers=workers)
-        bounding = self.bounding.among(instance, execution)
+        bounding = self.bounding.among(instance, workers)
         if bounding is None:
             return None
         own = copy.copy(self)
-        own.instance, own.bounding, own.execution = instance, bounding, execution
+        own.instance, own.bounding, own.workers = instance, bounding, workers
         own._begin(SearchCounters())
         return own
 
@@ -130,13 +136,14 @@ class Formulation:
         )
         question, branching = self.bounding.question, self.bounding.branching
         self.continuous = ContinuousProblems(
-            question, branching, self.constraints, self._rows, self._kinks, counters, self.execution, self.tuning
+            question, branching, self.constraints, self._rows, self._kinks, counters, self.workers, self.tuning
         )
 
-    def _log_objectives(self) -> LogObjectives:
+    def _log_objectives(self, near: Mapping[str, float]) -> LogObjectives:
         positive = [g.sign > 0 and self.bounding.question.surely_positive(g.node) for g in self.goals]
         declared = [declared_resolution(self.model.declaration, name) for name in self.names]
-        return LogObjectives.of(positive, self.bounding.goal_sizes, declared)
+        usual = zip(self.names, self.bounding.goal_sizes.tolist(), strict=True)
+        return LogObjectives.of(positive, np.array([near.get(name, size) for name, size in usual]), declared)
 
     def unmoved(self, gridded: bool) -> np.ndarray:
         """Return which limits no variable moves: of those that may move at all, or only the continuous ones of them.

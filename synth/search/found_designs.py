@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.analysis.designs import design_of, part_row, told_by
+from synth.analysis.designs import design_of, part_row, rows_beside, told_by
 from synth.model.model import Evaluation
 from synth.results import Design, Frame, PartRow
 from synth.results.design import DesignSteps
@@ -42,7 +42,7 @@ def found_designs(
     known: dict[tuple[str, int], PartRow] = {}
     data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
     beside = [
-        {"steps": DesignSteps(steps), "next_rows": rows}
+        {"steps": DesignSteps(steps), "next_rows": rows, "rows": rows_beside(form.model, rows)}
         for steps, rows in zip(form.model.steps(points, data), form.model.next_rows(points, data), strict=True)
     ]
     designs = []

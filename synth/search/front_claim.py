@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from synth.results import Design
 from synth.search.front_state import FrontState
 from synth.search.proven_gap import Bound, least_gap
 from synth.search.resolution import ROOM, ranges, rounded_up
@@ -20,19 +22,59 @@ def proven_gap(state: FrontState) -> float | None:
     return None if least is None else max(least, state.task.settings.gap)
 
 
-def gap_amounts(state: FrontState, gap: float) -> dict[str, float]:
-    """Return in SI what the gap of a claim stands for, per objective where it is no share of the value."""
+def settle_proof(state: FrontState) -> None:
+    """Take back a proof that is coarser than the gap; take one that bounds give by themselves."""
+    proof, gap = state.proof, state.task.settings.gap
+    if not state.front:
+        return
+    if not _resolved(state):
+        proof.closed = proof.exhausted = proof.complete = False
+    if state.task.m == 1 and not proof.closed:
+        proven = proven_gap(state)
+        proof.closed = proof.complete = proven is not None and proven <= gap
+
+
+def _resolved(state: FrontState) -> bool:
+    """True if no objective was told apart more coarsely than the gap asks for, unless the declaration says so."""
+    objectives, m = state.form.objectives, state.task.m
+    phi = state.phi_listed()
+    sizes = np.maximum(np.abs(phi).max(axis=0), np.maximum(ranges(phi), state.spans))
+    undeclared = ~objectives.log[:m] & ~objectives.declared[:m]
+    return not np.any(undeclared & (objectives.finest[:m] > state.task.settings.gap * sizes))
+
+
+def gap_amounts(state: FrontState, gap: float, designs: Sequence[Design]) -> dict[str, float]:
+    """Amounts in SI that the gap of a claim stands for, per objective where it is no share of the value.
+
+    Parameters
+    ----------
+    state : FrontState
+    gap : float
+    designs : list of Design
+        As listed: settling ties may have found one that is better by a hair.
+    """
     form, m = state.form, state.task.m
     least = gap * _sizes(state)
     if m > 1:
         # The range of a few designs may be less than that of the front they were chosen from.
         least = np.maximum(least, state.rule.tolerance + ROOM)
     amounts = least * form.objectives.scales[:m]
+    if m == 1 and not form.objectives.declared[0]:
+        (name,) = state.task.chosen
+        amounts = np.minimum(amounts, gap * abs(designs[0].objectives[name]))
     return {
         name: rounded_up(float(amounts[k]), state.task.instance.model.units[name])
         for k, name in enumerate(state.task.chosen)
         if not form.objectives.log[k]
     }
+
+
+def finer_than_ties(state: FrontState) -> np.ndarray:
+    """Tell in which objectives the gap is less than what settling ties may give away: nearly zero on this front."""
+    objectives, m = state.form.objectives, state.task.m
+    told_apart = state.task.settings.gap * _sizes(state)
+    finer: np.ndarray = ~objectives.log[:m] & (told_apart < ROOM)
+    return finer
 
 
 def claim_no_less(state: FrontState) -> None:
@@ -63,6 +105,7 @@ def note_open_boxes(state: FrontState) -> None:
 
 def _sizes(state: FrontState) -> np.ndarray:
     """Return what the gap of objectives that may be zero is a share of on this front, in phi."""
-    finest = state.form.objectives.finest[: state.task.m] / state.task.settings.gap
-    sizes: np.ndarray = np.maximum(ranges(state.phi_listed()), finest)
+    objectives, m = state.form.objectives, state.task.m
+    declared = np.where(objectives.declared[:m], objectives.finest[:m] / state.task.settings.gap, 0.0)
+    sizes: np.ndarray = np.maximum(ranges(state.phi_listed()), declared)
     return sizes

@@ -19,7 +19,7 @@ from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.search.archive import Candidate, distinct
 from synth.search.found_designs import found_designs
-from synth.search.front_claim import gap_amounts, proven_gap
+from synth.search.front_claim import finer_than_ties, gap_amounts, proven_gap
 from synth.search.front_state import FrontState
 from synth.search.polishing import break_ties
 from synth.search.sensitivity import elasticities
@@ -88,23 +88,33 @@ def _records(
 def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Candidate], list[tuple[str, ...]]]:
     """Settle what the chosen objectives do not see, and name other combinations that tie."""
     form, m, tuning = state.form, state.task.m, state.task.tuning
-    chosen = list(designs)
+    chosen, strict = list(designs), finer_than_ties(state)
     if m == 1 and len(form.goals) > 1:
         # One objective leaves whole families of parts open; the next objective is settled over all of them.
         cutoffs = np.full(len(form.goals), np.inf)
-        cutoffs[0] = chosen[0].phi[0] + tuning.tolerances.tie
-        chosen[0] = better_in(state, 1, cutoffs, chosen[0], tuning.tree.tie) or chosen[0]
+        cutoffs[0] = chosen[0].phi[0] + (0.0 if strict[0] else tuning.tolerances.tie)
+        other = better_in(state, 1, cutoffs, chosen[0], tuning.tree.tie)
+        if other is not None and not _gives_away(chosen[0], other, strict):
+            chosen[0] = other
     pairs: list[tuple[Candidate, tuple[str, ...]]] = []
     while chosen:
         settled = break_ties(form, state.pool, chosen, m)
+        before = form.points.as_they_are(chosen)
         listed = form.points.as_they_are([c for c, _ in settled])
-        pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
+        for own, c, (_, a) in zip(before, listed, settled, strict=True):
+            pairs.append((own, ()) if _gives_away(own, c, strict) else (c, a))
         stay = {id(c) for c in distinct([c for c, _ in pairs], m, tuning)}
         pairs = [pair for pair in pairs if id(pair[0]) in stay]
         # Where settling has made two designs one, others that stand as well take the place.
         missing = max(state.task.settings.points - len(pairs), 0)
         chosen, state.spare = state.spare[:missing], state.spare[missing:] if missing else []
     return [c for c, _ in pairs], [a for _, a in pairs]
+
+
+def _gives_away(own: Candidate, other: Candidate, strict: np.ndarray) -> bool:
+    """Tell whether a design that ties is worse where even what a tie may give away is more than the claim allows."""
+    m = len(strict)
+    return bool(np.any(other.phi[:m][strict] > own.phi[:m][strict]))
 
 
 # -- the front -------------------------------------------------------------------------------------
@@ -137,7 +147,7 @@ def front_found(
         state.task.instance,
         frame,
         designs,
-        _certificate(state, bool(designs), bool(interrupted)),
+        _certificate(state, designs, bool(interrupted)),
         _statistics(state),
         settings,
         complete=state.proof.complete,
@@ -147,13 +157,13 @@ def front_found(
     )
 
 
-def _certificate(state: FrontState, any_design: bool, interrupted: bool) -> Certificate:
+def _certificate(state: FrontState, designs: Sequence[Design], interrupted: bool) -> Certificate:
     """Return what is proven: of all combinations, of those solved one by one, or nothing."""
     task, proof = state.task, state.proof
     kind = "global" if proof.closed else "exhaustive" if proof.exhausted and not interrupted else "heuristic"
-    gap = (task.settings.gap if any_design else None) if kind == "global" else proven_gap(state)
+    gap = (task.settings.gap if designs else None) if kind == "global" else proven_gap(state)
     spent = task.limits.further.seconds if state.budget.spent and kind != "global" else None
-    amounts = gap_amounts(state, gap) if any_design and gap is not None else {}
+    amounts = gap_amounts(state, gap, designs) if designs and gap is not None else {}
     return Certificate(
         kind,
         gap,

@@ -5,25 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import BranchingStatistics
-from synth.compiled.execution import Execution
+from synth.feasibility import SLACK, slack_for
 from synth.question.instance import Instance
-from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings
 from synth.search.archive import Candidate, rows_of
 from synth.search.budget import Clock
 from synth.search.counters import SearchCounters
 from synth.search.formulation import Formulation
 from synth.search.given_front import GivenFront
+from synth.search.goals import goals_of
 from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.levels import Cutoffs, LevelProof
 from synth.search.nearest_ideal import ScoredFront
 from synth.search.proven_gap import Bound, Level, LevelBound
 from synth.search.pruning import EpsilonCover, NonImprovement
+from synth.search.resolution import ranges
 from synth.search.shown_designs import ShownDesigns
 from synth.search.stage_progress import StageProgress
 from synth.search.turns import TurnBudget
@@ -43,10 +45,8 @@ class FrontTask:
     settings : SearchSettings
     tuning : Tuning
     node_limit : int, optional
-        Boxes that each tree may look into. A question with a limit of its own is not worth compiling for, nor solving
-        what stays open. None: as many as are worth it, and then all that can be done about the rest.
-    similar_questions : int
-        Questions of its kind that are asked; code that is compiled for one serves them all.
+        Boxes that each tree may look into; what stays open is not solved then. None: as many as are worth it, and then
+        all that can be done about the rest.
     warm : WarmStart
         What is known of similar questions.
     """
@@ -56,7 +56,6 @@ class FrontTask:
     settings: SearchSettings
     tuning: Tuning = TUNING
     node_limit: int | None = None
-    similar_questions: int = 1
     warm: WarmStart = field(default_factory=WarmStart)
 
     @property
@@ -93,7 +92,13 @@ class FrontTask:
             return limits.boxes_of_many if self.m == 1 and few else limits.boxes
         return limits.boxes_of_few_parts if few else limits.boxes_of_many
 
-    def formulation(self, infeasibility: bool, counters: SearchCounters | None = None) -> Formulation:
+    def formulation(
+        self,
+        infeasibility: bool,
+        counters: SearchCounters | None = None,
+        slack: float = SLACK,
+        sizes: Mapping[str, float] = MappingProxyType({}),
+    ) -> Formulation:
         """Return the question ready to be searched.
 
         Parameters
@@ -102,10 +107,14 @@ class FrontTask:
             Whether it is for proving that limits exclude each other.
         counters : SearchCounters, optional
             Those of an earlier formulation, which go on.
+        slack : float
+            By which limits are loosened that something continuous moves.
+        sizes : mapping
+            Objective -> its size in SI near the front, where that is known.
         """
-        goals = with_ties(self.instance.model, self.chosen)
-        execution = Execution(self.thorough, self.similar_questions, self.settings.workers)
-        return Formulation(self.instance, goals, self.m, infeasibility, execution, self.tuning, counters)
+        goals = goals_of(self.instance, self.chosen)
+        workers = self.settings.workers
+        return Formulation(self.instance, goals, self.m, infeasibility, workers, self.tuning, counters, slack, sizes)
 
 
 @dataclass
@@ -182,6 +191,12 @@ class FrontProof:
         """Note that known designs cover all others within a tolerance."""
         self.bounds.append(Bound(tolerance, np.empty((0, len(tolerance)))))
 
+    def measured_by(self, factor: np.ndarray) -> None:
+        """Keep what is proven where phi of all objectives is multiplied by a factor."""
+        self.bounds = [b.times(factor) for b in self.bounds if isinstance(b, Bound)]
+        self.finest_cover, self.designs, self.levels = None, set(), []
+        self.closed, self.exhausted, self.unresolved = True, True, 0  # what comes is proven anew
+
     def give_up(self) -> None:
         """Note that the search ends before its proof does."""
         self.closed = self.exhausted = self.complete = False
@@ -232,17 +247,19 @@ class FrontState:
             lambda: shown.of(self.form),
             task.tuning.progress,
         )
-        self.form, self.infeasibility_mode = task.formulation(infeasibility=False), False
+        self.form, self.infeasibility_mode, self.slack = task.formulation(infeasibility=False), False, SLACK
         limit = settings.time_limit
         end = math.inf if limit is None else self.progress.started + limit
         self.clock = Clock(end, self.progress.working)
         self.budget = OpenBoxBudget(task.limits.further.seconds if limit is None else math.inf)
         self.budget.boxes = task.limits.boxes if task.thorough else self.node_limit
+        self.sizes: Mapping[str, float] = {}  # of objectives near the front, where they were measured there
         self.rng = np.random.default_rng(settings.seed)
         self.counters = FrontCounters()
         self.proof = FrontProof(open_combinations=float(instance.combinations.count))
         self.pool: Boxes = self.form.boxes.nothing()  # the boxes that may hold a feasible design
         self.rule = self.cover_at_gap(None)
+        self.spans = np.zeros(task.m)  # of phi from one end of the front to the other, once these are known
         self.front: list[Candidate] = []
         self.scored: ScoredFront | None = None  # how its designs are ranked, once that is known
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
@@ -317,7 +334,7 @@ class FrontState:
     def levels_within(self, cutoffs: Cutoffs) -> LevelProof:
         """Return the search for the best in the second objective within cutoffs of the first."""
         if self._shared is None:
-            self._shared = SharedBounds([self.task], ())
+            self._shared = SharedBounds([self.task], (), slack=self.slack, sizes=self.sizes)
         proof = LevelProof(self.task, self._shared, self.clock, cutoffs)
         proof.begin_with(self.form.archive, self.learned_at_levels)
         return proof
@@ -343,12 +360,55 @@ class FrontState:
     def begin_again(self, infeasibility: bool) -> None:
         """Begin again with boxes that also carry what limits share, or no longer do, and keep what is known."""
         known, self.infeasibility_mode = self.form, infeasibility
-        self.form = self.task.formulation(infeasibility, known.counters)
+        self.form = self.formulation(infeasibility, known)
         if infeasibility:
             self.form.bounding.branching.adopt(known.bounding.branching.statistics())
-        self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
+        phi = self.form.objectives.again(known.archive.phi, known.objectives)
+        self.form.archive.add(known.archive.combination, known.archive.variables, phi)
         self.rule = self.cover_at_gap(None)
         self.set_pool()
+
+    def formulation(self, infeasibility: bool, known: Formulation) -> Formulation:
+        """The question prepared anew as it is searched by now; what an earlier formulation counted goes on."""
+        return self.task.formulation(infeasibility, known.counters, self.slack, self.sizes)
+
+    def measure_near(self, values: np.ndarray) -> bool:
+        """Measure objectives that may be zero by their size near the front; True where that is finer than before.
+
+        A resolution that is a share of the usual size over all that may be designed says nothing where the front lies
+        far below that.
+
+        Parameters
+        ----------
+        values : array (designs, objectives)
+            SI, of the best designs known.
+        """
+        objectives, m = self.form.objectives, self.task.m
+        near = ranges(values[:, :m])
+        coarse = ~objectives.log[:m] & ~objectives.declared[:m] & (near > 0)
+        coarse &= objectives.finest[:m] * objectives.scales[:m] > self.task.settings.gap * near
+        if not coarse.any():
+            return False
+        names = list(self.task.chosen)
+        self.sizes = {**self.sizes, **{names[k]: float(near[k]) for k in np.flatnonzero(coarse)}}
+        before = self.form.objectives
+        self.begin_again(self.infeasibility_mode)
+        factor = np.where(before.log, 1.0, before.scales / self.form.objectives.scales)[:m]
+        everything = self.proof.bounds.pop()  # of the new box of everything, measured anew already
+        self.proof.measured_by(factor)
+        self.proof.bounds.append(everything)
+        self.given = replace(self.given, phi=self.given.phi * factor)
+        return True
+
+    def loosen_less(self) -> None:
+        """Begin again with limits that are loosened by far less than the gap, now that designs are known.
+
+        That nothing is feasible is proven with the whole slack: some design may need all of the tolerance.
+        """
+        slack = slack_for(self.task.settings.gap)
+        if slack < self.slack and len(self.form.archive):
+            self.slack = slack
+            self.begin_again(self.infeasibility_mode)
 
     def go_on_with(self, form: Formulation) -> None:
         """Go on with an earlier formulation, and keep what is known."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from synth.analysis.restate import problem_of
 from synth.errors import InputError
 from synth.margins import MARGINS
+from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
     from synth.question.request import Request
@@ -159,7 +160,7 @@ def difference(front: ParetoFront, question: Question) -> str:
     for key, value in frame.requirement_values.items():
         own = instance.values.requirements.get(key, math.nan)
         if not (own == value or math.isclose(own, value, rel_tol=MARGINS.stated)):
-            return f"requirement {key}: {value:.12g} there, {own:.12g} here (SI)"
+            return f"requirement {key}: {typed_number(value, 12)} there, {typed_number(own, 12)} here (SI)"
     if set(instance.values.requirements) != set(frame.requirement_values):
         more = sorted(set(instance.values.requirements) ^ set(frame.requirement_values))
         return f"requirement {more[0]}, which only one of them has"

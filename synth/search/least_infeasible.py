@@ -6,21 +6,28 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from synth.feasibility import VANISHING, missed_share, size_of_miss
 from synth.model.constraint import Constraint
 from synth.nlp.batch import Tasks
+from synth.plain_text import counted
 from synth.results.least_infeasible import LeastInfeasible, MissedLimit
 from synth.search.formulation import Formulation
-from synth.units import format_quantity
+from synth.text.numbers import typed_number
+from synth.units import miss_text, typed_quantity
 
+PROVEN, NOT_PROVEN = "No combination is feasible.", "No feasible design was found; that there is none is not proven."
 NEAREST = "The nearest design found"
 BETWEEN = "Sizes between the makeable ones would keep every limit; the nearest makeable design found"
 
 
-def explain_infeasible(form: Formulation, rng: np.random.Generator, among: range | None = None) -> LeastInfeasible:
+def explain_infeasible(
+    form: Formulation, rng: np.random.Generator, among: range | None = None, proven: bool = True
+) -> LeastInfeasible:
     """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
-    ``among``: the numbers of the combinations that count, all unless they are given.
+    ``among``: the numbers of the combinations that count, all unless they are given. ``proven``: whether bounds prove
+    that none is feasible.
     """
     instance, limits = form.instance, form.tuning.heuristics.least_infeasible
     among = range(instance.combinations.count) if among is None else among
@@ -45,9 +52,9 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator, among: range
     if found[0][0] <= 0 and form.gridded.any():
         # Something keeps every limit, but only between makeable sizes: what these miss is what is in the way.
         _, combination, variables = _makeable(form, [x for x in found if x[0] <= 0], rng)
-        return _told(form, combination, variables, BETWEEN)
+        return _told(form, combination, variables, proven, BETWEEN)
     _, combination, variables = found[0]
-    return _told(form, combination, variables)
+    return _told(form, combination, variables, proven)
 
 
 def _makeable(
@@ -104,45 +111,52 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
     result = form.points.evaluate(variables, combinations)
     rows, never = [], form.tuning.heuristics.least_infeasible.never
     for limit in form.constraints:
-        missed = np.nan_to_num(result.residuals[limit.name], nan=never) + (never if limit.guard else 0.0)
+        sides, scale = result.limits[limit.name], result.scales[limit.name]
+        with np.errstate(all="ignore"):
+            missed = missed_share(*sides, limit.sense, scale)
+        missed = np.where(np.isnan(result.residuals[limit.name]), never, np.nan_to_num(missed, nan=never))
+        missed = missed + (never if limit.guard else 0.0)
         rows.append(np.where(result.holds[limit.name], 0.0, missed))
     worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
     return worst
 
 
-def _told(form: Formulation, combination: int, variables: np.ndarray, nearest_is: str = NEAREST) -> LeastInfeasible:
+def _told(
+    form: Formulation, combination: int, variables: np.ndarray, proven: bool, nearest_is: str = NEAREST
+) -> LeastInfeasible:
     result = form.points.evaluate(variables[None, :], np.array([combination]))
     conflicts = []
     for limit in form.constraints:
         value, bound = (float(x[0]) for x in result.limits[limit.name])
         if not bool(result.holds[limit.name][0]):
-            conflicts.append(_conflict(limit, value, bound))
+            conflicts.append(_conflict(limit, value, bound, float(np.ravel(result.scales[limit.name])[0])))
     parts, counts, choices = form.instance.combinations.describe(combination)
     model = form.model
-    nearest = {v.name: format_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
-    nearest |= {n: f"{v:g}" for n, v in counts.items()} | dict(choices)
-    names = ", ".join(c["limit"] for c in conflicts)
+    nearest = {v.name: typed_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
+    nearest |= {n: typed_number(v) for n, v in counts.items()} | dict(choices)
     sentences = "; ".join(c["sentence"] for c in conflicts)
     # What holds by the tolerance of limits alone misses none.
-    told = f"misses {names}: {sentences}" if conflicts else "keeps every limit by its tolerance alone"
+    told = f"misses {counted(len(conflicts), 'limit')}: {sentences}"
+    told = told if conflicts else "keeps every limit by its tolerance alone"
     return LeastInfeasible(
-        message=f"No combination is feasible. {nearest_is} {told}.",
+        message=f"{PROVEN if proven else NOT_PROVEN} {nearest_is} {told}.",
         conflicts=conflicts,
         nearest=nearest,
         parts={slot: table.designations[row] for slot, (table, row) in parts.items()},
     )
 
 
-def _conflict(limit: Constraint, value: float, bound: float) -> MissedLimit:
-    missed = abs(value - bound) / max(abs(bound), 1e-300)
-    shown, allowed = (format_quantity(x, limit.unit, 5) for x in (value, bound))
-    share = format_quantity(missed, "%", 3)
+def _conflict(limit: Constraint, value: float, bound: float, scale: float) -> MissedLimit:
+    # A limit of nothing, or next to it, has no share of its own.
+    size = abs(bound) if abs(bound) > VANISHING * scale else float(size_of_miss(value, bound, scale))
+    shown, allowed = (typed_quantity(x, limit.unit, 5) for x in (value, bound))
     words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[limit.sense]
+    missed_by = miss_text(value, bound, limit.unit)
     return MissedLimit(
         limit=limit.name,
         value=value,
         limit_value=bound,
         unit=limit.unit,
-        missed_by=missed,
-        sentence=f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {share})",
+        missed_by=abs(value - bound) / size,
+        sentence=f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {missed_by})",
     )

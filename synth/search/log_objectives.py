@@ -25,11 +25,14 @@ class LogObjectives:
         Units of those that are not, in SI; 1 elsewhere.
     finest : array (objectives,)
         Resolutions in phi, which no gap goes below; 0 by logarithm.
+    declared : array of bool (objectives,)
+        Whose resolution the declaration tells.
     """
 
     log: np.ndarray
     scales: np.ndarray
     finest: np.ndarray
+    declared: np.ndarray
 
     @staticmethod
     def of(log: Sequence[bool], sizes: np.ndarray, declared: Sequence[float | None]) -> LogObjectives:
@@ -45,7 +48,14 @@ class LogObjectives:
             Resolutions in SI, None where the declaration leaves it to the usual size.
         """
         by_logarithm = np.array(log, dtype=bool)
-        return LogObjectives(by_logarithm, *goal_scales(by_logarithm, sizes, declared))
+        stated = np.array([x is not None for x in declared], dtype=bool)
+        return LogObjectives(by_logarithm, *goal_scales(by_logarithm, sizes, declared), stated)
+
+    def again(self, phi: np.ndarray, before: LogObjectives) -> np.ndarray:
+        """Phi (batch, objectives) for phi on another scale of the same objectives."""
+        if np.array_equal(self.scales, before.scales):
+            return phi
+        return phi * np.where(self.log, 1.0, before.scales / self.scales)
 
     def phi_of(self, values: np.ndarray) -> np.ndarray:
         """Return phi for signed objective values (batch, objectives), all or the first ones."""

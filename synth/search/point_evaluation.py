@@ -55,10 +55,13 @@ class PointEvaluation:
         kinds = [(c.sense, c.guard) for c in node_constraints]
         self._of_kind = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
         self._scales = np.array([c.scale for c in node_constraints], dtype=float)
+        self._most_terms = np.array([c.most_terms for c in constraints], dtype=float)
         self._tolerances = np.where(immovable, TOLERANCE, tuning.tolerances.limit)
         values = [c.value for c in node_constraints]
         bounds = [c.value if c.limit is None else c.limit for c in node_constraints]
-        nodes, model = (*values, *bounds, *(g.node for g in goals)), instance.model
+        # A limit without terms of its own reads its value in their place, which changes no size.
+        terms = [c.value if c.terms is None else c.terms for c in node_constraints]
+        nodes, model = (*values, *bounds, *terms, *(g.node for g in goals)), instance.model
         self._sides = model.function(("screen", nodes), lambda: model.program.compile(nodes))
         self._constant = {len(node_constraints) + k: c.bound for k, c in enumerate(node_constraints) if c.limit is None}
 
@@ -119,11 +122,12 @@ class PointEvaluation:
         with np.errstate(all="ignore"):
             sides = self._screen([*variables, *data])
             for k, sign in enumerate(self._signs[: cutoffs.shape[1]]):
-                keep &= sign * sides[2 * limits + k] <= most[:, k, None]
+                keep &= sign * sides[3 * limits + k] <= most[:, k, None]
             for j, constraint in enumerate(self._node_constraints):
-                value, limit = sides[j], sides[limits + j]
+                value, limit, terms = (sides[first + j] for first in (0, limits, 2 * limits))
                 # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
-                margin = 4 * TOLERANCE * np.maximum(np.abs(limit), constraint.scale)
+                least = constraint.scale if constraint.terms is None else terms
+                margin = 4 * TOLERANCE * np.maximum(np.abs(limit), least)
                 kept = np.True_ if constraint.sense == "at_least" else value <= limit + margin
                 kept = kept if constraint.sense == "at_most" else kept & (value >= limit - margin)
                 for k in self.constraints[j].void_without:
@@ -145,10 +149,12 @@ class PointEvaluation:
             for row, x in zip(sides, raw, strict=True):
                 row[:] = x
             limits = len(self._node_constraints)
-            phi = self.objectives.phi_of((sides[2 * limits :] * self._signs[:, None]).T)
+            phi = self.objectives.phi_of((sides[3 * limits :] * self._signs[:, None]).T)
             held = void_limits(self.constraints, data, count).T
             for (sense, guard), rows in self._of_kind.items():
-                r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
+                terms = np.fmin(np.abs(sides[2 * limits + rows]), self._most_terms[rows, None])
+                least = np.fmax(terms, self._scales[rows, None])
+                r = residual(sides[rows], sides[limits + rows], sense, least)
                 held[rows] |= holds(r, guard, tolerances[rows, None])
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & not_refused(self.instance, combinations)
         feasible &= np.all(variables >= below(self.instance.ranges.lower, self.margins.pinned), axis=1)

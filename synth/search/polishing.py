@@ -15,6 +15,7 @@ from synth.search.archive import Candidate
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.pruning import PruningRule
+from synth.text.numbers import typed_number
 
 
 def polish_extremes(form: Formulation, traded: int, tolerance: float) -> None:
@@ -216,7 +217,7 @@ def _difference(instance: SearchSpace, combination: int, other: int) -> str:
         if own[0][slot] != its[0][slot]:
             table, row = its[0][slot]
             words.append(f"{slot} {table.designations[row]}")
-    words += [f"{n} {its[1][n]:g}" for n in own[1] if own[1][n] != its[1][n]]
+    words += [f"{n} {typed_number(its[1][n])}" for n in own[1] if own[1][n] != its[1][n]]
     words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
     return ", ".join(words)
 

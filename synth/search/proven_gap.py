@@ -27,6 +27,10 @@ class Bound:
     tolerance: np.ndarray
     corners: np.ndarray
 
+    def times(self, factor: np.ndarray) -> Bound:
+        """The same where phi of all objectives is multiplied by a factor."""
+        return Bound(self.tolerance * factor, self.corners * factor)
+
     def gaps(
         self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray, at_once: int = TUNING.arrays.boxes
     ) -> np.ndarray:
@@ -45,7 +49,9 @@ class Bound:
 
         def share(better: np.ndarray) -> np.ndarray:
             with np.errstate(all="ignore"):
-                result: np.ndarray = np.where(logs, -np.expm1(-better), better / sizes)
+                # Of nothing there is no share: what is exactly zero is improved by nothing or by all.
+                shares = np.where(sizes > 0, better / sizes, np.where(better > 0, np.inf, 0.0))
+                result: np.ndarray = np.where(logs, -np.expm1(-better), shares)
             return result
 
         worst = np.full(len(phi), share(self.tolerance).max())

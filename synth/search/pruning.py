@@ -9,9 +9,10 @@ from typing import Protocol
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.bounds.compiled_subtrees import CutoffTables
+from synth.bounds.kernel_subtrees import CutoffTables
 from synth.search.archive import Archive, Candidate
 from synth.search.dominance import SortedPoints, sorted_points
+from synth.search.dominance_code import dominance_code
 from synth.search.formulation import Formulation
 
 
@@ -41,7 +42,7 @@ class PruningRule(Protocol):
 
 
 class TabledPruningRule(PruningRule, Protocol):
-    """A rule whose cutoffs compiled code may read from tables."""
+    """A rule whose cutoffs the kernel may read from tables."""
 
     def tables(self, form: Formulation) -> CutoffTables | None:
         """Return what :meth:`cutoffs` and :meth:`possible_gain` say as tables; None where they cannot say it."""
@@ -214,7 +215,7 @@ class NonImprovement:
         if self._sorted_steps is None:
             self._sorted_steps = sorted_points(-self.steps, self.known.tuning.dominance, strict=True)
         # The largest step above a box in all other objectives; where it is not above it in its own, none is in all.
-        largest = -self._sorted_steps.least(-own, self.known.code(len(own)))
+        largest = -self._sorted_steps.least(-own, dominance_code())
         return np.where(own < largest, largest, -np.inf)
 
     def _below_two(self, own: np.ndarray) -> np.ndarray:

@@ -24,8 +24,8 @@ from synth.tuning import TUNING, Tuning
 class Question:
     """A request that has been checked against its model: everything that can be wrong with it has been said.
 
-    ``chosen`` are the objectives with their sense, ``weights`` those of all of them. ``similar_questions``: how many
-    questions of its kind are asked; code that is compiled for one serves them all. ``tuning``: what its search goes by.
+    ``chosen`` are the objectives with their sense, ``weights`` those of all of them.
+    ``tuning``: what its search goes by.
     """
 
     request: Request
@@ -33,7 +33,6 @@ class Question:
     instance: Instance
     chosen: Mapping[str, str]
     weights: Mapping[str, float]
-    similar_questions: int = 1
     tuning: Tuning = TUNING
 
     def within(self, seconds: float | None) -> Question:
@@ -89,7 +88,6 @@ class Question:
             chosen=self.chosen,
             settings=self.settings,
             tuning=self.tuning,
-            similar_questions=self.similar_questions,
             warm=warm or WarmStart(),
         )
         return FrontSearch(task, progress)
@@ -126,7 +124,7 @@ def pose(
             problem = robust_counterpart(problem, request.robust, request.limits)
     instance = Instance(replace(request, problem=problem))
     chosen = chosen_objectives(instance.model, request.objectives)
-    weights = dict(zip(chosen, weights_of(instance, chosen, request.weights), strict=True))
+    weights = dict(zip(chosen, weights_of(instance.model, chosen, request.weights), strict=True))
     return Question(
         request=request, settings=settings, instance=instance, chosen=chosen, weights=weights, tuning=tuning
     )

@@ -300,7 +300,7 @@ def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
     sizes = np.empty((len(result.feasible), len(form.node_constraints)))
     for j, x in enumerate(form.constraints):
         value, limit = result.limits[x.name]
-        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), x.scale)
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), result.scales[x.name])
         sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
     return sizes
 
@@ -323,7 +323,9 @@ def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     tight = np.zeros((len(result.feasible), len(form.node_constraints)), dtype=bool)
     for j in np.flatnonzero(fixed):
         x = form.constraints[j]
-        tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < form.tuning.tolerances.tight
+        tight[:, j] = (
+            np.abs(residual(*result.limits[x.name], x.sense, result.scales[x.name])) < form.tuning.tolerances.tight
+        )
     return tight
 
 

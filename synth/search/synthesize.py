@@ -60,7 +60,7 @@ def synthesize(
     grid : bool
         True: only makeable values of gridded variables. False: all variables continuous.
     workers : int
-        Threads that may tighten boxes at the same time, where a C compiler is there; the result is the same for any
+        Threads that may tighten boxes at the same time, where kernels compute; the result is the same for any
         number.
     seed : int
         Of all random choices.

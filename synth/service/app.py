@@ -28,8 +28,11 @@ from synth.service.api import (
     tenant_routes,
 )
 from synth.service.api.asking import known_query
+from synth.service.api.description import DescribedService
 from synth.service.attempts import FailedTokens
-from synth.service.context import API, EngineCalls, ServiceContext, SmallWork, in_thread
+from synth.service.auth import Callers
+from synth.service.code_facts import CodeFacts
+from synth.service.context import API, ServiceContext, WriteProbe, in_thread
 from synth.service.errors import REFUSALS, register_errors
 from synth.service.event_hub import EventHub
 from synth.service.metrics import ServiceMetrics
@@ -37,6 +40,8 @@ from synth.service.pages import assets, routes
 from synth.service.recording import Recorder, log
 from synth.service.security import AnswerHeaders, BodyCheck, CrossSiteCheck, HostCheck, RequestLimit
 from synth.service.settings import ServiceSettings
+from synth.service.shares import FairShares
+from synth.service.small_work import EngineCalls, SmallWork, Times
 
 # Of the interface; each states API as its prefix, so that the figures of requests know the whole path.
 ROUTERS: tuple[APIRouter, ...] = (
@@ -75,17 +80,38 @@ def create_app(
     file_engines : EngineCalls, optional
         For files that are read or made; by default the same.
     """
+
+    def shares(places: int) -> FairShares:
+        return FairShares(places, settings.tenant_share, settings.token_share, settings.requests_at_once)
+
+    metrics = ServiceMetrics(settings, store)
+    small = SmallWork(
+        engines,
+        shares(settings.engines),
+        Times(queue=settings.queue_wait, deadline=settings.small_deadline, limit=settings.small_limit),
+        metrics.questions("small"),
+    )
+    files = SmallWork(
+        file_engines or engines,
+        shares(settings.file_engines),
+        Times(queue=settings.queue_wait, deadline=settings.file_deadline, limit=settings.file_limit),
+        metrics.questions("files"),
+    )
     context = ServiceContext(
         settings=settings,
         store=store,
         accounts=Accounts(store),
-        small=SmallWork(engines, settings.engines, settings.small_deadline),
-        files=SmallWork(file_engines or engines, settings.file_engines, settings.file_deadline),
-        metrics=ServiceMetrics(settings, store),
+        small=small,
+        files=files,
+        metrics=metrics,
+        facts=CodeFacts(small, settings.remembered, settings.retry_after),
+        requests=shares(settings.requests_at_once),
+        uploads=shares(settings.uploads_at_once),
         failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
+        write_probe=WriteProbe(store, settings.ready_write),
         hub=EventHub(settings, store),
     )
-    app = FastAPI(
+    app = DescribedService(
         title="clutchsynth",
         version=version("clutchsynth"),
         summary="Design synthesis of clutches and shaft couplings.",
@@ -99,13 +125,15 @@ def create_app(
         middleware=[
             Middleware(AnswerHeaders),
             Middleware(Recorder, context.metrics),
-            Middleware(RequestLimit, settings),
             Middleware(HostCheck, settings),
             Middleware(CrossSiteCheck, settings),
-            Middleware(BodyCheck, settings),
+            Middleware(Callers, context),
+            Middleware(RequestLimit, settings, context.requests, metrics),
+            Middleware(BodyCheck, settings, context.uploads),
         ],
     )
     app.state.context = context
+    _watch(context)
     own = [route for router in (*ROUTERS, *OUTSIDE) for route in router.routes]
     register_errors(app, settings.retry_after, Addresses([*app.routes, *own]), routes.unknown)
     for router in ROUTERS:
@@ -115,8 +143,22 @@ def create_app(
     return app
 
 
+def _watch(context: ServiceContext) -> None:
+    """Let figures tell how full the server is, and what it has read of its own code."""
+    places, facts = context.metrics.places, context.facts
+    places.labels("under_way").set_function(lambda: context.requests.held)
+    places.labels("waiting").set_function(lambda: context.requests.waiting)
+    context.metrics.facts.labels("missing").set_function(lambda: facts.missing)
+    context.metrics.facts.labels("kept").set_function(lambda: facts.wanted - facts.missing)
+
+
+async def _prepare(context: ServiceContext) -> None:
+    """Find what depends on the code alone."""
+    await context.facts.prepare()
+
+
 # What a server does beside answering, until it ends.
-TASKS: tuple[Callable[[ServiceContext], Awaitable[None]], ...] = (event_routes.tail,)
+TASKS: tuple[Callable[[ServiceContext], Awaitable[None]], ...] = (event_routes.tail, _prepare)
 
 
 @asynccontextmanager

@@ -3,25 +3,82 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Request
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+from starlette.types import ASGIApp, Receive, Scope, Send
 
+from synth.errors import InputError
 from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
+from synth.service.attempts import network_of
 from synth.service.context import Context, ServiceContext, in_thread
-from synth.service.errors import ServiceError, again
+from synth.service.errors import ServiceError, again, database_away
 from synth.service.recording import log
-from synth.service.security import header, session_cookie
+from synth.service.security import has_body, header, is_probe, refuse, session_cookie
+from synth.service.shares import Asker
+from synth.service.small_work import asker_of
 
 SCHEME = "bearer "
+NEEDED = "this needs a token: Authorization: Bearer cs_..."
 ASK = {"WWW-Authenticate": 'Bearer realm="clutchsynth"'}
 
 
 def address_of(request: Request) -> str:
     """Return where a request comes from, as far as trusted proxies tell."""
     return request.client.host if request.client else ""
+
+
+@dataclass(frozen=True)
+class Caller:
+    """Who has sent a request, as far as that is known.
+
+    Parameters
+    ----------
+    principal : Principal or None
+    refusal : Exception or None
+        Why nobody was recognised: raised where a route needs to know.
+    asker : Asker
+        Whose share the request counts to.
+    """
+
+    principal: Principal | None
+    refusal: Exception | None
+    asker: Asker
+
+
+class Callers:
+    """Finds out who asks before anything of a body is read; of nobody no body is."""
+
+    def __init__(self, app: ASGIApp, context: ServiceContext) -> None:
+        self.app, self.context = app, context
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, unless a body comes from nobody."""
+        if scope["type"] == "http" and not is_probe(scope):
+            caller = await caller_of(Request(scope), self.context)
+            scope["state"]["asker"] = caller.asker
+            if caller.refusal is not None and has_body(scope):
+                away = database_away(self.context.settings.retry_after)
+                refusal = caller.refusal if isinstance(caller.refusal, ServiceError) else away
+                await refuse(scope, receive, send, refusal)
+                return
+        await self.app(scope, receive, send)
+
+
+async def caller_of(request: Request, context: ServiceContext) -> Caller:
+    """Return who has sent a request; nobody is asked for twice."""
+    state = request.scope["state"]
+    if "caller" not in state:
+        try:
+            principal = await _recognised(request, context)
+            state["caller"] = Caller(principal, None, asker_of(principal))
+        except (ServiceError, SQLAlchemyError, InputError, OSError) as refusal:
+            state["caller"] = Caller(None, refusal, Asker(None, network_of(address_of(request))))
+    found: Caller = state["caller"]
+    return found
 
 
 DESCRIBED = HTTPBearer(auto_error=False, scheme_name="token", description="A token, cs_...")
@@ -36,7 +93,10 @@ async def principal_of(request: Request, context: Context, described: Described 
     ServiceError
         401 without a valid token; 429 where it is wrong, and too many wrong ones came from there before.
     """
-    principal = await _recognised(request, context)
+    caller = await caller_of(request, context)
+    if caller.principal is None:
+        raise caller.refusal or ServiceError(401, NEEDED, headers=ASK)
+    principal = caller.principal
     request.scope["state"]["principal"] = principal
     if principal.token is not None and (principal.used is None or principal.used > context.settings.token_note):
         await in_thread(_note_use, context, principal.token)
@@ -53,7 +113,7 @@ async def _recognised(request: Request, context: ServiceContext) -> Principal:
     cookie = session_cookie(request.scope, context.settings)
     found = await context.read(accounts.browser, cookie) if cookie else None
     if found is None:  # a browser that was signed in for long enough has guessed nothing
-        raise ServiceError(401, "this needs a token: Authorization: Bearer cs_...", headers=ASK)
+        raise ServiceError(401, NEEDED, headers=ASK)
     return found
 
 
@@ -72,10 +132,10 @@ async def _by_token(request: Request, context: ServiceContext, token: str) -> Pr
 
 
 def _note_use(context: ServiceContext, token: int) -> None:
-    """Note that a token is used; where the database is busy the next request does."""
+    """Note that a token is used; where that cannot be written the next request does."""
     try:
         context.accounts.note_use(token)
-    except DBAPIError:
+    except (DBAPIError, OSError):  # busy, or without room: nobody is kept from reading by that
         log("not_noted", token=token)
 
 

@@ -25,12 +25,16 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from synth.errors import ExtraNeededError, InputError
+from synth.jobs.database import DISK_FULL
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
+from synth.operating_system import NO_ROOM
 from synth.service.addresses import Addresses
+from synth.service.small_work import BusyError, LateError
 from synth.service.wording import fault_of
 
 JSON = "application/json"
+NO_SPACE_SENTENCE = "there is no room on the disk of the service; nothing was kept, whoever runs it has to make room"
 DATABASE_FLAG = "--database"  # the field of what is wrong with a database
 FAILED = "something went wrong in the program that computes; please tell the request_id"
 NO_HEADERS: Mapping[str, str] = MappingProxyType({})
@@ -51,6 +55,7 @@ CODES: Mapping[int, str] = MappingProxyType(
         500: "internal",
         501: "not_installed",
         503: "unavailable",
+        507: "no_room",
     }
 )
 
@@ -99,6 +104,7 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
         429: "Too much at a time; Retry-After tells when to come again.",
         500: "Something went wrong here; request_id tells which line of the log says more.",
         503: "Something is not there for now; Retry-After tells when to come again.",
+        507: "There is no room on the disk; nothing of the request is kept.",
     }.items()
 }
 
@@ -132,6 +138,9 @@ class ServiceError(Exception):
         self.problems, self.headers = problems, headers
 
 
+NO_SPACE = ServiceError(507, NO_SPACE_SENTENCE, "no_room")
+
+
 def code_of(status: int) -> str:
     """Return the code that goes with a status."""
     return CODES.get(status) or CODES[400 if status < 500 else 500]
@@ -162,6 +171,12 @@ def error_response(error: ServiceError, request_id: str) -> Response:
 def again(seconds: float) -> dict[str, str]:
     """Return the header that says when to come again."""
     return {"Retry-After": str(max(1, round(seconds)))}
+
+
+def database_away(retry_after: float) -> ServiceError:
+    """Return the refusal of what needs a database that does not answer."""
+    message = "the database does not answer; nothing is lost, please come again"
+    return ServiceError(503, message, headers=again(retry_after))
 
 
 def register_errors(
@@ -200,7 +215,9 @@ def register_errors(
     def later(message: str) -> Any:
         return lambda _: ServiceError(503, message, headers=again(retry_after))
 
-    away = later("the database does not answer; nothing is lost, please come again")
+    def away(_: Exception) -> ServiceError:
+        return database_away(retry_after)
+
     told(ServiceError, lambda error: error)
     app.add_exception_handler(HTTPException, of_http)
     told(RequestValidationError, _of_validation)
@@ -208,10 +225,13 @@ def register_errors(
     told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
     told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
-    told(EngineTimeoutError, later("this takes longer than it may; please come again, or ask it as a job"))
+    told(EngineTimeoutError, later("this takes longer than it may; please ask for less, or ask it as a job"))
+    told(LateError, later("this takes longer than usual and goes on here; please ask the same again"))
+    told(BusyError, later("others are being answered; please come again"))
     told(EngineFailedError, lambda _: ServiceError(500, FAILED, "engine_failed"))
     told(EngineCrashedError, later("the process that computes has ended; please come again"))
-    told(OperationalError, away)
+    told(OSError, _of_system)
+    told(OperationalError, lambda error: NO_SPACE if _is_full(error) else away(error))
     told(InterfaceError, away)
     told(PoolTimeoutError, away)
 
@@ -226,6 +246,17 @@ def _for_the_log(error: Exception) -> dict[str, Any]:
 def request_id_of(request: Request) -> str:
     """Return the number of a request."""
     return str(request.scope.get("state", {}).get("request_id", ""))
+
+
+def _of_system(error: OSError) -> ServiceError:
+    """Return the refusal of what needs room that is not there; all else is a fault of the service."""
+    if error.errno in NO_ROOM:
+        return NO_SPACE
+    raise error
+
+
+def _is_full(error: OperationalError) -> bool:
+    return getattr(error.orig, "sqlstate", None) == DISK_FULL
 
 
 def _lacking(error: ExtraNeededError) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from synth.jobs.accounts import Principal
 from synth.jobs.job_table import LIVE, Happening
 from synth.jobs.store import Store
 from synth.jobs.views import Standing, standings
@@ -70,10 +71,12 @@ class Listener:
     jobs : collection of str
     most : int
         That may wait.
+    principal : Principal, optional
+        Who listens, as long as they would be let in.
     """
 
-    def __init__(self, jobs: Collection[str], most: int) -> None:
-        self.jobs = frozenset(jobs)
+    def __init__(self, jobs: Collection[str], most: int, principal: Principal | None = None) -> None:
+        self.jobs, self.principal = frozenset(jobs), principal
         self.closed = False
         self._most = most
         self._waiting: deque[StreamEvent] = deque()
@@ -125,11 +128,11 @@ class EventHub:
         self._latest: deque[tuple[float, int]] = deque()  # when, and the highest number that was seen then
         self._floor: int | None = None  # all up to this number is told
 
-    def listen(self, jobs: Collection[str], who: Hashable) -> Listener | None:
+    def listen(self, jobs: Collection[str], who: Hashable, principal: Principal | None = None) -> Listener | None:
         """Return a listener; None where somebody has as many as they may have."""
         if self._streams[who] >= self._settings.streams:
             return None
-        listener = Listener(jobs, self._settings.stream_queue)
+        listener = Listener(jobs, self._settings.stream_queue, principal)
         self._listeners[listener] = who
         self._streams[who] += 1
         return listener
@@ -146,6 +149,16 @@ class EventHub:
         """End all streams."""
         for listener in self._listeners:
             listener.close()
+
+    def principals(self) -> set[Principal]:
+        """Return who listens."""
+        return {listener.principal for listener in self._listeners if listener.principal is not None}
+
+    def shut_out(self, lapsed: Collection[Principal]) -> None:
+        """End the streams of those who would not be let in any more."""
+        for listener in self._listeners:
+            if listener.principal in lapsed:
+                listener.close()
 
     # -- a round -------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.metadata import version
 from typing import Any
 
@@ -20,7 +20,7 @@ from prometheus_client.registry import Collector
 from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job, moment
 from synth.jobs.store import Store
-from synth.plugins import installed
+from synth.plugins import family_names
 from synth.service.settings import ServiceSettings
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
@@ -28,6 +28,30 @@ OPERATIONS = ("SELECT", "INSERT", "UPDATE", "DELETE")
 OTHER = "other"
 QUICK = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)  # s, of requests
 LONG = (0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 3600.0)  # s, of jobs
+
+
+class QuestionFigures:
+    """What is counted of the questions to one kind of engine processes."""
+
+    def __init__(self, name: str, ends: Counter, seconds: Histogram, now: Gauge) -> None:
+        self._name, self._ends, self._seconds, self._now = name, ends, seconds, now
+
+    def ended(self, outcome: str) -> None:
+        """Count a question: answered, refused, failed, ended or crashed (with its process), late, or busy."""
+        self._ends.labels(self._name, outcome).inc()
+
+    def waited(self, seconds: float) -> None:
+        """Count how long a question has waited for a process."""
+        self._seconds.labels(self._name, "waiting").observe(seconds)
+
+    def worked(self, seconds: float) -> None:
+        """Count how long a process has worked on a question."""
+        self._seconds.labels(self._name, "working").observe(seconds)
+
+    def watch(self, waiting: Callable[[], int], working: Callable[[], int], late: Callable[[], int]) -> None:
+        """Tell how many questions there are whenever somebody reads the figures."""
+        for state, count in (("waiting", waiting), ("working", working), ("late", late)):
+            self._now.labels(self._name, state).set_function(count)
 
 
 class ServiceMetrics:
@@ -47,6 +71,14 @@ class ServiceMetrics:
         self._database = Histogram("database_seconds", "Time of statements", ["operation"], buckets=QUICK, **common)
         self.event_streams = Gauge("event_streams", "Event streams that are open", **common)
         self.refused_tokens = Counter("refused_tokens", "Wrong tokens", **common)
+        self.places = Gauge("http_requests_now", "Requests", ["state"], **common)
+        self.refused_places = Counter("http_requests_refused", "Requests without a place", ["reason"], **common)
+        self.facts = Gauge("code_facts", "What depends on the code alone", ["state"], **common)
+        self._questions = (
+            Counter("questions", "Questions to engine processes", ["pool", "outcome"], **common),
+            Histogram("question_seconds", "Time of questions", ["pool", "part"], buckets=QUICK, **common),
+            Gauge("questions_now", "Questions at hand", ["pool", "state"], **common),
+        )
         self.worker_starts = Counter("supervisor_starts", "Starts of the supervisor by this server", **common)
         Info("build", "What this is", **common).info({"version": version("clutchsynth")})
         self.registry.register(_JobFigures(settings, store))
@@ -57,6 +89,10 @@ class ServiceMetrics:
         """Count a request; ``route`` is the pattern of its path."""
         self._requests.labels(method if method in METHODS else OTHER, route, str(code)).inc()
         self._seconds.labels(route).observe(seconds)
+
+    def questions(self, pool: str) -> QuestionFigures:
+        """Return what counts the questions to a kind of engine processes."""
+        return QuestionFigures(pool, *self._questions)
 
     def text(self) -> bytes:
         """Return all figures as Prometheus reads them."""
@@ -134,7 +170,7 @@ class _EndedJobs(Collector):
         self.waits = Histogram("job_wait_seconds", "Time before jobs are begun", ["kind"], buckets=LONG, **common)
         self.runs = Histogram("job_run_seconds", "Time of jobs", ["kind", "family"], buckets=LONG, **common)
         self.ends = Counter("job_ends", "Jobs that have ended", ["kind", "outcome"], **common)
-        self._families = {point.name for point in installed("clutchsynth.problems")}
+        self._families = set(family_names())
         self._until: float | None = None
         self._guard = threading.Lock()
 

@@ -6,10 +6,8 @@ was and where.
 
 from __future__ import annotations
 
-import json
 import logging
 import os
-import re
 import secrets
 import time
 from typing import Any
@@ -17,19 +15,17 @@ from typing import Any
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from synth.errors import shortened, where_raised
-from synth.jobs.accounts import BEGINNING
+from synth.jobs.log_lines import log_line
 from synth.service.errors import ServiceError, error_response
 from synth.service.metrics import ServiceMetrics
 
 LOG = logging.getLogger("clutchsynth.service")
-TOKENS = re.compile(rf"{BEGINNING}[\w-]{{20,}}")  # also in a path, where somebody has put one by mistake
 UNKNOWN_ROUTE = "none"  # of requests that mean nothing here
 
 
 def log(event: str, **told: Any) -> None:
     """Write a line of the log: JSON, with what has happened and when."""
-    line = json.dumps({"time": round(time.time(), 3), "event": event, **told}, default=str)
-    LOG.info(TOKENS.sub(f"{BEGINNING}...", line))
+    LOG.info(log_line(event, **told))
 
 
 class Recorder:

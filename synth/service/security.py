@@ -23,8 +23,11 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from synth.errors import Described, InputError, SeveralErrors
 from synth.service.context import API
 from synth.service.errors import ServiceError, again, error_response, refusal_of
+from synth.service.metrics import ServiceMetrics
 from synth.service.settings import ServiceSettings, is_loopback
+from synth.service.shares import Asker, FairShares, NoPlaceError
 from synth.service.wording import place_in_words
+from synth.text.numbers import typed_number
 
 JOBS, REQUEST = f"{API}/jobs", "request"  # where a spec does not stand alone, and its key there
 MOST_TOLD = 20  # faults of a body that are told one by one
@@ -59,8 +62,22 @@ def session_cookie(scope: Scope, settings: ServiceSettings) -> str:
     return cookie_parser(header(scope, "cookie")).get(SESSION_COOKIES[settings.is_public], "")
 
 
+def has_body(scope: Scope) -> bool:
+    """Whether a request says that it has a body."""
+    return header(scope, "content-length") not in ("", "0") or bool(header(scope, "transfer-encoding"))
+
+
+def is_probe(scope: Scope) -> bool:
+    """Whether a request is one of whoever watches the service, which is answered at once."""
+    return scope["path"] in PROBES and not has_body(scope)
+
+
 async def refuse(scope: Scope, receive: Receive, send: Send, error: ServiceError) -> None:
-    """Answer with a refusal."""
+    """Answer with a refusal; where a body comes, the connection is closed, and the body is not waited for."""
+    if has_body(scope):
+        error = ServiceError(
+            error.status, error.message, error.code, error.problems, {**error.headers, "Connection": "close"}
+        )
     await error_response(error, scope["state"].get("request_id", ""))(scope, receive, send)
 
 
@@ -85,33 +102,41 @@ class AnswerHeaders:
         await self.app(scope, receive, sent)
 
 
-class RequestLimit:
-    """Asks to come again where too many requests are under way; leaves clients that take no answer."""
+def no_place(error: NoPlaceError, what: str, settings: ServiceSettings) -> ServiceError:
+    """Return the refusal of what has found no place in time."""
+    status, whose = (429, "of yours ") if error.own else (503, "")
+    return ServiceError(
+        status, f"too many {what} {whose}are under way; please come again", headers=again(settings.retry_after)
+    )
 
-    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
-        self.app, self.settings, self.under_way = app, settings, 0
+
+class RequestLimit:
+    """Lets requests wait for their turn where too many are under way; leaves clients that take no answer."""
+
+    def __init__(self, app: ASGIApp, settings: ServiceSettings, shares: FairShares, metrics: ServiceMetrics) -> None:
+        self.app, self.settings, self.shares, self.metrics = app, settings, shares, metrics
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, unless there are too many."""
-        if scope["type"] != "http" or scope["path"] in PROBES:
+        """Pass a request on, when it is its turn."""
+        if scope["type"] != "http" or is_probe(scope):
             await self.app(scope, receive, send)
             return
-        if self.under_way >= self.settings.requests_at_once:
-            busy = ServiceError(
-                503, "too many requests are under way; please come again", headers=again(self.settings.retry_after)
-            )
-            await refuse(scope, receive, send, busy)
+        asker: Asker = scope["state"]["asker"]
+        try:
+            await self.shares.take(asker, self.settings.queue_wait)
+        except NoPlaceError as error:
+            self.metrics.refused_places.labels("own" if error.own else "all").inc()
+            await refuse(scope, receive, send, no_place(error, "requests", self.settings))
             return
 
         async def sent(message: Message) -> None:
             async with asyncio.timeout(self.settings.send_timeout):
                 await send(message)
 
-        self.under_way += 1
         try:
             await self.app(scope, receive, sent)
         finally:
-            self.under_way -= 1
+            self.shares.give_back(asker)
 
 
 class HostCheck:
@@ -194,29 +219,43 @@ def _authority(origin: str) -> str:
 class BodyCheck:
     """Bounds bodies while they arrive, whatever they say of themselves; JSON must be JSON of a reasonable form."""
 
-    def __init__(self, app: ASGIApp, settings: ServiceSettings) -> None:
-        self.app, self.settings = app, settings
+    def __init__(self, app: ASGIApp, settings: ServiceSettings, uploads: FairShares) -> None:
+        self.app, self.settings, self.uploads = app, settings, uploads
         self.most = {JSON_BODY: settings.body_limit, FILE_BODY: settings.upload_limit}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on with a body that can be read."""
-        length = header(scope, "content-length") if scope["type"] == "http" else ""
-        if scope["type"] != "http" or (length in ("", "0") and not header(scope, "transfer-encoding")):
+        if scope["type"] != "http" or not has_body(scope):
             await self.app(scope, receive, send)
             return
         media = header(scope, "content-type").split(";")[0].strip().lower()
         try:
-            counted = self._bounded(receive, self._most(media, length))
-            if media == JSON_BODY:
-                within = REQUEST if scope["path"] == JOBS else ""
-                counted = self._again(await self._json(counted, within), receive)
+            most = self._most(media, header(scope, "content-length"))
+            if media == FILE_BODY:
+                await self._file(scope, self._bounded(receive, most), send)
+                return
+            within = REQUEST if scope["path"] == JOBS else ""
+            body = await self._json(self._bounded(receive, most), within)
         except HTTPException as error:  # raised while the body arrived
-            await refuse(scope, receive, send, _closing(ServiceError(error.status_code, error.detail)))
+            await refuse(scope, receive, send, ServiceError(error.status_code, error.detail))
             return
         except ServiceError as error:
-            await refuse(scope, receive, send, _closing(error))
+            await refuse(scope, receive, send, error)
             return
-        await self.app(scope, counted, send)
+        await self.app(scope, self._again(body, receive), send)
+
+    async def _file(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on that brings a file, when it is its turn: files are held in memory."""
+        asker: Asker = scope["state"]["asker"]
+        try:
+            await self.uploads.take(asker, self.settings.queue_wait)
+        except NoPlaceError as error:
+            await refuse(scope, receive, send, no_place(error, "files", self.settings))
+            return
+        try:
+            await self.app(scope, receive, send)
+        finally:
+            self.uploads.give_back(asker)
 
     def _most(self, media: str, length: str) -> int:
         """Return how large a body of a kind may be; refuse one that says that it is larger."""
@@ -232,17 +271,19 @@ class BodyCheck:
 
         Its errors are those of the framework: readers of forms let them through, and no others.
         """
-        loop = asyncio.get_running_loop()
-        end = loop.time() + self.settings.body_timeout
+        settings, loop = self.settings, asyncio.get_running_loop()
+        begun = loop.time()
         arrived = 0
 
         async def counted() -> Message:
             nonlocal arrived
+            due = min(settings.body_timeout, settings.body_grace + arrived / settings.body_rate)
             try:
-                async with asyncio.timeout_at(end):
+                async with asyncio.timeout_at(begun + due):
                     message = await receive()
             except TimeoutError:
-                raise HTTPException(408, "the body did not arrive in time") from None
+                right = f"{settings.body_rate} bytes per s, and all of it in {typed_number(settings.body_timeout)} s"
+                raise HTTPException(408, f"the body arrives too slowly; expected {right}") from None
             arrived += len(message.get("body", b""))
             if arrived > most:
                 raise HTTPException(413, _too_large(most).message)
@@ -288,13 +329,6 @@ class BodyCheck:
 
 def _too_large(most: int) -> ServiceError:
     return ServiceError(413, f"the body is larger than {most} bytes")
-
-
-def _closing(error: ServiceError) -> ServiceError:
-    """Return a refusal after which the connection is closed: the rest of the body is not waited for."""
-    return ServiceError(
-        error.status, error.message, error.code, error.problems, {**error.headers, "Connection": "close"}
-    )
 
 
 def check_json(body: bytes, depth: int, keys: int, within: str = "") -> None:

@@ -10,7 +10,7 @@ import socket
 import sys
 import threading
 from collections.abc import Callable, Generator, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 
@@ -22,10 +22,12 @@ from sqlalchemy.exc import ArgumentError
 from synth.errors import InputError
 from synth.file_locks import is_taken, locked, unlock
 from synth.jobs.accounts import Accounts
+from synth.jobs.database import refuse_damaged
 from synth.jobs.engine_process import Engines
-from synth.jobs.job_settings import StoreSettings
+from synth.jobs.job_settings import INTERACTIVE, StoreSettings
+from synth.jobs.log_lines import json_lines
 from synth.jobs.store import Store
-from synth.operating_system import ENDING
+from synth.operating_system import ENDING, private_file, private_folder
 from synth.service.app import create_app
 from synth.service.context import ServiceContext
 from synth.service.protocol import bounded
@@ -102,19 +104,21 @@ def serve(settings: ServiceSettings, say: Callable[[str], None]) -> None:
         The address cannot be listened to, the database cannot be opened or has a server already, or others can reach
         the service and there is no token that would let them in.
     """
-    _prepare_log(settings.log)
     with ExitStack() as opened:
+        opened.enter_context(json_lines())
+        _prepare_log(settings.log)
         if not settings.database:
-            settings.data.mkdir(parents=True, exist_ok=True)
+            private_folder(settings.data)
         opened.enter_context(only_server(settings.database_url))
         store = opened.enter_context(
             Store(settings.database_url, settings=StoreSettings(patience=settings.database_patience))
         )
+        refuse_damaged(store.engine)
         refuse_open_door(settings, Accounts(store))
         listener = opened.enter_context(listening(settings.host, settings.port))
-        engines = Engines(settings.engines)
+        engines = Engines(settings.engines, INTERACTIVE)
         opened.callback(engines.close)
-        file_engines = Engines(settings.file_engines, lazy=True)  # many servers make few files
+        file_engines = Engines(settings.file_engines, INTERACTIVE, at_once=0)  # many servers make few files
         opened.callback(file_engines.close)
         app = create_app(settings, store, engines, file_engines)
         context: ServiceContext = app.state.context
@@ -168,7 +172,9 @@ def only_server(url: str) -> Iterator[None]:
     handle = None
     if file is not None:
         lock = file.with_name(f"{file.name}.server")
-        file.parent.mkdir(parents=True, exist_ok=True)
+        private_folder(file.parent)
+        with suppress(OSError):  # whoever opens the database tells what cannot be written there
+            private_file(lock)
         handle = locked(lock)
         if handle is None and is_taken(lock):  # else nothing can be written there, which whoever opens it tells
             right = "a file that no other server serves: on SQLite there is one, PostgreSQL has room for several"

@@ -17,6 +17,7 @@ from typing import Any, get_args, get_type_hints
 
 from synth.errors import InputError
 from synth.operating_system import cores, data_home
+from synth.text.numbers import typed_number
 
 FILE = "clutchsynth.toml"  # read from the folder in which the service starts, where there is one
 PREFIX = "CLUTCHSYNTH_"
@@ -61,13 +62,23 @@ class ServiceSettings:
     engines : int
         Processes that answer small questions at once, such as checks of what is being typed.
     file_engines : int
-        Processes that read and make files, and check tables; each is started when it is needed first.
+        Processes that read and make files, and check tables; they are started when the first is needed.
     small_deadline : float
-        That a small question may take; searches are jobs, so that more means that something is wrong.
+        In which a small question is answered; after it the client is asked to come again, and the work goes on.
     file_deadline : float
-        That a file of a job may take to be made, or rows that were brought to be read and checked.
+        The same of a file of a job that is made, or of rows that were brought and are read and checked.
+    small_limit : float
+        Of a processor, that a small question may take in all; then its process is replaced.
+    file_limit : float
+        The same of files.
+    queue_wait : float
+        That a request waits for its turn: among those under way, among files that are brought, and for a process.
+    tenant_share : float
+        Of requests at a time, of files that are brought and of processes, that a tenant has at most; one at least.
+    token_share : float
+        The same of a token, and of an address without one.
     remembered : int
-        Declarations of families, with their options, that a server remembers: they depend on its code alone.
+        Declarations with options chosen that a server remembers; those as they are by default it has from its start.
     log : bool
         Whether each request is told on standard error, as one line of JSON.
     body_limit : int
@@ -92,8 +103,14 @@ class ServiceSettings:
         Of the first line and the headers of a request: browsers send less than a tenth of it.
     header_timeout : float
         For the first line and the headers of a request to arrive.
+    uploads_at_once : int
+        Files at a time that are arriving or being looked at: each is held in memory.
     body_timeout : float
         For the body to arrive: an upload of 20 MB over a slow line.
+    body_grace : float
+        In which nothing of a body need arrive.
+    body_rate : int
+        Bytes per s of a body that must have arrived on average after that.
     send_timeout : float
         For a client to take the next part of an answer.
     idle_timeout : int
@@ -101,7 +118,7 @@ class ServiceSettings:
     idle_connections : int
         Connections that wait for a request at a time; of more, the one that waits longest is closed.
     requests_at_once : int
-        Requests at a time, event streams among them; more are asked to come again.
+        Requests at a time, event streams among them; more wait, and are asked to come again.
     retry_after : int
         After which whoever was asked to come again may do so.
     shutdown_timeout : int
@@ -149,7 +166,9 @@ class ServiceSettings:
     tenant_rows : int
         Rows of a batch of a new tenant.
     keep_days : float
-        That a job is kept after it was made, unless it is pinned; 0 keeps all.
+        That a job is kept after it was used last, unless it is pinned; 0 keeps all.
+    use_note : float
+        Between two notes that a job was used.
     upload_hours : float
         That a file is kept that was brought for a batch.
     prune_interval : float
@@ -160,6 +179,10 @@ class ServiceSettings:
         That a request waits for a database that is busy.
     ready_database : float
         In which the database must answer for the service to be ready.
+    ready_space : int
+        That must be free where a SQLite file is for the service to be ready.
+    ready_write : float
+        Between two looks whether the database can be written to.
     ready_worker : float
         In which a worker must have given a sign of life for the service to be ready.
     worker_restart : float
@@ -177,10 +200,15 @@ class ServiceSettings:
     hosts: tuple[str, ...] = ()
     proxies: tuple[str, ...] = ()
     workers: int = field(default_factory=cores, metadata={"least": 0, "most": 256})
-    engines: int = _within(1, 1, 64)
-    file_engines: int = _within(1, 1, 64)
+    engines: int = _within(2, 1, 64)
+    file_engines: int = _within(2, 1, 64)
     small_deadline: float = _within(5.0, 0.1, 60.0)
     file_deadline: float = _within(30.0, 0.1, 600.0)
+    small_limit: float = _within(20.0, 0.1, 600.0)
+    file_limit: float = _within(60.0, 0.1, 3_600.0)
+    queue_wait: float = _within(5.0, 0.01, 60.0)
+    tenant_share: float = _within(0.5, 0.01, 1.0)
+    token_share: float = _within(0.25, 0.01, 1.0)
     remembered: int = _within(200, 1, 100_000)
     log: bool = True
     body_limit: int = _within(1_000_000, 1_000, 100_000_000)
@@ -194,7 +222,10 @@ class ServiceSettings:
     json_keys: int = _within(2_000, 100, 1_000_000)
     target_limit: int = _within(65_536, 4_096, 1_048_576)
     header_timeout: float = _within(10.0, 0.1, 600.0)
+    uploads_at_once: int = _within(8, 1, 1_000)
     body_timeout: float = _within(60.0, 0.1, 3_600.0)
+    body_grace: float = _within(5.0, 0.0, 600.0)
+    body_rate: int = _within(10_000, 1, 1_000_000_000)
     send_timeout: float = _within(60.0, 0.1, 3_600.0)
     idle_timeout: int = _within(5, 1, 600)
     idle_connections: int = _within(100, 1, 10_000)
@@ -223,11 +254,14 @@ class ServiceSettings:
     tenant_seconds_limit: float = _within(600.0, 1.0, 1_000_000.0)
     tenant_rows: int = _within(100_000, 1, 10_000_000)
     keep_days: float = _within(30.0, 0.0, 36_500.0)
+    use_note: float = _within(3_600.0, 0.0, 86_400.0)
     upload_hours: float = _within(24.0, 0.01, 8_760.0)
     prune_interval: float = _within(3_600.0, 1.0, 86_400.0)
     prune_most: int = _within(100, 1, 10_000)
     database_patience: float = _within(5.0, 0.1, 600.0)
     ready_database: float = _within(1.0, 0.01, 60.0)
+    ready_space: int = _within(50_000_000, 0, 1_000_000_000_000)
+    ready_write: float = _within(5.0, 0.0, 3_600.0)
     ready_worker: float = _within(30.0, 1.0, 3_600.0)
     worker_restart: float = _within(1.0, 0.01, 60.0)
     worker_restart_most: float = _within(60.0, 0.01, 3_600.0)
@@ -252,6 +286,11 @@ class ServiceSettings:
     def is_public(self) -> bool:
         """Whether others than people at this machine can reach the service: it listens to them, or a proxy does."""
         return not is_loopback(self.host) or bool(self.hosts)
+
+    @property
+    def keep_seconds(self) -> float | None:
+        """For how long a job is kept after it was used last; None for ever."""
+        return 86_400.0 * self.keep_days or None
 
     @property
     def tenant_limits(self) -> dict[str, float]:
@@ -337,7 +376,7 @@ FIELDS = types.MappingProxyType({own.name: own for own in fields(ServiceSettings
 def _check_range(where: str, key: str, value: Any) -> None:
     limits = FIELDS[key].metadata
     if limits and not limits["least"] <= value <= limits["most"]:
-        raise InputError(where, value, f"{limits['least']:g} to {limits['most']:g}", (key,))
+        raise InputError(where, value, f"{typed_number(limits['least'])} to {typed_number(limits['most'])}", (key,))
 
 
 def _read(where: str, key: str, value: Any, spoken: bool = False) -> Any:

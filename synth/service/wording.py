@@ -8,16 +8,20 @@ from typing import Any
 
 from synth.errors import Described, InputError, Key
 from synth.jobs.accounts import NAME_PATTERN
+from synth.plain_text import UNSAFE_IN_LINE
 
 WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0
-TITLE = r"^[^\x00-\x1f\x7f]*[^\x00-\x20\x7f\xa0][^\x00-\x1f\x7f]*$"
+LINE = rf"^[^{UNSAFE_IN_LINE}]*$"
+TITLE = rf"^[^{UNSAFE_IN_LINE}]*[^{UNSAFE_IN_LINE}\u0020\u00a0][^{UNSAFE_IN_LINE}]*$"
+WITHOUT_MARKS = ", without marks that turn the direction of writing"
 PRINTED = r"^[\x21-\x7e]+$"
 PATTERNS: Mapping[str, str] = MappingProxyType(
     {
         WORD: "a text without the character 0",
-        TITLE: "words in one line, not blanks alone",
+        LINE: f"words in one line{WITHOUT_MARKS}",
+        TITLE: f"words in one line, not blanks alone{WITHOUT_MARKS}",
         PRINTED: "letters, digits and signs of ASCII, without blanks",
-        NAME_PATTERN: "a name in one line, which does not begin with a blank",
+        NAME_PATTERN: f"a name in one line, which does not begin with a blank{WITHOUT_MARKS}",
     }
 )
 ANYTHING = "what the description of the interface allows here"  # where a schema has a rule that nobody has put in words

@@ -29,9 +29,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
 from synth.nlp.batch import Tasks
 from synth.output_folder import NEAR_EQUALS, save_result
-from synth.plain_text import percent, thousands
 from synth.question.instance import Instance
-from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.results.front_record import design_record, record_text
@@ -41,10 +39,12 @@ from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
+from synth.search.goals import goals_of
 from synth.search.polishing import polish_discrete, polish_variables
 from synth.search.primal_heuristics import PrimalHeuristics, roundings
 from synth.search.pruning import EpsilonCover
 from synth.study_limits import NEAR, NearLimits
+from synth.text.numbers import percent, thousands, typed_number
 from synth.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -77,13 +77,13 @@ class NearEquals:
         """Return how many there are, and how far that is certain."""
         share = percent(self.within)
         number = thousands(self.found)
+        those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
         if self.complete:
-            those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
             if not self.found:
                 return f"proven: no other combination of parts, counts and choices comes within {share}"
             return f"{those} within {share}; no further one does (proven)"
         open_ones = "" if not self.undecided else f"; {self.undecided} more could not be decided"
-        return f"at least {number} other combinations come within {share}{open_ones}"
+        return f"at least {those} within {share}{open_ones}"
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, the chosen one first, with units in the headers."""
@@ -92,8 +92,8 @@ class NearEquals:
         columns, rows = self._table()
         return pd.DataFrame(rows, columns=columns)
 
-    def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+    def files(self, folder: Path | None = None) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text; ``folder``: where that will stand."""
         told = {
             "family": self.reference.frame.family,
             "within": self.within,
@@ -114,7 +114,8 @@ class NearEquals:
         }
         found = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": record_text(told)}
         for number, design in enumerate([self.reference, *self.designs]):
-            found[f"design_{number:02d}.yaml"] = design.yaml()
+            own = design if folder is None else design.placed(folder)
+            found[f"design_{number:02d}.yaml"] = own.yaml()
         return found
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
@@ -122,7 +123,7 @@ class NearEquals:
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, csv.files(self.files()), NEAR_EQUALS, bool(self.interrupted))
+        return save_result(folder, lambda place: csv.files(self.files(place)), NEAR_EQUALS, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         objectives = list(self.reference.frame.objectives)
@@ -223,7 +224,10 @@ def read_share(within: Any) -> float:
         share = parse_quantity(within, "-", "within")
     if not 0 < share <= NEAR.widest:
         raise InputError(
-            "within", within, f"more than 0 and at most {100 * NEAR.widest:g} %, for example '2 %'", ("within",)
+            "within",
+            within,
+            f"more than 0 and at most {percent(NEAR.widest)}, for example '2 %'",
+            ("within",),
         )
     return share
 
@@ -296,7 +300,7 @@ class _Enumeration:
         self.chosen = dict(front.frame.objectives)
         self.m = len(self.chosen)
         self.own = instance.combinations.number(reference)
-        self.form = Formulation(instance, with_ties(instance.model, self.chosen), self.m)
+        self.form = Formulation(instance, goals_of(instance, self.chosen), self.m)
         self.rng = np.random.default_rng(settings.seed)
         self.progress, self.stage = progress, "enumerate"
         limit = settings.time_limit
@@ -563,7 +567,7 @@ class _Enumeration:
         for slot, (table, row) in its[0].items():
             if own[0][slot][1] != row:
                 words.append(f"{slot} {table.designations[row]}")
-        words += [f"{n} {v:g}" for n, v in its[1].items() if own[1][n] != v]
+        words += [f"{n} {typed_number(v)}" for n, v in its[1].items() if own[1][n] != v]
         words += [f"{n} {v}" for n, v in its[2].items() if own[2][n] != v]
         return tuple(words)
 

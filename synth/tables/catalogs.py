@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from importlib.util import find_spec
@@ -13,11 +13,21 @@ from typing import Any
 
 from synth.errors import InputError, at
 from synth.plugins import installed
-from synth.tables.reading import is_frame, load_table, table_from_frame, table_name, table_of_text
+from synth.tables.reading import (
+    OF_RECORD,
+    is_frame,
+    load_table,
+    table_from_frame,
+    table_name,
+    table_of_rows,
+    table_of_text,
+)
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema, schema_of_text
 from synth.tables.table import Table, perhaps_meant
+from synth.tables.table_file import read_as
 from synth.tables.table_text import TableText
-from synth.tables.workbook import is_workbook
+from synth.tables.workbook import is_workbook, split_sheet
+from synth.units import typed_quantity
 
 ENTRY_POINTS = "clutchsynth.catalogs"
 OPEN = "~$"  # what a file begins with that Excel keeps beside a workbook while that is open
@@ -83,6 +93,49 @@ def _own_files(folder: Path) -> dict[str, Path]:
     return found
 
 
+def read_as_stated(spec: Any, base: Path, encoding: str | None, visible: bool) -> Any:
+    """Return tables of a user's own, as a spec names them, with how files are read that do not say so themselves.
+
+    Parameters
+    ----------
+    spec : str, Path or mapping
+    base : Path
+        Folder that relative paths start from.
+    encoding : str, optional
+        Of CSV files.
+    visible : bool
+        Whether hidden and filtered rows of workbooks are left out.
+    """
+    if isinstance(spec, (str, Path)) and (base / spec).is_dir():
+        spec = {name: str(path) for name, path in _own_files((base / spec).resolve()).items()}
+    if not isinstance(spec, Mapping):
+        return spec
+
+    def named(source: Any) -> Any:
+        if isinstance(source, (list, tuple)):
+            return [named(one) for one in source]
+        return read_as(source, encoding, visible) if isinstance(source, str) and source != "+" else source
+
+    return {name: named(source) for name, source in spec.items()}
+
+
+def _changes(table: Table, index: int, kept: Mapping[str, Any]) -> Iterator[str]:
+    """Yield which cells of a row are not as a record has kept them: what they were, and what they are."""
+    now = table.row(index)
+    for name in dict.fromkeys([*now, *kept]):
+        if name not in OF_RECORD and now.get(name) != kept.get(name):
+            unit = table.columns[name].unit if name in table.columns else None
+            was, is_now = (_cell_text(cells.get(name), unit) for cells in (kept, now))
+            yield f"{name} {was}, now {is_now}"
+
+
+def _cell_text(cell: float | str | None, unit: str | None) -> str:
+    """Return a cell in words, with all its digits."""
+    if cell is None:
+        return "empty"
+    return repr(cell) if isinstance(cell, str) else typed_quantity(cell, unit or "-", None)
+
+
 def _csv_files(folder: Path) -> dict[str, Path]:
     return {p.name.removesuffix(".csv"): p for p in sorted(folder.glob("*.csv")) if not p.name.endswith(SCHEMA_SUFFIX)}
 
@@ -99,9 +152,14 @@ class Catalogs:
         Folders of shipped tables instead of those of the installed packages.
     base : str or Path, optional
         Folder that relative paths start from; by default the working directory.
+    kept : mapping, optional
+        Table -> rows that a record has kept of it, in SI, with their ``hash``: they stand in for a file that is away,
+        and tell which rows of a file are others now.
 
     Attributes
     ----------
+    own : tuple of str
+        Tables of `spec`.
     added : tuple of str
         Tables of `spec` that no shipped table is called.
 
@@ -117,7 +175,9 @@ class Catalogs:
         folders: Sequence[str | Path] | None = None,
         *,
         base: str | Path | None = None,
+        kept: Mapping[str, Sequence[Mapping[str, Any]]] | None = None,
     ) -> None:
+        self._kept = dict(kept or {})
         self._base = Path() if base is None else Path(base)
         self._shipped: dict[str, Path] = {}
         for folder in shipped_folders() if folders is None else folders:
@@ -126,6 +186,7 @@ class Catalogs:
                     raise InputError(f"table {name}", str(path), f"one shipped table of a name ({self._shipped[name]})")
                 self._shipped[name] = path
         self._spec = self._read_spec(spec)
+        self.own = tuple(sorted(self._spec))
         self.added = tuple(sorted(set(self._spec) - set(self._shipped)))
         self._cache: dict[str, Table] = {}
 
@@ -197,6 +258,38 @@ class Catalogs:
                 found.update(dict.fromkeys(self.table(name).readings))
         return tuple(found)
 
+    def away(self) -> dict[str, str]:
+        """Return the user's own tables of which a file is away, so that rows kept stand in for it: name -> file."""
+        found = {}
+        for name, (_, sources) in self._spec.items():
+            gone = [str(s) for s in sources if isinstance(s, (str, Path)) and self._is_away(name, s)]
+            if gone:
+                found[name] = ", ".join(gone)
+        return found
+
+    def differences(self) -> tuple[str, ...]:
+        """Return what is not as a record has kept it: files that are away, and rows that have changed."""
+        found = [
+            f"table {name}: {file} is not there; the rows kept with the designs are taken"
+            for name, file in self.away().items()
+        ]
+        for name in self._spec.keys() & self._kept.keys() - self.away().keys():
+            table = self.table(name)
+            hashes = dict(zip(table.designations, table.hashes, strict=False))
+            for row in self._kept[name]:
+                designation = str(row["designation"])
+                told = f"table {name}: row {designation}"
+                if designation not in hashes:
+                    found.append(f"{told} is gone since the designs were saved")
+                elif hashes[designation] != row["hash"]:
+                    changes = "; ".join(_changes(table, table.row_index(designation), row))
+                    found.append(f"{told} has changed since the designs were saved: {changes}")
+        return tuple(sorted(found))
+
+    def _is_away(self, name: str, source: str | Path) -> bool:
+        """Whether rows kept stand in for a file."""
+        return bool(self._kept.get(name)) and not split_sheet(self._path(source))[0].is_file()
+
     def stated(self) -> dict[str, Any]:
         """Return the user's own tables as :meth:`files`, all of them.
 
@@ -262,23 +355,29 @@ class Catalogs:
             if name not in self._shipped:
                 right = f"a known table, one of {', '.join(self.names())}"
                 raise InputError("table", name, right, ("catalogs", name))
-            path = self._shipped[name]
-            return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
+            return self._shipped_table(name)
         extend, sources = self._spec[name]
         with at("catalogs", name):
             tables = [self._user_table(name, source) for source in sources]
         if not extend:
             return tables[0]
-        path = self._shipped[name]
-        table = _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
+        table = self._shipped_table(name)
         with at("catalogs", name):
             for more in tables:
                 table = table.extended(more)
         return table
 
+    def _shipped_table(self, name: str) -> Table:
+        path = self._shipped[name]
+        return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
+
     def _user_table(self, name: str, source: Any) -> Table:
         schema = self.schema(name)
-        if isinstance(source, (str, Path)):
+        if isinstance(source, (str, Path)) and self._is_away(name, source):
+            shipped = set(self._shipped_table(name).designations) if self._spec[name][0] else set()
+            rows = [row for row in self._kept[name] if row["designation"] not in shipped]
+            table = table_of_rows(rows, schema, name, str(source))
+        elif isinstance(source, (str, Path)):
             path = self._path(source)
             own = path.with_name(table_name(path) + SCHEMA_SUFFIX)
             if own.is_file():
@@ -292,9 +391,19 @@ class Catalogs:
             table = table_of_text(source, schema, name)
         else:
             table = table_from_frame(source, schema, name=name)
-        if "designation" not in table.columns and (schema is None or schema.get("designation") is not None):
-            raise InputError(f"{table.origin}, header", None, "a column designation with a unique name in every row")
+        must_have_designation(table.columns, schema, table.origin)
         return table
+
+
+def must_have_designation(columns: Container[str], schema: Schema | None, origin: str) -> None:
+    """Refuse a user's table whose rows have no names, unless its schema does without.
+
+    Raises
+    ------
+    InputError
+    """
+    if "designation" not in columns and (schema is None or schema.get("designation") is not None):
+        raise InputError(f"{origin}, header", None, "a column designation with a unique name in every row")
 
 
 def _stamp(path: Path) -> int:

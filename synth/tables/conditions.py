@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
+from synth.tables.schema import Column
 from synth.tables.table import Table
 from synth.units import parse_quantity, parse_unit
 
@@ -171,13 +172,18 @@ class Condition:
         InputError
             The table lacks a column, or a value does not fit its column.
         """
-        return self._evaluate(self._root, table)
+        return self._evaluate(self._root, table, None)
 
-    def _evaluate(self, node: Node, table: Table) -> BoolArray:
+    def undecided(self, table: Table) -> BoolArray:
+        """Rows whose empty cells decide whether the condition holds; parameters and faults as of :meth:`mask`."""
+        return self._evaluate(self._root, table, True) ^ self._evaluate(self._root, table, False)
+
+    def _evaluate(self, node: Node, table: Table, of_empty: bool | None) -> BoolArray:
+        """Rows for which a part holds; ``of_empty``: what tests say of empty cells, by default that of no number."""
         if isinstance(node, Negation):
-            return ~self._evaluate(node.part, table)
+            return ~self._evaluate(node.part, table, None if of_empty is None else not of_empty)
         if isinstance(node, Junction):
-            masks = [np.full(len(table), node.every), *(self._evaluate(part, table) for part in node.parts)]
+            masks = [np.full(len(table), node.every), *(self._evaluate(part, table, of_empty) for part in node.parts)]
             return np.asarray(
                 np.logical_and.reduce(masks) if node.every else np.logical_or.reduce(masks), dtype=np.bool_
             )
@@ -188,15 +194,20 @@ class Condition:
             column = table.column(node.column)
         except InputError as error:
             raise self.wrong(node.position, node.column, error.expected) from None
+        found = self._test(node, column, table)
+        if of_empty is None:
+            return found
+        return np.where(table.empty(column.name), of_empty, found)
+
+    def _test(self, node: Test | ListItem, column: Column, table: Table) -> BoolArray:
+        """Rows whose cell in a column of the table passes one test."""
         if isinstance(node, ListItem):
             if column.numeric:
                 right = f"a column of text after 'in'; {column.name} has numbers, compare them with == or <"
                 raise self.wrong(node.position, node.column, right)
             items = [{item.strip() for item in cell.split(";")} for cell in table.text(column.name)]
             return np.array([node.item in some for some in items], dtype=np.bool_)
-        if column.numeric:
-            return self._numbers(node, table)
-        return self._texts(node, table)
+        return self._numbers(node, table) if column.numeric else self._texts(node, table)
 
     def _numbers(self, test: Test, table: Table) -> BoolArray:
         column = table.column(test.column)

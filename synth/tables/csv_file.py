@@ -8,22 +8,25 @@ from pathlib import Path
 from synth.errors import InputError
 from synth.files import read_bytes
 from synth.tables.delimited_text import DelimitedText, delimited_text
+from synth.tables.table_file import TableFile, table_file
 
 # ---- reading --------------------------------------------------------------------------------------------------------
 
 
 def read_csv_file(path: Path, plain: bool = False) -> CsvFile:
     """Return what stands in a file; ``plain``: written in one way alone, as tables of ours are."""
-    return read_csv_bytes(read_bytes(path, "catalogue file", "a CSV file"), path.name, plain)
+    file = TableFile(path) if plain else table_file(path)
+    raw = read_bytes(file.path, "catalogue file", "a CSV file")
+    return read_csv_bytes(raw, file.path.name, plain, file.encoding)
 
 
-def read_csv_bytes(raw: bytes, name: str, plain: bool = False) -> CsvFile:
+def read_csv_bytes(raw: bytes, name: str, plain: bool = False, encoding: str = "") -> CsvFile:
     """Return what stands in the bytes of a file; ``name`` is that of it, for messages."""
-    found = delimited_text(raw, name)
+    found = delimited_text(raw, name, encoding)
     if plain and found.sentence():
         right = "columns separated by commas, decimal points, UTF-8"
         raise InputError(f"{name}, line 1", found.sentence().removeprefix(f"{name}: "), right)
-    if not found.text.strip():
+    if not any(line.strip() for line in found.written_lines()):
         raise InputError(name, "an empty file", "a header row and at least one row below it")
     return CsvFile(found)
 

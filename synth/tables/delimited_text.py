@@ -6,22 +6,24 @@ or 1234.
 
 from __future__ import annotations
 
-import codecs
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import BinaryIO
 
-from synth.errors import InputError
+from synth.errors import Described, InputError
+from synth.input_limits import INPUT_LIMITS
+from synth.tables.encodings import MARKS, NAMES, decoded
 from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
 
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
-MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
-# What Excel writes in western Europe and America where it does not write UTF-8. Detectors of encodings are no help with
-# short tables: they take the superscript of mm² for a letter of another code page.
-WESTERN = "cp1252"
 SAMPLE = 200  # lines by which delimiters are compared
+PIECE = 1 << 16  # bytes that are looked at at a time
+TELLING = 1 << 20  # bytes of lines that are not ASCII by which the encoding is told
+ByteSource = Callable[[], BinaryIO]
 
 
 @dataclass(frozen=True)
@@ -32,11 +34,11 @@ class DelimitedText:
     ----------
     name : str
         How messages call it.
-    text : str
-        Without byte order mark and without the line that names the delimiter.
+    source : callable
+        Opens it anew; it is read line by line, however long it is.
     encoding, delimiter : str
     first : int
-        Number of the first line of the text in the file.
+        Number in the file of its first line, behind the one that names the delimiter.
     numbers : WrittenNumbers
         Which columns have decimal commas.
     stated : bool
@@ -44,9 +46,9 @@ class DelimitedText:
     """
 
     name: str
-    text: str
+    source: ByteSource
     encoding: str
-    delimiter: str
+    delimiter: str = ","
     first: int = 1
     numbers: WrittenNumbers = PLAIN_NUMBERS
     stated: bool = False
@@ -68,89 +70,149 @@ class DelimitedText:
         if self.delimiter != "," or self.stated:
             says = " as its first line says" if self.stated else ""
             told.append(f"{DELIMITERS[self.delimiter]} between the columns{says}")
-        if self.encoding in (WESTERN, "utf-16"):
-            told.append("text in Windows-1252" if self.encoding == WESTERN else "text in UTF-16")
+        if not self.encoding.startswith("utf-8"):
+            told.append(f"text in {NAMES.get(self.encoding, self.encoding)}")
         if self.numbers.titles:
             told.append(self.numbers.sentence())
         return f"{self.name}: {', '.join(told)}" if told else ""
 
+    def written_lines(self) -> Iterator[str]:
+        """Yield its lines as they are written, with their ends.
+
+        Raises
+        ------
+        InputError
+            Something of it is no text in its encoding, or a line is too long.
+        """
+        with io.TextIOWrapper(self.source(), encoding=self.encoding, newline="") as text:
+            number = 0
+            try:
+                while line := text.readline(INPUT_LIMITS.row + 1):
+                    number += 1
+                    self._check_length(number, len(line))
+                    if number >= self.first:
+                        yield line
+            except UnicodeError:
+                right = f"text in {self.encoding.upper()} throughout"
+                raise InputError(self.name, "a broken file", right) from None  # it is decoded some lines ahead
+
+    def _check_length(self, line: int, characters: int) -> None:
+        if characters > INPUT_LIMITS.row:
+            right = f"at most {INPUT_LIMITS.row} characters in a row, and quotes that close"
+            raise InputError(f"{self.name}, line {line}", Described("more than that in one row"), right)
+
     def _written(self) -> Iterator[tuple[int, list[str]]]:
-        reader = csv.reader(io.StringIO(self.text, newline=""), delimiter=self.delimiter, strict=True)
-        line = self.first
+        line, characters = self.first, 0
+
+        def counted() -> Iterator[str]:
+            nonlocal characters
+            for text in self.written_lines():
+                characters += len(text)
+                self._check_length(line, characters)
+                yield text
+
+        reader = csv.reader(counted(), delimiter=self.delimiter, strict=True)
         try:
             for cells in reader:
                 yield line, cells
-                line = self.first + reader.line_num
+                line, characters = self.first + reader.line_num, 0
         except csv.Error as error:
             right = f"{DELIMITERS[self.delimiter]} between the columns, and quotes that close"
             raise InputError(f"{self.name}, line {line}", str(error), right) from None
 
 
-def delimited_text(raw: bytes, name: str) -> DelimitedText:
+def delimited_text(raw: bytes, name: str, encoding: str = "") -> DelimitedText:
+    """Recognise how a table in memory is written.
+
+    Else as :func:`delimited_file`.
+    """
+    return delimited_file(partial(io.BytesIO, raw), name, encoding)
+
+
+def delimited_file(source: ByteSource, name: str, encoding: str = "") -> DelimitedText:
     """Recognise how a table is written.
 
     Parameters
     ----------
-    raw : bytes
-        The file.
+    source : callable
+        Opens the file.
     name : str
         How messages call it.
+    encoding : str
+        Where somebody has named it; by default it is recognised.
 
     Raises
     ------
     InputError
-        It is no text, a quote does not close, or numbers of a column can be read in two ways.
+        It is no text or may be in several encodings, a quote does not close, or numbers of a column can be read in two
+        ways.
     """
-    text, encoding = decoded(raw, name)
-    first, delimiter = 1, ""
-    stated = re.match(r"(\"?)sep=(.)\1\r?\n", text, re.IGNORECASE)  # how Excel is told, and tells
+    plain = DelimitedText(name, source, _encoding(source, name, encoding))
+    head = next(plain.written_lines(), "")
+    stated = re.fullmatch(r"(\"?)sep=(.)\1\r?\n", head, re.IGNORECASE)  # how Excel is told, and tells
     if stated:
         if stated[2] not in DELIMITERS:
             raise InputError(f"{name}, line 1", stated[0].strip(), "sep=; or sep=, or a tab")
-        text, first, delimiter = text[stated.end() :], 2, stated[2]
-    found = DelimitedText(name, text, encoding, delimiter or _delimiter(text), first, stated=stated is not None)
-    if found.delimiter == ",":
-        return found
-    return _with_commas(found)
+        found = replace(plain, delimiter=stated[2], first=2, stated=True)
+    else:
+        found = replace(plain, delimiter=_delimiter(head, plain))
+    return found if found.delimiter == "," else _with_commas(found)
 
 
-def decoded(raw: bytes, name: str) -> tuple[str, str]:
-    """Return the text of a file without its byte order mark, and its encoding.
+def _encoding(source: ByteSource, name: str, stated: str) -> str:
+    """Return the encoding of a file, by its mark or its lines that are not ASCII: others are the same in any encoding.
 
     Raises
     ------
     InputError
         It is no text, or in no encoding that is known here.
     """
-    for mark, encoding in MARKS:
-        if raw.startswith(mark):
-            try:
-                return raw.decode(encoding), encoding
-            except UnicodeDecodeError:
-                raise InputError(name, "a broken file", f"text in {encoding.upper()} as its first bytes say") from None
-    if b"\0" in raw:
-        line = raw[: raw.index(b"\0")].count(b"\n") + 1
-        raise InputError(f"{name}, line {line}", "a binary file", "a text file such as CSV, or .xlsx")
-    try:
-        return raw.decode("utf-8"), "utf-8"
-    except UnicodeDecodeError:
-        try:
-            return raw.decode(WESTERN), WESTERN
-        except UnicodeDecodeError as error:
-            line = raw[: error.start].count(b"\n") + 1
-            where, got = f"{name}, line {line}", raw[error.start : error.start + 1]
-            raise InputError(where, got, "text in UTF-8, UTF-16 or Windows-1252: save as CSV UTF-8") from None
+    telling, kept = io.BytesIO(), 0
+    with source() as file:
+        start = file.readline(PIECE)
+        for mark, encoding in MARKS:
+            if not stated and start.startswith(mark):
+                return encoding
+        piece = start
+        while piece and kept < TELLING:
+            plain = piece.isascii() and b"\0" not in piece
+            telling.write(piece if not plain else b"\n" if piece.endswith(b"\n") else b"")
+            kept += 0 if plain else len(piece)
+            piece = file.readline(PIECE)
+    return decoded(telling.getvalue(), name, stated)[1]
 
 
-def _delimiter(text: str) -> str:
+def first_lines(raw: bytes, name: str, most: int, encoding: str = "") -> bytes:
+    r"""Head of a table, in UTF-8: its first lines, and those that a cell in quotes goes on in.
+
+    Raises
+    ------
+    InputError
+        As :func:`decoded`.
+
+    Examples
+    --------
+    >>> first_lines(b'a,b\n1,"x\ny"\n2,z\n', "table", 2)
+    b'a,b\n1,"x\ny"\n'
+    """
+    lines = io.StringIO(decoded(raw, name, encoding)[0], newline="")
+    kept, quotes = list[str](), 0
+    for line in lines:
+        kept.append(line)
+        quotes += line.count('"')
+        if len(kept) >= most and quotes % 2 == 0:
+            break
+    return "".join(kept).encode()
+
+
+def _delimiter(head: str, written: DelimitedText) -> str:
     """Return what stands between the columns: what gives the header most cells, and as many in every line."""
-    head = text.split("\n", 1)[0]
     present = [mark for mark in DELIMITERS if mark in head]
     if len(present) < 2:
         return present[0] if present else ","
 
     def fit(mark: str) -> tuple[bool, int]:
-        reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
+        reader = csv.reader(written.written_lines(), delimiter=mark)
         try:
             counts = [len(cells) for cells, _ in zip(reader, range(SAMPLE), strict=False) if any(cells)]
         except csv.Error:

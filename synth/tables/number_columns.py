@@ -15,6 +15,7 @@ from synth.errors import InputError
 GROUPED = re.compile(rf"\d{{1,3}}(?:[.{BLANKS}]\d{{3}})+,\d+")
 PLAIN = re.compile(r"\d+,\d+")
 THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:\.\d{3})+")  # where others have decimal commas
+DESIGNATION = "designation"
 TITLES = 6  # columns that are told by name
 
 
@@ -120,6 +121,8 @@ def written_numbers(header: Sequence[str], columns: Sequence[NumberColumn], name
     InputError
         A column has nothing but numbers that can be read in two ways.
     """
+    # Designations are names: 1,10 is another one than 1.1.
+    columns = [NumberColumn() if title.strip() == DESIGNATION else c for c, title in zip(columns, header, strict=True)]
     commas = tuple(k for k, column in enumerate(columns) if column.has_commas())
     for column, written in zip(columns, header, strict=True):
         doubt = column.doubt(bool(commas))

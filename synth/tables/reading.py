@@ -6,26 +6,43 @@ import datetime
 import math
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.errors import InputError, at
+from synth.errors import Described, InputError, at
 from synth.files import csv_text, read_bytes
 from synth.tables.csv_file import read_csv_bytes, read_csv_file
-from synth.tables.delimited_text import decoded
+from synth.tables.encodings import decoded
+from synth.tables.number_columns import DESIGNATION
 from synth.tables.schema import SCHEMA_SUFFIX, Column, Schema, load_schema
 from synth.tables.table import SHIPPED, FloatArray, Table
+from synth.tables.table_file import table_file
 from synth.tables.table_text import TableText
-from synth.tables.workbook import Sheet, cell_text, is_workbook, sheet_of, split_sheet
-from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
+from synth.tables.workbook import (
+    LOOKED_AT,
+    Sheet,
+    cell_text,
+    header_first,
+    is_workbook,
+    sheet_of,
+    split_sheet,
+    table_elsewhere,
+)
+from synth.text.numbers import typed_number
+from synth.units import Unit, check_number, is_date, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
     import pandas as pd
 
+# Numbers as a table program writes them; 6205 was typed so, 1E5 and 1.10 are still as they were.
+MADE = re.compile(r"[-+]?\d+[.,]\d*[1-9]|[-+]?\d+(?:[.,]\d+)?[eE][-+]\d+")
+FAULT = re.compile(r"#[A-Z0/]+[?!]?|#+")
+AS_TEXT = "a name; a table program has made a {} of it: set the cell to Text, and type it again"
+OF_RECORD = ("table", "hash", "units")  # what a record adds to the cells of a row
 CONFIDENCE = ("verified", "textbook", "typical", "computed", "synthetic")
 
 
@@ -129,7 +146,7 @@ def _number_cell(cell: object, column: Column, unit: Unit, where: str) -> float:
     for limit, outside in ((column.minimum, float.__lt__), (column.maximum, float.__gt__)):
         if limit is not None and outside(si, number_to_si(repr(limit), column.scale)):
             shown = "" if column.unit is None or column.unit == "-" else f" {column.unit}"
-            ends = [f"{end:g}" for end in (column.minimum, column.maximum) if end is not None]
+            ends = [typed_number(end) for end in (column.minimum, column.maximum) if end is not None]
             raise InputError(
                 where, f"{cell} {unit.text}".removesuffix(" -"), f"a plausible value, {' .. '.join(ends)}{shown}"
             )
@@ -141,10 +158,36 @@ def _text_cell(cell: object, where: str) -> str:
         return cell.strip()
     if isinstance(cell, (bool, np.bool_)) or not isinstance(cell, (int, float, np.integer, np.floating)):
         raise InputError(where, cell, "text")
-    if math.isnan(cell):
-        return ""
-    # a spreadsheet turns the designation 6205 into a number
-    return str(int(cell)) if math.isfinite(cell) and float(cell).is_integer() else str(cell)
+    try:
+        return "" if math.isnan(cell) else str(int(cell)) if float(cell).is_integer() else str(cell)
+    except OverflowError:
+        raise InputError(where, cell, "text") from None
+
+
+def _refuse_made(cell: object, where: str) -> None:
+    """Refuse a designation that a table program has made of another text: 1.10 is 1.1 there, and 1E5 is 100000."""
+    if isinstance(cell, str):
+        if FAULT.fullmatch(cell.strip()):
+            raise InputError(where, cell, AS_TEXT.format("fault"))
+    elif isinstance(cell, (bool, int, float, np.bool_, np.floating)):
+        raise InputError(where, cell, AS_TEXT.format("number"))
+    elif isinstance(cell, (datetime.date, datetime.time, datetime.timedelta)):
+        raise InputError(where, cell_text(cell), AS_TEXT.format("date"))
+
+
+def _designation(text: str, where: str) -> str:
+    """Return a designation of a CSV file; refuse what a table program writes there for a number, a date or a fault."""
+    text = text.strip()
+    if text.startswith("'") and _is_made(text[1:]):
+        return text[1:]
+    if _is_made(text):
+        kind = "date" if is_date(text) else "number"
+        raise InputError(where, text, f"{AS_TEXT.format(kind)}, or put an apostrophe before it where it is meant so")
+    return text
+
+
+def _is_made(text: str) -> bool:
+    return is_date(text) or MADE.fullmatch(text) is not None
 
 
 def _build(
@@ -167,6 +210,8 @@ def _build(
                 cell, where = row[field.position], f"{label}, column {column.name}"
                 if strict and isinstance(cell, str) and cell != cell.strip():
                     raise InputError(where, cell, "a cell without blanks at its ends")
+                if not strict and column.name == DESIGNATION and not isinstance(cell, int):
+                    _refuse_made(cell, where)
                 if strict and column.required and cell == "":
                     raise InputError(where, None, f"a value: {column.description}")
                 read = _number_cell(cell, column, field.unit, where) if column.numeric else _text_cell(cell, where)
@@ -240,7 +285,7 @@ def load_table(
     if not shipped and is_workbook(path):
         return _table_of_sheet(path, schema, name)
     written = read_csv_file(path, plain=shipped)
-    return _table_of(*written.rows(), schema, name, path.name, shipped, written.sentence())
+    return _table_of(*written.rows(), schema, name, written.text.name, shipped, written.sentence())
 
 
 def csv_of_file(path: Path) -> str:
@@ -251,10 +296,16 @@ def csv_of_file(path: Path) -> str:
     InputError
         The file cannot be read.
     """
-    if not is_workbook(path):
-        return decoded(read_bytes(path, "catalogue file", "a CSV or .xlsx file"), path.name)[0]
+    named = table_file(path)
+    if not named.is_workbook:
+        raw = read_bytes(named.path, "catalogue file", "a CSV or .xlsx file")
+        return decoded(raw, named.path.name, named.encoding)[0]
     _, lines = _lines_of_sheet(path, None)
     (_, head), *rows = lines
+    if DESIGNATION in head:
+        k = head.index(DESIGNATION)
+        for _, cells in rows:
+            cells[k] = f"'{cells[k]}" if _is_made(cells[k]) else cells[k]
     return csv_text(head, [cells for _, cells in rows])
 
 
@@ -263,25 +314,39 @@ def _table_of_sheet(path: Path, schema: Schema | None, name: str) -> Table:
     sheet, ((_, head), *rows) = _lines_of_sheet(path, schema)
     wide = max((len(cells) for _, cells in rows), default=0)
     place = f"{sheet.name}, sheet {sheet.title}"
-    return _table_of(head + [""] * (wide - len(head)), rows, schema, name, place, False, sheet.sentence())
+    head = head + [""] * (wide - len(head))
+    return _table_of(head, rows, schema, name, place, False, sheet.sentence(), typed=True)
 
 
 def _lines_of_sheet(path: Path, schema: Schema | None) -> tuple[Sheet, list[tuple[int, list[str]]]]:
     """Return the sheet that holds a table, and its lines that are not empty, the header first."""
-    wanted = None if schema is None or schema.get("designation") is not None else {c.name for c in schema.columns}
-
-    def fits(header: list[str]) -> bool:
-        names = {title.partition("[")[0].strip() for title in header}
-        return "designation" in names if wanted is None else bool(names & wanted)
-
+    fits = _holds_header(schema)
     sheet = sheet_of(path, "catalogue file", "a CSV or .xlsx file", fits)
     place = f"{sheet.name}, sheet {sheet.title}"
     lines = [(line, cells) for line, cells in sheet.lines(_flag_or_text) if "".join(cells).strip()]
+    if not lines or lines[0][0] != 1 or not fits(lines[0][1]):
+        right = table_elsewhere(path, "catalogue file", fits)
+        if right:
+            raise InputError(place, Described("no header in the first row"), right)
     if not lines or lines[0][0] != 1:
         raise InputError(place, "an empty first row", "a header row and at least one row below it")
     (_, head), *rows = lines
+    if DESIGNATION in head:
+        k = head.index(DESIGNATION)
+        for line, cells in sheet.values():
+            if line > 1 and k < len(cells):
+                with at(line, DESIGNATION):
+                    _refuse_made(cells[k], f"{place}, line {line}, column {DESIGNATION}")
     rows = [(line, cells + [""] * (len(head) - len(cells))) for line, cells in rows]
     return sheet, [(1, head), *rows]
+
+
+def _holds_header(schema: Schema | None) -> Callable[[Sequence[str]], bool]:
+    """Return what tells whether cells are the header of a table: by its designations, or the columns of its data."""
+    wanted = {DESIGNATION}
+    if schema is not None and schema.get(DESIGNATION) is None:
+        wanted = {column.name for column in schema.columns}
+    return lambda cells: bool({title.partition("[")[0].strip() for title in cells} & wanted)
 
 
 def _flag_or_text(cell: object) -> str:
@@ -314,6 +379,35 @@ def table_of_text(text: TableText, schema: Schema | None, name: str) -> Table:
     return _table_of(*written.rows(), schema, name, text.reference, False, written.sentence())
 
 
+def table_of_rows(rows: Sequence[Mapping[str, Any]], schema: Schema | None, name: str, origin: str) -> Table:
+    """Make a table of rows that a record has kept.
+
+    Parameters
+    ----------
+    rows : list of mapping
+        Column -> SI number or text, None where the cell was empty; what the record adds is none, but for units of
+        columns.
+    schema : Schema or None
+        Of the shipped table of that name.
+    name, origin : str
+        Of the table, and of the file it was read from.
+    """
+    told = [{column: cell for column, cell in row.items() if column not in OF_RECORD} for row in rows]
+    columns, data = dict[str, Column](), dict[str, Any]()
+    units = {column: unit for row in rows for column, unit in row.get("units", {}).items()}
+    for column in dict.fromkeys(column for row in told for column in row):
+        cells = [row.get(column) for row in told]
+        known = [cell for cell in cells if cell is not None]
+        if not known:
+            continue  # as if the table had no such column
+        described = schema.get(column) if schema is not None else None
+        numeric = not isinstance(known[0], str)
+        columns[column] = described or Column(column, "number" if numeric else "text", units.get(column))
+        data[column] = np.array(cells, dtype=float) if numeric else tuple("" if c is None else str(c) for c in cells)
+    labels = [f"{origin}, row {row['designation']}" for row in told]
+    return Table(name, columns, data, labels, origin, np.ones(len(told), dtype=bool))
+
+
 def _table_of(
     head: list[str],
     body: list[tuple[int, list[str]]],
@@ -322,8 +416,18 @@ def _table_of(
     file: str,
     shipped: bool,
     reading: str,
+    typed: bool = False,
 ) -> Table:
-    """Return the table of a header and rows; ``file`` is where they stand, ``reading`` how, for messages."""
+    """Return the table of a header and rows; ``file`` is where they stand, ``reading`` how, for messages.
+
+    ``typed``: cells that are text were text where they stand, as in a workbook; in CSV nobody knows.
+    """
+    fits = _holds_header(schema)
+    if not shipped and not fits(head):
+        line = next((line for line, cells in body[:LOOKED_AT] if fits(cells)), None)
+        if line is not None:
+            shown = " ".join(cell for cell in head if cell.strip()) or None
+            raise InputError(f"{file}, line 1", shown, header_first(line))
     if shipped and schema is not None:
         for title in head:
             if head.count(title) > 1:
@@ -342,8 +446,14 @@ def _table_of(
         if len(cells) != len(head):
             right = f"{len(head)} cells as in the header (decimal points, and quotes around a text that has a comma)"
             raise InputError(f"{file}, line {line}", f"{len(cells)} cells", right, (line,))
+        for field in fields:
+            if field.column.name == DESIGNATION and not shipped and not typed:
+                with at(line, DESIGNATION):
+                    cells[field.position] = _designation(
+                        cells[field.position], f"{file}, line {line}, column {DESIGNATION}"
+                    )
         rows.append((f"{file}, line {line}", cells))
-    catalogue = any(field.column.name == "designation" for field in fields)
+    catalogue = any(field.column.name == DESIGNATION for field in fields)
     lines = [line for line, _ in body]
     table = _build(name, fields, rows, lines, SHIPPED if shipped else file, strict=shipped, catalogue=catalogue)
     table.readings = (reading,) if reading else ()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from synth.errors import InputError
 from synth.tables.csv_file import read_csv_bytes, read_csv_file
+from synth.text.numbers import typed_number
 from synth.units import Unit, check_number, header, parse_unit
 
 _SCHEMA_HEADER = ["column", "type", "unit", "minimum", "maximum", "required", "symbol", "description"]
@@ -172,7 +173,7 @@ def _schema_column(cell: dict[str, str], where: str) -> Column:
         limits.append(float(check_number(given, f"{where}, column {side}")) if given else None)
     low, high = limits
     if low is not None and high is not None and not low < high:
-        raise InputError(f"{where}, column minimum", low, f"less than the maximum {high:g}")
+        raise InputError(f"{where}, column minimum", low, f"less than the maximum {typed_number(high)}")
     return Column(
         name=cell["column"],
         type=cell["type"],

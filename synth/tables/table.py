@@ -34,6 +34,13 @@ BoolArray = NDArray[np.bool_]
 SHIPPED = "shipped"
 
 
+def row_hash(cells: Mapping[str, float | str | None]) -> str:
+    """SHA-256 of the cells of a row, without those that are empty."""
+    content = {name: value for name, value in cells.items() if value is not None}
+    canonical = json.dumps(content, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+    return hashlib.sha256(canonical.encode("utf-8", "surrogatepass")).hexdigest()
+
+
 class Table:
     """A table in memory; never changed after it is made.
 
@@ -199,6 +206,11 @@ class Table:
             raise InputError(f"table {self.name}", column, "a column of text; this one has numbers")
         return cells
 
+    def empty(self, column: str) -> BoolArray:
+        """Rows whose cell in a column is empty; InputError where there is no such column."""
+        cells = self._data[self.column(column).name]
+        return np.isnan(cells) if isinstance(cells, np.ndarray) else np.array([not cell for cell in cells], dtype=bool)
+
     @property
     def designations(self) -> tuple[str, ...]:
         """Designation of each row; empty for a table of data that has none."""
@@ -260,12 +272,7 @@ class Table:
     @cached_property
     def hashes(self) -> tuple[str, ...]:
         """SHA-256 of the content of each row: SI values and texts, without regard to the order or unit of columns."""
-        found = []
-        for i in range(len(self)):
-            content = {name: value for name, value in self.row(i).items() if value is not None}
-            canonical = json.dumps(content, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
-            found.append(hashlib.sha256(canonical.encode("utf-8", "surrogatepass")).hexdigest())
-        return tuple(found)
+        return tuple(row_hash(self.row(i)) for i in range(len(self)))
 
     def select(self, indices: Sequence[int] | NDArray[np.int_] | BoolArray) -> Table:
         """Give the table with some of its rows only.

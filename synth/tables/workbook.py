@@ -16,14 +16,20 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError
+from synth.errors import Described, InputError
 from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import as_meant
+from synth.plain_text import as_meant, counted
 from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
+from synth.tables.table_file import VISIBLE, table_file
 
-EXCEL = (".xlsx", ".xlsm")
-SHEET = re.compile(r"(.*\.xls[xm])#(.+)", re.IGNORECASE)
+TAGS = re.compile(rb"<(?:\w+:)?(row|mergeCell)\s([^>]*)>")
+ROW = re.compile(rb"<((?:\w+:)?row)\s([^>]*?)(?:/>|>.*?</\1>)", re.DOTALL)
+TRUE = (b"1", b"true")
+LEAVE_OUT = f"--visible-rows, or #{VISIBLE} behind the name, leaves them out"
+ATTRIBUTES = re.compile(rb"(\w+)=[\"']([^\"']*)[\"']")
+SHOWN = 6  # rows that are told by number
+LOOKED_AT = 20  # lines above which a table may begin in vain
 FORMULA = re.compile(rb"<f[ >/]")
 TEXT_RESULT = "str"  # the kind of a formula's value that is text, also where that is empty
 CHUNK = 1 << 20
@@ -37,13 +43,13 @@ def split_sheet(path: Path) -> tuple[Path, str]:
     >>> split_sheet(Path("parts/own.xlsx#Linings"))[1], split_sheet(Path("own.csv"))[1]
     ('Linings', '')
     """
-    found = SHEET.fullmatch(path.name)
-    return (path, "") if found is None or path.exists() else (path.with_name(found[1]), found[2])
+    file = table_file(path)
+    return file.path, file.sheet
 
 
 def is_workbook(path: Path) -> bool:
     """Tell whether a file, perhaps with a sheet named, is a workbook."""
-    return split_sheet(path)[0].suffix.lower() in EXCEL
+    return table_file(path).is_workbook
 
 
 def cell_text(value: Any) -> str:
@@ -84,8 +90,16 @@ class Sheet:
         Which of the sheets it is, from 0.
     several : bool
         Whether there are others.
+    unseen : bool
+        Whether the sheet itself is hidden.
+    hidden : tuple of int
+        Rows with something in them that are hidden, by hand or by a filter.
+    left_out : bool
+        Whether hidden rows are left out.
     numbers : WrittenNumbers
         How the numbers are written that stand as text.
+    most : int or None
+        Lines that are read; None for all.
     """
 
     name: str
@@ -94,7 +108,11 @@ class Sheet:
     title: str
     position: int
     several: bool
+    unseen: bool = False
+    hidden: tuple[int, ...] = ()
+    left_out: bool = False
     numbers: WrittenNumbers = PLAIN_NUMBERS
+    most: int | None = None
 
     def lines(self, text: Callable[[Any], str] = cell_text) -> Iterator[tuple[int, list[str]]]:
         """Return number and cells of every line, numbers with decimal points; ``text``: what a value is as text.
@@ -104,35 +122,51 @@ class Sheet:
         InputError
             It cannot be read.
         """
-        for number, cells in self._values():
+        for number, cells in self.values():
             texts = [as_meant(text(cell)) for cell in cells]
             read = self.numbers.read([*texts])
             yield number, [r if isinstance(c, str) else t for r, t, c in zip(read, texts, cells, strict=True)]
 
     def sentence(self) -> str:
         """Return what was recognised, in a sentence; nothing where there is one way to read it."""
-        told = [f"sheet {self.title}"] if self.several else []
+        sheet = f"{'hidden ' if self.unseen else ''}sheet {self.title}"
+        told = [sheet] if self.several or self.unseen or self.hidden else []
+        if self.hidden:
+            some = ", ".join(map(str, self.hidden[:SHOWN])) + (", ..." if len(self.hidden) > SHOWN else "")
+            rows = counted(len(self.hidden), "hidden or filtered row")
+            told.append(f"without {rows} ({some})" if self.left_out else f"with {rows} ({some}; {LEAVE_OUT})")
         if self.numbers.titles:
             told.append(self.numbers.sentence())
         return f"{self.name}: {', '.join(told)}" if told else ""
 
-    def _values(self) -> Iterator[tuple[int, tuple[Any, ...]]]:
+    def values(self) -> Iterator[tuple[int, tuple[Any, ...]]]:
+        """Return number and values of every line that is read."""
         with _book(self.raw, self.name, self.named_by) as book:
-            rows = book.worksheets[self.position].iter_rows(values_only=True)
+            rows = book.worksheets[self.position].iter_rows(values_only=True, max_row=self.most)
             yield from enumerate(_whole(rows, self.name, self.named_by), start=1)
 
-    def recognised(self) -> Sheet:
-        """Return the sheet with how its numbers are written.
+    def recognised(self, visible: bool = False) -> Sheet:
+        """Return the sheet with how its numbers are written, and its hidden rows; ``visible``: these are left out.
 
         Raises
         ------
         InputError
-            Texts of a column can be read as two numbers, or the value of a formula is missing.
+            Texts of a column can be read as two numbers, the value of a formula is missing, or cells are merged.
         """
-        self._check_formulas()
+        hidden, merged = self._layout()
+        if merged:
+            right = "one cell for each value: unmerge them, and fill in all that they stood for"
+            raise InputError(f"{self.name}, sheet {self.title}", Described(f"merged cells, {merged}"), right)
+        found = self
+        if visible and hidden:
+            found = replace(self, raw=without_hidden_rows(self.raw, self.name, self.named_by), left_out=True)
+        found._check_formulas()
         columns: list[NumberColumn] = []
         header: list[str] = []
-        for number, cells in self._values():
+        filled = list[int]()
+        if hidden:
+            filled = [k for k, cells in self.values() if k in hidden and any(c not in (None, "") for c in cells)]
+        for number, cells in found.values():
             if number == 1:
                 header = [cell_text(cell) for cell in cells]
                 columns = [NumberColumn() for _ in header]
@@ -142,7 +176,22 @@ class Sheet:
                     column.add(number, as_meant(cell))
                 elif isinstance(cell, (int, float)):
                     column.add_number()
-        return replace(self, numbers=written_numbers(header, columns, f"{self.name}, sheet {self.title}"))
+        numbers = written_numbers(header, columns, f"{self.name}, sheet {self.title}")
+        return replace(found, numbers=numbers, hidden=tuple(filled))
+
+    def _layout(self) -> tuple[set[int], str]:
+        """Return which rows are hidden, and some merged cells: readers that go line by line do not tell."""
+        with _book(self.raw, self.name, self.named_by) as book:
+            place = book.worksheets[self.position]._worksheet_path
+        hidden, line = set[int](), 0
+        for tag, stated in _whole(_tags(self.raw, place), self.name, self.named_by):
+            attributes = dict(ATTRIBUTES.findall(stated))
+            if tag == b"mergeCell":
+                return hidden, attributes.get(b"ref", b"").decode("ascii", "replace")
+            line = int(attributes.get(b"r", line + 1))
+            if line > 1 and attributes.get(b"hidden") in TRUE:
+                hidden.add(line)
+        return hidden, ""
 
     def _check_formulas(self) -> None:
         """Refuse formulas whose values are not in the file: a program that computes nothing has written it."""
@@ -152,7 +201,7 @@ class Sheet:
             _book(self.raw, self.name, self.named_by) as values,
             _book(self.raw, self.name, self.named_by, True) as formulas,
         ):
-            sheets = (book.worksheets[self.position].iter_rows() for book in (values, formulas))
+            sheets = (book.worksheets[self.position].iter_rows(max_row=self.most) for book in (values, formulas))
             pairs = zip(*(_whole(rows, self.name, self.named_by) for rows in sheets), strict=False)
             for number, (cells, written) in enumerate(pairs, start=1):
                 for cell, formula in zip(cells, written, strict=False):
@@ -168,6 +217,8 @@ def sheet_of(
     right: str,
     fits: Callable[[list[str]], bool] = lambda header: True,
     name: str = "",
+    most: int | None = None,
+    most_bytes: int = INPUT_LIMITS.file,
 ) -> Sheet:
     """Return the sheet of a workbook that is meant.
 
@@ -181,28 +232,95 @@ def sheet_of(
         What it should be, for messages.
     fits : callable
         Told the first line of a sheet. Where no sheet is named, it is the first one for which this holds, or else the
-        first.
+        first; hidden sheets come last.
     name : str
         How messages call it; by default as the file.
+    most : int, optional
+        Lines that are read of it.
+    most_bytes : int
+        Of the file.
 
     Raises
     ------
     InputError
         It cannot be read, there is no such sheet, or its numbers can be read in two ways.
     """
-    file, wanted = split_sheet(path)
-    raw, name = read_bytes(file, field, right), name or file.name
+    named = table_file(path)
+    file, wanted = named.path, named.sheet
+    raw, name = read_bytes(file, field, right, most_bytes), name or file.name
     with _book(raw, name, field) as book:
         titles = [sheet.title for sheet in book.worksheets]
         if not titles:
             raise InputError(field, name, "a workbook with a sheet in it")
         if wanted and wanted not in titles:
             raise InputError(field, f"{name}#{wanted}", f"a sheet that it has: {', '.join(titles)}")
-        position = titles.index(wanted) if wanted else 0
+        unseen = [sheet.sheet_state != "visible" for sheet in book.worksheets]
+        order = sorted(range(len(titles)), key=unseen.__getitem__)
+        position = titles.index(wanted) if wanted else order[0]
         if not wanted and len(titles) > 1:
-            heads = (next(_whole(sheet.iter_rows(values_only=True), name, field), ()) for sheet in book.worksheets)
-            position = next((k for k, head in enumerate(heads) if fits([cell_text(cell) for cell in head])), 0)
-    return Sheet(name, field, raw, titles[position], position, len(titles) > 1).recognised()
+            sheets = ((k, book.worksheets[k].iter_rows(values_only=True)) for k in order)
+            heads = ((k, next(_whole(rows, name, field), ())) for k, rows in sheets)
+            position = next((k for k, head in heads if fits([cell_text(cell) for cell in head])), order[0])
+    found = Sheet(name, field, raw, titles[position], position, len(titles) > 1, unseen[position], most=most)
+    return found.recognised(named.visible)
+
+
+def without_hidden_rows(raw: bytes, name: str, field: str) -> bytes:
+    """Return a workbook whose hidden rows are empty, but for first rows.
+
+    Raises
+    ------
+    InputError
+        It cannot be read.
+    """
+
+    def shown(row: re.Match[bytes]) -> bytes:
+        attributes = dict(ATTRIBUTES.findall(row[2]))
+        return b"" if attributes.get(b"hidden") in TRUE and attributes.get(b"r") != b"1" else row[0]
+
+    packed = io.BytesIO()
+    try:
+        with zipfile.ZipFile(io.BytesIO(raw)) as archive, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as written:
+            for entry in archive.infolist():
+                content = archive.read(entry)
+                written.writestr(entry, ROW.sub(shown, content) if "worksheets/" in entry.filename else content)
+    except Exception as error:  # whatever a broken archive may raise
+        raise InputError(field, name, f"an Excel file that can be read ({type(error).__name__})") from error
+    return packed.getvalue()
+
+
+def table_elsewhere(path: Path, field: str, fits: Callable[[list[str]], bool], name: str = "") -> str:
+    """Return what is right where the header of a table is not in the first row of the sheet that is meant.
+
+    Parameters
+    ----------
+    path, field, fits, name
+        As for :func:`sheet_of`.
+
+    Returns
+    -------
+    str
+        Where it stands and what to do; nothing where no row that is looked at is one.
+    """
+    named = table_file(path)
+    name = name or named.path.name
+    with _book(read_bytes(named.path, field), name, field) as book:
+        first = book.worksheets[0].title
+        for sheet in book.worksheets:
+            if named.sheet in ("", sheet.title):
+                rows = _whole(sheet.iter_rows(values_only=True, max_row=LOOKED_AT), name, field)
+                for number, cells in enumerate(rows, start=1):
+                    if fits([cell_text(cell) for cell in cells]):
+                        return header_first(number, "" if named.sheet or sheet.title == first else sheet.title)
+    return ""
+
+
+def header_first(line: int, sheet: str = "") -> str:
+    """Return what is right where a header is not in the first line, or on another sheet than the first."""
+    where = f"{line} of sheet {sheet}" if sheet else str(line)
+    ways = [f"name that sheet (#{sheet} behind the name)"] if sheet else []
+    ways += ["delete what is above it"] if line > 1 else []
+    return f"the header in the first line; it stands in line {where}: {', and '.join(ways)}"
 
 
 @contextmanager
@@ -253,6 +371,15 @@ def _whole(rows: Iterator[Any], name: str, field: str) -> Iterator[Any]:
         except Exception as error:  # whatever a broken sheet may raise
             raise InputError(field, name, f"an Excel file that can be read ({type(error).__name__})") from error
         yield cells
+
+
+def _tags(raw: bytes, place: str) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the tags of rows and of merged cells in a sheet, with their attributes."""
+    with zipfile.ZipFile(io.BytesIO(raw)) as archive, archive.open(place.lstrip("/")) as file:
+        before = b""
+        while chunk := file.read(CHUNK):
+            text, mark, before = (before + chunk).rpartition(b">")
+            yield from ((tag[1], tag[2]) for tag in TAGS.finditer(text + mark))
 
 
 def _has_formulas(raw: bytes) -> bool:

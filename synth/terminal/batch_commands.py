@@ -13,8 +13,32 @@ from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.interrupts import heard_again
 from synth.output_folder import BATCH
-from synth.terminal.options import Csv, Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
-from synth.terminal.session import INFEASIBLE, INTERNAL, STOPPED, check_output, claim_output, objectives, tell
+from synth.tables.table_file import read_as
+from synth.terminal.options import (
+    Csv,
+    Encoding,
+    Gap,
+    Grid,
+    Headings,
+    Objectives,
+    Quiet,
+    RowFamily,
+    RowPoints,
+    RowsFolder,
+    Seed,
+    VisibleRows,
+)
+from synth.terminal.session import (
+    INFEASIBLE,
+    INTERNAL,
+    STOPPED,
+    check_output,
+    claim_output,
+    objectives,
+    own_tables,
+    rows_folder,
+    tell,
+)
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob
@@ -51,7 +75,7 @@ def register(app: typer.Typer) -> None:
 
 def batch(
     rows: RowsFile,
-    folder: Folder,
+    folder: RowsFolder = None,
     family: RowFamily = None,
     mapping: Headings = None,
     points: RowPoints = None,
@@ -66,18 +90,23 @@ def batch(
     workers: Workers = None,
     scheduler: Scheduler = None,
     database: Database = None,
+    encoding: Encoding = None,
+    visible_rows: VisibleRows = False,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
     """Search the designs for every row of a table; run again to go on after an interruption."""
     style = csv_style(csv, "--csv")
+    place = rows_folder(rows, folder)
+    own = own_tables(catalogs, Path(), encoding, visible_rows)
+    rows = Path(read_as(str(rows), encoding, visible_rows))
 
     def make() -> BatchJob:
         return batch_job(
-            rows, folder, family, mapping, points, gap, grid, seed, time_limit, objective, catalogs, database, style
+            rows, place, family, mapping, points, gap, grid, seed, time_limit, objective, own, database, style
         )
 
-    raise typer.Exit(finish(make, workers, scheduler, quiet))
+    raise typer.Exit(finish(make, workers, scheduler, quiet, named=folder is not None))
 
 
 def batch_job(
@@ -91,7 +120,7 @@ def batch_job(
     seed: int,
     time_limit: str | None,
     objective: list[str] | None,
-    catalogs: Path | None,
+    catalogs: Any,
     database: str | None,
     csv: CsvStyle,
 ) -> BatchJob:
@@ -108,8 +137,8 @@ def batch_job(
     return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common, csv=csv)
 
 
-def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
-    """Plan a batch, work it off, write it, and return the exit code that it has."""
+def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool, named: bool) -> int:
+    """Plan a batch, work it off, write it, and return the exit code that it has; ``named``: its folder by the user."""
     if workers is not None:
         whole_number(workers, "--workers", INPUT_LIMITS.workers, path=("workers",))
     if scheduler is not None:
@@ -122,8 +151,11 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
 
             job = make()
             claim_output(job.folder, BATCH, job.id)
-            continues = job.plan()
+            with batch_display(quiet) as progress:
+                continues = job.plan(_processes(workers), _checked(progress, check))
             check()
+            if not (named or quiet):
+                tell(f"the results go to {job.folder}; -o DIR names another folder")
         except KeyboardInterrupt:
             tell("stopped while the rows were checked; nothing is kept")
             raise typer.Exit(STOPPED) from None

@@ -14,12 +14,11 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from synth.errors import shortened
 from synth.jobs.outputs import RowOutcome, row_outcomes
-from synth.jobs.row_questions import Fault
-from synth.plain_text import alike, counted, thousands, words
+from synth.plain_text import counted
 from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
-from synth.terminal.console import console_on, in_common, made_of, output, plain_table, print_wrapped
+from synth.terminal.console import column_heading, console_on, in_common, made_of, output, plain_table, print_wrapped
 from synth.terminal.session import say, tell, tell_written
-from synth.units import split_header, unit_text
+from synth.text.numbers import column_texts, number_text, thousands
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 MOST_ROWS = 20  # that are all shown
 FIRST = 5  # of many that have no design
 NAME, REASON = 24, 160  # characters
-LINES = 8  # of a fault that stands in many
 EVERY = 5.0  # seconds between lines of progress where there is no terminal
 
 
@@ -44,22 +42,22 @@ def print_table_remarks(job: BatchJob, continues: bool) -> None:
         tell(f"read as {how}: {name}")
     if job.questioner.carried:
         tell(f"carried along unread: {', '.join(column.title for column in job.questioner.carried)}")
-    for family, columns in sorted(job.unused.items()):
+    remarks = job.remarks
+    for family, columns in sorted(remarks.unused.items()):
         tell(f"not used by {family}: {', '.join(sorted(columns))}")
-    for (column, value, expected), lines in job.faults.items():
-        tell(Fault(lines[0], column, value, expected).sentence() + _more_lines(lines[1:]))
-    if job.bad:
-        shown = {line for lines in job.faults.values() for line in lines}
-        more = "" if len(shown) == job.bad else ", the first are shown"
-        tell(f"{counted(job.bad, 'row')} cannot be asked{more}; rows.csv lists them all, the others run")
+    for fault in remarks.faults:
+        tell(fault.first.sentence() + _more_lines(fault.others, fault.count - 1))
+    if remarks.bad:
+        more = "" if remarks.shown == remarks.bad else ", the first are shown"
+        tell(f"{counted(remarks.bad, 'row')} cannot be asked{more}; rows.csv lists them all, the others run")
 
 
-def _more_lines(lines: Sequence[int]) -> str:
-    """Return where else a fault stands."""
-    if not lines:
+def _more_lines(lines: Sequence[int], count: int) -> str:
+    """Return where else a fault stands: the first of so many lines."""
+    if not count:
         return ""
-    listed = ", ".join(map(str, lines[:LINES])) + (", ..." if len(lines) > LINES else "")
-    return f" (also in {'line' if len(lines) == 1 else f'{len(lines)} lines:'} {listed})"
+    listed = ", ".join(map(str, lines)) + (", ..." if count > len(lines) else "")
+    return f" (also in {'line' if count == 1 else f'{thousands(count)} lines:'} {listed})"
 
 
 @contextmanager
@@ -86,7 +84,8 @@ def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
 
     def show(state: Mapping[str, Any]) -> None:
         nonlocal shown_at
-        if time.monotonic() - shown_at >= EVERY:
+        # What is done is said by what comes next.
+        if state["done"] < state["rows"] and time.monotonic() - shown_at >= EVERY:
             shown_at = time.monotonic()
             print(figures(state), file=sys.stderr, flush=True)
 
@@ -99,15 +98,19 @@ def figures(state: Mapping[str, Any]) -> str:
     Examples
     --------
     >>> figures({"rows": 10000, "done": 1200, "failed": 1, "infeasible": 30, "bad": 2, "rate": 12.5, "left": 704.0})
-    '1 200 of 10 000 rows, 12.5 rows/s, 12 min left, 30 infeasible, 2 bad, 1 failed'
+    '1200 of 10 000 rows, 12.5 rows/s, 12 min left, 30 infeasible, 2 bad, 1 failed'
     >>> figures({"rows": 400, "done": 0, "found": 180, "failed": 0, "infeasible": 0, "bad": 0, "rate": 0, "left": None})
     '0 of 400 rows, 180 more have designs'
+    >>> figures({"rows": 1000000, "done": 12500, "stage": "checked"})
+    '12 500 of 1 000 000 rows checked'
     """
+    if "stage" in state:
+        return f"{thousands(state['done'])} of {thousands(state['rows'])} rows {state['stage']}"
     parts = [f"{thousands(state['done'])} of {thousands(state['rows'])} rows"]
     if state.get("found"):
         parts.append(f"{thousands(state['found'])} more have designs")
     if state["rate"] > 0:
-        parts.append(f"{state['rate']:.3g} rows/s")
+        parts.append(f"{number_text(state['rate'], 3)} rows/s")
     if state["left"]:
         parts.append(f"{_duration(state['left'])} left")
     parts += [f"{thousands(state[key])} {key}" for key in ("infeasible", "bad", "failed") if state[key]]
@@ -116,8 +119,8 @@ def figures(state: Mapping[str, Any]) -> str:
 
 def _duration(seconds: float) -> str:
     if seconds < 100:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+        return f"{round(seconds)} s"
+    return f"{round(seconds / 60)} min" if seconds < 6000 else f"{number_text(seconds / 3600, 2)} h"
 
 
 WITHOUT = frozenset(STATES) - frozenset(WITH_DESIGNS)
@@ -159,10 +162,10 @@ def _print_rows(rows: Sequence[RowOutcome], counts: Mapping[str, int]) -> None:
     named = next(iter(rows[0].carried), "")
     objectives = list(dict.fromkeys(heading for row in rows for heading in row.objectives))
     shared = in_common([row.made for row in rows if row.made])
-    heads = ["line", *([named] if named else []), "state", *map(_heading, objectives), "parts of #1, or why not"]
+    heads = ["line", *([named] if named else []), "state", *map(column_heading, objectives), "parts of #1, or why not"]
     last = len(heads) - 1
     table = plain_table(*heads, right=(0, *range(last - len(objectives), last)), wide=last)
-    numbers = [alike([_number(row.objectives.get(heading)) for row in rows]) for heading in objectives]
+    numbers = [column_texts([_number(row.objectives.get(heading)) for row in rows]) for heading in objectives]
     for k, row in enumerate(rows):
         name = [shortened(row.carried.get(named, ""), NAME)] if named else []
         own = made_of({n: text for n, text in row.made.items() if n not in shared}) or "as all"
@@ -173,11 +176,6 @@ def _print_rows(rows: Sequence[RowOutcome], counts: Mapping[str, int]) -> None:
     if shared:
         print_wrapped(console, f"#1 of every row: {made_of(shared)}")
         console.print()
-
-
-def _heading(column: str) -> str:
-    name, unit = split_header(column)
-    return f"{words(name)} [{unit_text(unit or '-')}]".removesuffix(" []")
 
 
 def _number(cell: str | None) -> float | None:

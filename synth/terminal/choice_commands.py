@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from synth.csv_style import CsvStyle, csv_style
-from synth.errors import InputError
-from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
+from synth.errors import derived
+from synth.output_folder import EXPLANATION_TEXT, FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
 from synth.results.drawings import PLOT
 from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, Seed, TimeLimit
 from synth.terminal.session import (
+    HELPS,
     INFEASIBLE,
     STOPPED,
     blamed_on,
-    check_output,
     claim_output,
+    say,
     tell,
+    tell_not_kept,
     tell_readings,
     tell_written,
 )
@@ -36,7 +38,7 @@ def register(app: typer.Typer) -> None:
 
 def near_equals(
     source: FrontFolder,
-    folder: Folder,
+    folder: Folder = None,
     design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
     within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
     count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
@@ -47,10 +49,7 @@ def near_equals(
 ) -> None:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
     style = csv_style(csv, "--csv")
-    check_output(folder)
-    if folder.resolve() == source.resolve():
-        raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
-    claim_output(folder, NEAR_EQUALS)
+    claim_output(folder, NEAR_EQUALS, source=source)
     from synth.results.loading import load_front
     from synth.studies.near_optimal import near_equals as find
     from synth.terminal.choice_console import print_near_equals
@@ -61,10 +60,10 @@ def near_equals(
     front = load_front(source)
     with progress_display(quiet) as progress:
         found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
-    target = found.save(folder, style)
+    target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_near_equals(found, output())
-        tell_written(target, folder, sorted(found.files()))
+        tell_written(target, folder, [] if target is None else sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not found.designs:
@@ -73,7 +72,7 @@ def near_equals(
 
 def prices(
     source: FrontFolder,
-    folder: Folder,
+    folder: Folder = None,
     design: Annotated[
         list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
     ] = None,
@@ -86,6 +85,7 @@ def prices(
     """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
     style = csv_style(csv, "--csv")
     claim_output(folder, PRICES)
+    tell_not_kept(folder, quiet)
     from synth.results.loading import load_front
     from synth.studies.prices.run import prices as find
     from synth.terminal.choice_console import print_prices
@@ -100,10 +100,10 @@ def prices(
         except KeyboardInterrupt:
             tell("stopped before the first design was begun; nothing is written")
             raise typer.Exit(STOPPED) from None
-    target = found.save(folder, style)
+    target = None if folder is None else found.save(folder, style)
     if not quiet:
-        print_prices(found, front, output(), every)
-        tell_written(target, folder, sorted(found.files()))
+        print_prices(found, front, output(), every, folder is not None)
+        tell_written(target, folder, [] if target is None else sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
 
@@ -123,7 +123,7 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
     from synth.question.spec_keys import ASKED, SEARCHED
     from synth.studies.families.compare import compare
     from synth.tables.catalogs import Catalogs
-    from synth.terminal.choice_console import comparison_explanation, print_comparison
+    from synth.terminal.choice_console import comparison_explanation, how_long, print_comparison
     from synth.terminal.console import output, progress_display
 
     # Finished families are kept there until all are.
@@ -141,21 +141,26 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
             options=asked.options,
             progress=progress,
             finished=None if place is None else lambda label, front: front.save(place / label, csv),
+            serving=None if quiet else lambda labels: tell(how_long(labels, asked.time_limit)),
             **stated,
         )
-    texts = {**found.files(), **found.family_files()}
+    where = place if found.interrupted else folder
+    texts = {**found.files(where), **found.family_files(where)}
     if not found.designs and not found.interrupted:
-        texts["explanation.txt"] = comparison_explanation(found)
-    picture = found.svg() if plot else ""
+        told = derived(EXPLANATION_TEXT, lambda: comparison_explanation(found))
+        texts |= {} if told is None else {EXPLANATION_TEXT: told}
+    picture = derived(PLOT, found.svg) if plot else None
     if picture:
         texts[PLOT] = picture
     target = None
-    if folder is not None and place is not None:
-        target = save_result(place if found.interrupted else folder, csv.files(texts), FRONT, False)
+    if where is not None and place is not None:
+        target = save_result(where, csv.files(texts), FRONT, False)
         if place not in (target, folder):
             shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
     if not quiet:
         print_comparison(found, output(), every, plot)
+        if not found.designs:
+            say(f"{HELPS}: clutchsynth explain, with one of these families in the spec")
         folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]
         files = [name for name in sorted(texts) if "/" not in name and not name.startswith("design_")]
         files += [f"design_{d.rank:02d}.yaml" for d in found.designs[:1]]

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from synth.plain_text import alike, percent, plain_number, words
+from synth.plain_text import counted, words
 from synth.results.drawings import report
-from synth.robust.rate import told_of
+from synth.results.rating_tables import robust_sentence
 from synth.studies.prices.price_list import NOTHING
-from synth.terminal.console import explanation_text, plain_table, print_wrapped
+from synth.study_limits import COMPARING
+from synth.terminal.console import explanation_text, named_file, plain_table, print_wrapped
 from synth.terminal.plots import show_plot
+from synth.text.numbers import column_texts, percent, signed, typed_number
 from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:
@@ -32,25 +35,30 @@ def print_near_equals(found: NearEquals, console: Console) -> None:
     console.print()
     headings = [f"{words(n)} [{unit_text(frame.units[n])}]".removesuffix(" []") for n in names]
     table = plain_table("", *headings, "differences", right=range(1, len(names) + 1), wide=len(names) + 1)
-    columns = [alike([finite_from_si(d.values[n], frame.units[n], None) for d in (own, *found.designs)]) for n in names]
+    columns = [
+        column_texts([finite_from_si(d.values[n], frame.units[n], None) for d in (own, *found.designs)]) for n in names
+    ]
     table.add_row("#0", *(f"{cells[0]}{' ' * CHANGE}" for cells in columns), "the chosen design")
     for k, (design, change, rank) in enumerate(zip(found.designs, found.changes, found.ranks, strict=True), start=1):
-        moved = [f"({round(100 * change[n], 2) + 0.0:+.2f} %)" for n in names]  # and not -0.00
+        moved = [f"({signed(round(100 * change[n], 2))} %)" for n in names]
         values = [f"{cells[k]} {by:>{CHANGE - 1}}" for cells, by in zip(columns, moved, strict=True)]
         other = in_words(", ".join(found.differences[k - 1]), design.names)
         table.add_row(f"#{k}", *values, other if rank is None else f"design {rank} of the front: {other}")
     console.print(table)
     console.print()
     if found.interrupted:
-        console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
+        console.print(f"stopped: {found.interrupted}; what was found until then is shown")
     print_wrapped(console, found.sentence())
     if len(found.designs) < found.found:
         shown = f"shown are {len(found.designs)} that differ most from the chosen one and from each other"
         print_wrapped(console, shown)
 
 
-def print_prices(found: Prices, front: ParetoFront, console: Console, every: bool = False) -> None:
-    """Print what a per cent costs in each objective, the dearest first, and what costs nothing."""
+def print_prices(found: Prices, front: ParetoFront, console: Console, every: bool, kept: bool) -> None:
+    """Print what a per cent costs in each objective, the dearest first, and what costs nothing.
+
+    ``every``: of all designs; ``kept``: whether they are written as well.
+    """
     frame, size = found.frame, percent(found.step)
     shown = found.finished if every else found.finished[:1]
     named = front.designs[0].names
@@ -67,13 +75,13 @@ def print_prices(found: Prices, front: ParetoFront, console: Console, every: boo
             idle = sum(r.status == NOTHING for r in rows)
             if idle:
                 have = "requirement or limit has" if idle == 1 else "requirements and limits have"
-                console.print(f"{idle} more {have} no influence (prices.csv)")
+                console.print(f"{idle} more {have} no influence ({named_file('prices.csv', kept)})")
             for compared in dict.fromkeys(r.compared for r in rows if r.compared):
                 print_wrapped(console, f"other parts: {compared}" if "combinations" in compared else compared)
         console.print()
     if len(shown) < len(found.finished):
         more = len(found.finished) - len(shown)
-        console.print(f"{more} more design{'' if more == 1 else 's'} with --all, and in prices.csv")
+        console.print(f"{counted(more, 'more design')} with --all, and in {named_file('prices.csv', kept)}")
     up_and_down = f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}"
     print_wrapped(console, up_and_down)
     held = ["the other objectives are held"] if len(frame.objectives) > 1 else []
@@ -82,7 +90,8 @@ def print_prices(found: Prices, front: ParetoFront, console: Console, every: boo
         console.print("; ".join(held))
     if found.interrupted:
         done, asked = len(found.finished), len(found.asked)
-        console.print(f"stopped: {found.interrupted}; {done} of {asked} designs are kept, run again to go on")
+        state = "kept, run again to go on" if kept else "finished"
+        console.print(f"stopped: {found.interrupted}; {done} of {asked} designs are {state}")
 
 
 def _priced(row: Price) -> str:
@@ -94,7 +103,7 @@ def _dearness(row: Price) -> float:
 
 
 def _shown(price: float | None) -> str:
-    return "withheld" if price is None else f"{'+' if price > 0 else ''}{plain_number(price, 3)}"
+    return "withheld" if price is None else signed(price)
 
 
 def print_comparison(found: Comparison, console: Console, every: bool = False, plot: bool = False) -> None:
@@ -122,13 +131,13 @@ def print_comparison(found: Comparison, console: Console, every: bool = False, p
         print_wrapped(console, sentence)
     told = [d for d in found.designs if d.robust]
     if told:
-        console.print(told_of(told, told[0].frame.restated["robust"]["samples"]))
+        print_wrapped(console, robust_sentence(told))
         unrated = len(found.designs) - len(told)
         if unrated:
             designs = "1 design is" if unrated == 1 else f"{unrated} designs are"
             console.print(f"{designs} not rated: in the family nothing scatters")
     if found.interrupted:
-        console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
+        console.print(f"stopped: {found.interrupted}; what was found until then is shown")
     print_wrapped(console, found.sentence())
 
 
@@ -139,12 +148,27 @@ def _plain_common_front(found: Comparison, console: Console, every: bool) -> Non
     console.print(shown[names].to_string(index=False))
 
 
+def how_long(families: Sequence[str], time_limit: float | None) -> str:
+    """Time that a comparison takes, and what stops it."""
+    look, count = COMPARING.first_look, len(families)
+    if time_limit is not None and time_limit <= count * look:
+        spent = f"They share {typed_number(time_limit)} s"
+    else:
+        first = f"Each is searched for {typed_number(look)} s at first" + (
+            f", {typed_number(count * look)} s for all" if count > 1 else ""
+        )
+        end = "which may take minutes each" if time_limit is None else f"within {typed_number(time_limit)} s in all"
+        spent = f"{first}; what is not finished then is searched to the end, {end}"
+    stops = "Ctrl-C keeps what is found" + ("" if time_limit is not None else "; --time-limit ends it by itself")
+    who = "1 family serves" if count == 1 else f"{count} families serve"
+    return f"{who} this sheet: {', '.join(families)}. {spent}. {stops}."
+
+
 def comparison_explanation(found: Comparison) -> str:
     """Return in words why no family has a feasible design."""
     parts = []
     for outcome in found.outcomes:
-        told = (
-            explanation_text(outcome.front) if outcome.outcome == "infeasible" and outcome.front else outcome.sentence
-        )
+        explained = outcome.outcome in ("infeasible", "not_found")
+        told = explanation_text(outcome.front) if explained and outcome.front else outcome.sentence
         parts.append(f"{outcome.family} ({outcome.outcome})\n{told.rstrip()}\n")
     return "\n".join(parts)

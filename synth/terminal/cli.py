@@ -14,11 +14,12 @@ import typer
 
 from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
 from synth.csv_style import csv_style
-from synth.errors import InputError
+from synth.errors import DeclarationError, InputError, RefusedError, derived
 from synth.files import frame_csv
 from synth.interrupts import taken_alike
+from synth.notices import listening
 from synth.operating_system import reader_has_gone
-from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
+from synth.output_folder import EXPLANATION, EXPLANATION_TEXT, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import PLOT, report
@@ -35,6 +36,7 @@ from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
 from synth.terminal.options import (
     Csv,
+    Encoding,
     Family,
     Folder,
     FrontFolder,
@@ -46,11 +48,13 @@ from synth.terminal.options import (
     Seed,
     SpecFile,
     TimeLimit,
+    VisibleRows,
 )
 from synth.terminal.plots import show_plot
 from synth.terminal.session import (
     BAD_INPUT,
     DOES_NOT_HOLD,
+    HELPS,
     INFEASIBLE,
     INTERNAL,
     INTERRUPTED,
@@ -59,9 +63,12 @@ from synth.terminal.session import (
     as_csv,
     blamed_on,
     claim_output,
+    derived_told,
+    explaining,
     frame_files,
     objectives,
     one_command,
+    own_tables,
     pair,
     say,
     tell,
@@ -77,7 +84,8 @@ if TYPE_CHECKING:
 app = typer.Typer(
     name="clutchsynth",
     help="Design synthesis for clutches and shaft couplings: requirement in, ranked Pareto designs out.",
-    epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written), "
+    epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written; "
+    "report lacks an extra: the rest is), "
     "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved), "
     "5 what verify checked does not hold, 6 verify could neither prove it again nor refute it.",
     add_completion=True,
@@ -108,7 +116,7 @@ COMMANDS = {
 
 def _run() -> None:
     try:
-        with taken_alike(), one_command():
+        with taken_alike(), one_command(), derived_told(), listening(tell):
             app(prog_name="clutchsynth")
     except InputError as error:
         tell(" ".join(f"{error}{COMMANDS.get(error.expected, '')}".split()))
@@ -132,14 +140,18 @@ def _run() -> None:
 
 
 def _tell_stopped() -> NoReturn:
-    tell("stopped before all was done; what is finished is kept, the same command begins again or goes on")
+    tell("stopped before all was done; what is written stays, the same command begins again or goes on")
     sys.exit(STOPPED)
 
 
 def _give_up(error: Exception) -> NoReturn:
-    """Tell of a fault of the program itself."""
+    """Tell of a fault of the program itself, or of a family."""
     if os.environ.get("CLUTCHSYNTH_DEBUG") == "1":
         raise error
+    if isinstance(error, DeclarationError):
+        tell(str(error))
+        tell("this is a fault of the family, not of the input: whoever wrote the family can mend it")
+        sys.exit(INTERNAL)
     first = next(iter(str(error).splitlines()), "")
     tell(f"internal error, {type(error).__name__}: {first}")
     tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
@@ -171,16 +183,15 @@ def families(
     common: Annotated[bool, typer.Option("--common", help="List the requirements that several understand.")] = False,
 ) -> None:
     """List the design families."""
-    from synth.model.registry import families as names
-    from synth.model.registry import load
+    from synth.model.registry import every_family
 
     if common:
         choice_commands.show_common()
         return
-    listed = names()
+    listed = every_family()
     width = max((len(name) for name in listed), default=0)
-    for name in listed:
-        print(f"{name:{width}}  {load(name).title}")
+    for name, problem in listed.items():
+        print(f"{name:{width}}  {problem.title}")
 
 
 @app.command()
@@ -211,10 +222,7 @@ def describe(
 @app.command()
 def run(
     spec: SpecFile,
-    folder: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Folder for the results; without one nothing is written.", metavar="DIR"),
-    ] = None,
+    folder: Folder = None,
     points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
     gap: Gap = None,
     grid: Grid[bool | None] = None,
@@ -227,6 +235,8 @@ def run(
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
     ] = None,
     plot: Plot = False,
+    encoding: Encoding = None,
+    visible_rows: VisibleRows = False,
     csv: Csv = "en",
     quiet: Quiet = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Show what the search did as well.")] = False,
@@ -247,28 +257,37 @@ def run(
         objectives=objectives(objective or []),
     )
     must_be_a_question(asked)
-    if folder is not None:
-        claim_output(folder, FRONT)
-    elif quiet:
-        raise InputError("--quiet", True, "a folder for the results with --output, as nothing else would tell of them")
-    from synth.search.shared_code import begin_shared_code
-
-    begin_shared_code(asked.time_limit)  # a compiler works while all else is imported
+    asked = asked.merged(catalogs=own_tables(asked.catalogs, asked.folder, encoding, visible_rows))
+    claim_output(folder, FRONT)
     if asked.compares:
         if more is not None:
             raise InputError("--more", str(more), "a spec of one family")
         choice_commands.compare_families(asked, folder, every, quiet, plot, style)
         return
-    front = _synthesize(asked, quiet, begun, more)
-    files = front.files()
-    if front.explanation is not None:
-        files["explanation.txt"] = explanation_text(front)
-    picture = front.svg() if plot else ""
-    if picture:
-        files[PLOT] = picture
-    target = None if folder is None else save_result(folder, style.files(files), FRONT, bool(front.interrupted))
+    front = _synthesize(spec, asked, quiet, begun, more)
+    files: dict[str, str] = {}
+
+    def record(place: Path | None) -> dict[str, str]:
+        files.update(front.record_files(folder=place))
+        return style.files(files)
+
+    # The front is on the disk before anything is made from it.
+    target = None
+    if folder is None:
+        record(None)
+    else:
+        target = save_result(folder, record, FRONT, bool(front.interrupted))
+    made = front.derived_files(target)
+    told = derived(EXPLANATION_TEXT, lambda: explanation_text(front)) if front.explanation is not None else None
+    picture = derived(PLOT, front.svg) if plot else None
+    made |= {name: text for name, text in ((EXPLANATION_TEXT, told), (PLOT, picture)) if text}
+    if target is not None and made:
+        save_files(target, made)
+    files |= made
     if not quiet:
         _show(front, files, every, verbose, plot)
+        if not front.designs:
+            say(f"{HELPS}: {explaining(spec)}")
         tell_written(target, folder, _listed(files))
     if front.interrupted:
         raise typer.Exit(STOPPED)
@@ -279,9 +298,7 @@ def run(
 @app.command()
 def explain(
     spec: SpecFile,
-    folder: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Folder for explanation.csv and .json.", metavar="DIR")
-    ] = None,
+    folder: Folder = None,
     physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
     time_limit: TimeLimit = None,
     csv: Csv = "en",
@@ -296,8 +313,7 @@ def explain(
     asked = read_spec(spec).merged(time_limit=time_limit)
     must_be_a_question(asked)
     must_be_one_family(asked)
-    if folder is not None:
-        claim_output(folder, EXPLANATION)
+    claim_output(folder, EXPLANATION)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
         if not quiet:
@@ -318,7 +334,7 @@ def explain(
 @app.command()
 def check(
     design: DesignFile,
-    folder: Annotated[Path | None, typer.Option("--output", "-o", help="Folder for check.csv.", metavar="DIR")] = None,
+    folder: Folder = None,
     at: Annotated[
         list[str] | None,
         typer.Option("--at", help='Tell the state at an operating point, "speed=900 rpm".', metavar="NAME=VALUE"),
@@ -333,8 +349,7 @@ def check(
     style = csv_style(csv, "--csv")
     asked = read_spec(design)
     must_be_a_design(asked)
-    if folder is not None:
-        claim_output(folder)
+    claim_output(folder)
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
         tell_readings(catalogs)
@@ -361,7 +376,7 @@ def check(
 @app.command()
 def simulate(
     design: DesignFile,
-    folder: Folder,
+    folder: Folder = None,
     setting: Annotated[
         list[str] | None,
         typer.Option("--set", help="A setting of the simulation, name=value; repeat it.", metavar="NAME=VALUE"),
@@ -386,10 +401,11 @@ def simulate(
     tell_readings(catalogs)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
-    files = frame_files(frames)
-    if len(opinion):
-        files["second_opinion.csv"] = as_csv(opinion)
-    save_files(folder, style.files(files))
+    files = {} if folder is None else frame_files(frames)
+    if folder is not None:
+        if len(opinion):
+            files["second_opinion.csv"] = as_csv(opinion)
+        save_files(folder, style.files(files))
     print_simulation(result, frames, opinion, output())
     tell_written(folder, folder, sorted(files))
 
@@ -400,13 +416,14 @@ def curves(
     spec: Annotated[
         Path, typer.Argument(help="A spec, or a design: a spec with values and parts.", metavar="SPEC.yaml")
     ],
-    folder: Folder,
+    folder: Folder = None,
     csv: Csv = "en",
 ) -> None:
     """Draw the curves of a family for a spec, or for a given design."""
     from synth.analysis.hooks import curves as curves_of
     from synth.question.catalogs import catalogs_for
     from synth.question.spec import read_spec
+    from synth.terminal.console import output, print_curves
 
     style = csv_style(csv, "--csv")
     asked = read_spec(spec)
@@ -423,10 +440,13 @@ def curves(
             problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
         tell_readings(catalogs)
-    files = frame_files(frames)
-    save_files(folder, style.files(files))
-    for frame in frames.values():
-        print(frame.attrs["title"])
+    files = {} if folder is None else frame_files(frames)
+    if folder is None:
+        print_curves(frames, output())
+    else:
+        save_files(folder, style.files(files))
+        for frame in frames.values():
+            print(frame.attrs["title"])
     tell_written(folder, folder, sorted(files))
 
 
@@ -473,7 +493,7 @@ def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
     return load(family, **options)
 
 
-def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> ParetoFront:
+def _synthesize(spec: Path, asked: Spec, quiet: bool, begun: float, more: Path | None) -> ParetoFront:
     """Search the designs for a spec; the time limit counts from ``begun``, and ``more`` is where to go on from."""
     from synth.results.loading import load_front
     from synth.search.improvement import improve_for
@@ -490,6 +510,9 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
             if given is not None:
                 return improve_for(given, request, settings, "--more", progress)
             return find_front(request, settings, progress)
+        except RefusedError as refusal:
+            right = f"{refusal.expected} (what would help: {explaining(spec)})"
+            raise InputError(refusal.field, refusal.value, right, refusal.path) from refusal
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None
@@ -507,7 +530,7 @@ def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bo
     if plot:
         console.print()
         show_plot(front.designs, front.frame.objectives, console)
-    explanation = files.get("explanation.txt", "")
+    explanation = files.get(EXPLANATION_TEXT, "")
     if "robust" in front.statistics and (front.designs or not explanation):
         from synth.terminal.robust_console import print_robust
 

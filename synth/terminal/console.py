@@ -8,7 +8,7 @@ import os
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -20,13 +20,14 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
+from synth.feasibility import most_used
 from synth.files import csv_text
 from synth.margins import MARGINS
-from synth.plain_text import PlainStream, percent, plain_number, printable, thousands, words, wrapped
+from synth.plain_text import PlainStream, printable, words, wrapped
 from synth.results import Design, ParetoFront
-from synth.results.certificate import none_of
 from synth.results.least_infeasible import LeastInfeasible
-from synth.units import format_quantity, from_si, in_words, quantity_text, split_header, unit_text
+from synth.text.numbers import FULL_DIGITS, number_text, percent, thousands, used_share
+from synth.units import from_si, in_words, miss_text, quantity_text, split_header, unit_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,6 +129,11 @@ def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = No
             ratio=1 if k == wide else None,
         )
     return table
+
+
+def named_file(name: str, kept: bool) -> str:
+    """Name of a file that has more than the screen, with what would write it where it is not kept."""
+    return name if kept else f"{name} with -o DIR"
 
 
 def in_common(made: Sequence[Mapping[str, str]]) -> dict[str, str]:
@@ -248,7 +254,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     if kind in ("setting", "point", "option", "derived", "step", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
-    bounds = [plain_number(x, 6) for x in (low, high) if not math.isnan(x)]
+    bounds = [number_text(x, FULL_DIGITS) for x in (low, high) if not math.isnan(x)]
     if len(bounds) == 2:
         span = " .. ".join(bounds)
     else:
@@ -261,7 +267,7 @@ def _range(row: Mapping[Any, Any]) -> str:
         return f"optional  {span}"
     if default is None:
         return f"needed  {span}"
-    return f"{plain_number(default, 6)}  {span}" if isinstance(default, float) else f"(see right)  {span}"
+    return f"{number_text(default, FULL_DIGITS)}  {span}" if isinstance(default, float) else f"(see right)  {span}"
 
 
 def _meaning(row: Mapping[Any, Any]) -> str:
@@ -311,9 +317,9 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     if design.violated:
         print_wrapped(console, f"violated: {', '.join(map(words, design.violated))}")
         return
-    used = sorted(((u, n) for n, u in design.utilisation.items() if u is not None), key=lambda x: (-x[0], x[1]))
+    used = most_used(design.utilisation)[:NEAREST]
     if used:
-        nearest = ", ".join(f"{words(name)} ({percent(share)} used)" for share, name in used[:NEAREST])
+        nearest = ", ".join(f"{words(name)} ({used_share(design.utilisation[name] or 0.0)} used)" for name in used)
         print_wrapped(console, f"nearest to their limits: {nearest}")
     console.print(f"all {sum(s == 'ok' for s in states.values())} limits that apply hold")
 
@@ -349,7 +355,7 @@ def _limits(design: Design, states: Mapping[str, str]) -> Table:
     for name, state in states.items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
-        shown_use = "" if used is None else percent(used)
+        shown_use = "" if used is None else used_share(used)
         style = "bold red" if state == "VIOLATED" else ""
         table.add_row(words(name), value, SIGNS[design.frame.limit_senses[name]], limit, shown_use, Text(state, style))
     return table
@@ -383,7 +389,7 @@ def print_state(found: pd.DataFrame, point: str, console: Console) -> None:
 def _limit_side(design: Design, name: str, side: int) -> str:
     si = design.limits[name][side]
     digits = CLOSE_CALL if name in design.violated else 4
-    return quantity_text(si, design.frame.limit_units[name], digits) if math.isfinite(si) else "-"
+    return quantity_text(si, design.frame.limit_units[name], digits)
 
 
 def _limit_states(design: Design) -> dict[str, str]:
@@ -408,7 +414,7 @@ def print_simulation(
         console.print(frame.attrs["title"])
         unit = split_header(str(frame.attrs.get("x", frame.columns[0])))[1] or ""
         marks = [mark for mark in frame.attrs.get("marks", ()) if mark.get("label")]
-        events = [f"{mark['label']} {plain_number(mark['x'])} {unit}" for mark in marks]
+        events = [f"{mark['label']} {number_text(mark['x'])} {unit}" for mark in marks]
         if events:
             console.print(f"  {', '.join(events)}")
     if len(opinion):
@@ -420,7 +426,7 @@ def print_simulation(
                 relative = row["difference"] = 0.0  # rounding only
             numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
             unit = unit_text(row["unit"])
-            shown = [f"{plain_number(x)} {unit}".rstrip() if math.isfinite(x) else "does not exist" for x in numbers]
+            shown = [f"{number_text(x)} {unit}".rstrip() if math.isfinite(x) else "does not exist" for x in numbers]
             table.add_row(words(row["quantity"]), *shown, percent(relative) if math.isfinite(relative) else "")
         console.print(table)
     if design.violated:
@@ -428,6 +434,34 @@ def print_simulation(
         listed = ", ".join(map(words, design.violated))
         print_wrapped(console, f"limits violated: {listed} (clutchsynth check lists them)")
     console.print()
+
+
+SAMPLED = 5  # points of a curve that a screen shows
+
+
+def print_curves(frames: Mapping[str, pd.DataFrame], console: Console) -> None:
+    """Print curves at a few points each, from the first to the last."""
+    for frame in frames.values():
+        console.print(frame.attrs["title"])
+        last = len(frame) - 1
+        shown = frame.iloc[sorted({round(k * last / (SAMPLED - 1)) for k in range(SAMPLED)})] if len(frame) else frame
+        along = str(frame.attrs.get("x", frame.columns[0]))
+        table = plain_table(column_heading(along), *_curve_cells(shown[along]), right=range(1, len(shown) + 1))
+        for column in frame.columns:
+            if column != along:
+                table.add_row(column_heading(str(column)), *_curve_cells(shown[column]))
+        console.print(table)
+        console.print()
+
+
+def column_heading(column: str) -> str:
+    """Name and unit of a column of a file as screens write them."""
+    name, unit = split_header(column)
+    return f"{words(name)} [{unit_text(unit or '-')}]".removesuffix(" []")
+
+
+def _curve_cells(values: Iterable[Any]) -> list[str]:
+    return [number_text(x) if isinstance(x, (int, float)) else str(x) for x in values]
 
 
 def check_table(design: Design, details: Sequence[Mapping[Any, Any]]) -> str:
@@ -468,13 +502,14 @@ def explanation_text(front: ParetoFront, width: int = WIDTH) -> str:
     explanation = front.explanation or LeastInfeasible()
     buffer = io.StringIO()
     console = console_on(buffer, width)
-    console.print(explanation.get("message", "No design is feasible."))
+    console.print(explanation.headline)
     conflicts = explanation.get("conflicts") or []
     if conflicts:
         table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3), wide=0)
         for row in conflicts:
-            shown = [format_quantity(row[key], row["unit"]) for key in ("value", "limit_value")]
-            table.add_row(row["limit"], *shown, format_quantity(row["missed_by"], "%", 3))
+            sides = row["value"], row["limit_value"]
+            shown = [quantity_text(side, row["unit"], FULL_DIGITS) for side in sides]
+            table.add_row(row["limit"], *shown, miss_text(*sides, row["unit"]))
         console.print(table)
     nearest = [f"{n} {value}" for n, value in (explanation.get("nearest") or {}).items()]
     nearest += [f"{slot} {designation}" for slot, designation in (explanation.get("parts") or {}).items()]
@@ -495,16 +530,12 @@ def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -
     """
     console.print()
     if front.interrupted:
-        kept = "the designs found so far are shown and saved" if front.designs else "no design was found until then"
+        kept = "the designs found so far are shown" if front.designs else "no design was found until then"
         print_wrapped(console, f"stopped: {front.interrupted}; {kept}")
     if front.designs or front.interrupted:
         print_wrapped(console, front.certificate.sentence())
-    elif front.certificate.kind == "global":
-        print_wrapped(console, f"proven: {none_of(front.certificate.combinations)} of parts and counts is feasible")
     else:
-        print_wrapped(
-            console, "not proven: bounds could not exclude every combination, solving found none that is feasible"
-        )
+        print_wrapped(console, front.certificate.of_no_design())
     few = len(front.designs) < len(front.frame.objectives) and not front.complete
     if front.designs and few:
         best = [words(name) for name in front.frame.objectives][: len(front.designs)]
@@ -570,7 +601,7 @@ def _brief(value: Any) -> str:
         return {True: "yes", False: "no", None: "-"}[value]
     if isinstance(value, int):
         return thousands(value)
-    return plain_number(value, 3) if isinstance(value, float) else str(value)
+    return number_text(value, 3) if isinstance(value, float) else str(value)
 
 
 @contextmanager
@@ -606,8 +637,8 @@ def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
         if time.monotonic() - shown_at < (SOON if stage != shown_stage else LATER):
             return
         shown_at, shown_stage = time.monotonic(), stage
-        percent = 100 * float(state.get("done") or 0.0)
-        print(f"{stage}: {percent:.0f} %, {_figures(state)}", file=sys.stderr, flush=True)
+        done = percent(round(float(state.get("done") or 0.0), 2))
+        print(f"{stage}: {done}, {_figures(state)}", file=sys.stderr, flush=True)
 
     return show
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from synth.errors import InputError
 from synth.terminal.batch_commands import Database
 from synth.terminal.options import Quiet
-from synth.terminal.session import INFEASIBLE, check_output, tell_readings, tell_written
+from synth.terminal.session import BAD_INPUT, INFEASIBLE, check_output, tell, tell_readings, tell_written
+
+if TYPE_CHECKING:
+    from synth.analysis.reporting import WrittenReport
 
 FULL = 5  # designs that a report tells in full unless it is told otherwise
 FILES = (".yaml", ".yml", ".json")
@@ -98,7 +101,7 @@ def report(
         if length != "normal":
             raise InputError("--length", length, "the folder of a front with it: a batch has no sheets")
         target = folder or source
-        place, names, notes, feasible = _of_batch(source, target, row, asked, database)
+        written = _of_batch(source, target, row, asked, database)
     elif row is not None:
         raise InputError("--row", row, "the folder of a batch with it")
     elif source.suffix in FILES and source.is_file() and source.name != "front.json":
@@ -106,16 +109,17 @@ def report(
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent
-        place, names, notes, feasible = _of_design(source, target, asked, quiet)
+        written = _of_design(source, target, asked, quiet)
     else:
-        place, target, names, notes, feasible = _of_front(
-            source, folder, design or "1", FULL if full is None else full, asked
-        )
-    for note in notes:
-        typer.echo(f"clutchsynth: {note}", err=True)
+        target = folder or (source if source.is_dir() else source.parent)
+        written = _of_front(source, target, design or "1", FULL if full is None else full, asked)
     if not quiet:
-        tell_written(place, target, names)
-    if not feasible:
+        tell_written(written.folder, target, written.files)
+    for note in (*written.notes, *map(str, written.lacking)):
+        tell(note)
+    if written.lacking:
+        raise typer.Exit(BAD_INPUT)
+    if not written.feasible:
         raise typer.Exit(INFEASIBLE)
 
 
@@ -151,39 +155,30 @@ def _refuse(flags: Sequence[tuple[str, Any]], right: str, but: Sequence[str]) ->
 
 def _of_batch(
     source: Path, target: Path, row: str | None, asked: dict[str, Any], database: str | None
-) -> tuple[Path, list[str], list[str], bool]:
-    """Write the report of a batch; return place, files, notes, and whether some row has designs."""
+) -> WrittenReport:
+    """Write the report of a batch."""
     from synth.jobs.batch_report import BatchReportOptions, report_batch
 
     how = BatchReportOptions.read(row=row, **{key: value for key, value in asked.items() if key != "length"})
     return report_batch(source, target, how, database)
 
 
-def _of_front(
-    source: Path, folder: Path | None, design: str, full: int, asked: dict[str, Any]
-) -> tuple[Path, Path, list[str], list[str], bool]:
-    """Write the report of a front; return place, folder, files, notes, and whether it has designs."""
+def _of_front(source: Path, target: Path, design: str, full: int, asked: dict[str, Any]) -> WrittenReport:
+    """Write the report of a front, or of several families."""
     from synth.analysis.reporting import report as write
     from synth.analysis.reporting import report_comparison
     from synth.results.loading import COMPARISON, load_front
 
     chosen = [word.strip() for word in design.split(",")]
-    target = folder or (source if source.is_dir() else source.parent)
     if (source / COMPARISON).is_file():
-        place, names, notes, feasible = report_comparison(source, target, design=chosen, full=full, **asked)
-        return place, target, names, notes, feasible
-    front = load_front(source)
-    place, names, notes = write(front, target, design=chosen, full=full, **asked)
-    return place, target, names, notes, bool(front.designs)
+        return report_comparison(source, target, design=chosen, full=full, **asked)
+    return write(load_front(source), target, design=chosen, full=full, **asked)
 
 
-def _of_design(
-    source: Path, target: Path, asked: dict[str, Any], quiet: bool
-) -> tuple[Path, list[str], list[str], bool]:
-    """Write the sheet of a design that stands in a file; return place, files, notes, and whether it is feasible."""
+def _of_design(source: Path, target: Path, asked: dict[str, Any], quiet: bool) -> WrittenReport:
+    """Write the sheet of a design that stands in a file."""
     from synth.analysis.design_spec import given_design, must_be_a_design
     from synth.analysis.reporting import report_design
-    from synth.feasibility import Status
     from synth.question.instance import Instance
     from synth.question.request import Request
     from synth.question.spec import read_spec
@@ -194,5 +189,4 @@ def _of_design(
     if not quiet:
         tell_readings(catalogs)
     instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)
-    place, names, notes = report_design(design, instance, target, name=source.stem, **asked)
-    return place, names, notes, design.status is not Status.INFEASIBLE
+    return report_design(design, instance, target, name=source.stem, **asked)

@@ -15,7 +15,6 @@ from synth.terminal.session import (
     INFEASIBLE,
     STOPPED,
     blamed_on,
-    check_output,
     claim_output,
     pair,
     tell_readings,
@@ -35,7 +34,7 @@ def register(app: typer.Typer) -> None:
 
 def rate(
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
-    folder: Folder,
+    folder: Folder = None,
     over: Annotated[
         list[str] | None,
         typer.Option(
@@ -57,10 +56,7 @@ def rate(
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise InputError("--over", name, "each thing once")
-    check_output(folder)
-    if folder.resolve() == source.resolve():
-        raise InputError("--output", str(folder), "another folder than that of the front")
-    claim_output(folder, RATING)
+    claim_output(folder, RATING, source=source)
     from synth.robust.rate import rate as rate_designs
     from synth.terminal.console import output, progress_display
     from synth.terminal.robust_console import print_ratings
@@ -83,10 +79,10 @@ def rate(
             progress=progress,
             time_limit=seconds,
         )
-    target = found.save(folder, style)
+    target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_ratings(found, output())
-        tell_written(target, folder, sorted(found.files()))
+        tell_written(target, folder, [] if target is None else sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not any(d.robust["holds"] for d in found.designs):

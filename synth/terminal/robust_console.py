@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from synth.question.uncertainty import LIMITS
 from synth.results import Design
-from synth.results.rating_tables import shown_at
-from synth.robust.rate import taken_off, told_of
-from synth.terminal.console import plain_table
+from synth.results.rating_tables import robust_sentence, shown_at, taken_off, yield_text
+from synth.terminal.console import plain_table, print_wrapped
+from synth.text.numbers import used_share
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +22,7 @@ SHOWN = 20
 
 
 def print_ratings(found: Ratings, console: Console) -> None:
-    """Print a line per design: whether it keeps its limits, its yield, its worst limit and where that is."""
+    """Print a line per design: whether it is shown to keep its limits, its yield, its worst limit and where that is."""
     if found.designs:
         frame = found.designs[0].frame
         console.print(f"{frame.title} ({frame.family}): {_scatter(found)}")
@@ -31,7 +31,7 @@ def print_ratings(found: Ratings, console: Console) -> None:
         console.print()
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; {found.missing} designs are not rated")
-    console.print(found.sentence())
+    print_wrapped(console, found.sentence())
 
 
 def print_robust(front: ParetoFront, console: Console) -> None:
@@ -41,7 +41,7 @@ def print_robust(front: ParetoFront, console: Console) -> None:
     if front.designs:
         print_designs(front.designs, console)
         console.print()
-        console.print(told_of(front.designs, told["samples"]))
+        print_wrapped(console, robust_sentence(front.designs))
     if gone:
         console.print(taken_off(gone))
     if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
@@ -54,32 +54,20 @@ def print_designs(designs: Sequence[Design], console: Console) -> None:
     table = plain_table("", "robust", "proof", "yield", "interval", "used", "worst limit", right=(3, 5), wide=6)
     for design in rated[:SHOWN]:
         told = design.robust
-        used = "" if told["worst_utilisation"] is None else f"{float(told['worst_utilisation']):.3f}"
+        used = "" if told["worst_utilisation"] is None else used_share(float(told["worst_utilisation"]))
         where = shown_at(told["worst_at"], told["units"])
         table.add_row(
             f"#{design.rank}" if design.rank else "",
-            "yes" if told["holds"] else "no",
+            told["verdict"],
             told["proof"],
-            percent(told["yield"]),
-            f"{percent(told['yield_low'])} .. {percent(told['yield_high'])}",
+            yield_text(told["yield"]),
+            f"{yield_text(told['yield_low'])} .. {yield_text(told['yield_high'])}",
             used,
             f"{told['worst_limit']}{' at ' if where else ''}{where}",
         )
     console.print(table)
     if len(rated) > SHOWN:
-        console.print(f"{len(rated) - SHOWN} more in the files")
-
-
-def percent(share: float) -> str:
-    """Return a share in per cent; what is not all is never shown as all.
-
-    Examples
-    --------
-    >>> percent(1.0), percent(0.99999), percent(0.4846)
-    ('100 %', '99.99 %', '48.46 %')
-    """
-    shown = int(share * 1e4) / 100 if share < 1 else 100
-    return f"{shown:.4g} %"
+        console.print(f"{len(rated) - SHOWN} more in the files that -o writes")
 
 
 def _scatter(found: Ratings) -> str:

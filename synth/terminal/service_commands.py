@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from synth.errors import InputError
+from synth.operating_system import private_folder
 from synth.terminal.batch_commands import jobs_app
 from synth.terminal.session import INTERNAL, tell
+from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
     from synth.jobs.accounts import TenantLimits, TokenEntry
@@ -170,7 +172,7 @@ def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase 
 
 
 def _line(token: TokenEntry) -> tuple[str, ...]:
-    from synth.jobs.accounts import BEGINNING
+    from synth.jobs.log_lines import BEGINNING
 
     return (
         str(token.id),
@@ -211,7 +213,7 @@ def _print_table(rows: Sequence[Sequence[str]]) -> None:
 def _place(settings: ServiceSettings) -> str:
     """Return the address of a database that may be made."""
     if not settings.database:
-        settings.data.mkdir(parents=True, exist_ok=True)
+        private_folder(settings.data)
     return settings.database_url
 
 
@@ -270,7 +272,7 @@ def _most(name: str, text: str) -> float | None:
 
 
 def _limits(found: TenantLimits) -> list[str]:
-    return [NO_LIMIT if (most := getattr(found, name)) is None else f"{most:g}" for name in LIMITS]
+    return [NO_LIMIT if (most := getattr(found, name)) is None else typed_number(most) for name in LIMITS]
 
 
 # ---- the database ---------------------------------------------------------------------------------------------------
@@ -279,14 +281,16 @@ def _limits(found: TenantLimits) -> list[str]:
 @database_app.command(name="check")
 def check_database(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Look a database over; nothing is changed."""
-    from synth.jobs.database import HEAD
+    from synth.jobs.database import HEAD, way_back
     from synth.jobs.maintenance import examine
 
     with _settings(config, data, database) as settings:
         found = examine(settings.database_url)
     for fault in found.faults:
         print(f"damaged: {fault}")
-    if not found.current:
+    if found.faults:
+        print(way_back(found.file))
+    elif not found.current:
         print(f"tables of version {found.version or 'none'}; this program uses {HEAD}: clutchsynth database migrate")
     if found.faults or not found.current:
         raise typer.Exit(INTERNAL)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TextIO
 
-from synth.errors import InputError
+from synth.errors import DerivedFileWarning, InputError
 from synth.files import frame_csv
 from synth.output_folder import ResultKind, check_kind, check_not_held, claimed
 from synth.plain_text import wrapped
 from synth.results.drawings import report
+from synth.tables.table_file import table_file
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,11 +37,48 @@ def tell(sentence: str) -> None:
     print("\n".join(lines), file=sys.stderr)
 
 
+@contextmanager
+def derived_told() -> Iterator[None]:
+    """Tell in one sentence each which files could not be made from a result; other warnings are shown as ever."""
+    told: set[str] = set()
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if not issubclass(category, DerivedFileWarning):
+                others(message, category, filename, lineno, file, line)
+            elif str(message) not in told:
+                told.add(str(message))
+                tell(str(message))
+
+        warnings.simplefilter("always", DerivedFileWarning)
+        warnings.showwarning = show
+        yield
+
+
 def tell_readings(tables: Catalogs) -> None:
-    """Say how files with own part tables were read that are not written as is expected."""
+    """Say how files with own part tables were read that are not written as is expected, and what differs in them."""
+    for sentence in tables.differences():
+        tell(sentence)
     for sentence in tables.readings():
         name, _, how = sentence.partition(": ")
         tell(f"read as {how}: {name}")
+
+
+def own_tables(catalogs: Any, base: Path, encoding: str | None, visible: bool) -> Any:
+    """Return own tables, as flags or a spec name them, with how other flags say that their files are read."""
+    if catalogs is None or not (encoding or visible):
+        return catalogs
+    from synth.tables.catalogs import read_as_stated  # NumPy comes with it; --help does without
+
+    return read_as_stated(catalogs, base, encoding, visible)
 
 
 def pair(flag: str, text: str) -> tuple[str, str]:
@@ -90,6 +130,14 @@ def tell_written(target: Path | None, folder: Path | None, files: Iterable[str])
         say(f"the earlier result in {folder} stays as it was, as this one is not finished")
 
 
+HELPS = "which limits exclude each other, and what would help"
+
+
+def explaining(spec: Path) -> str:
+    """Return the command that tells why nothing is feasible, and what would help."""
+    return f"clutchsynth explain {shlex.quote(str(spec))}"
+
+
 def say(sentence: str) -> None:
     """Print a sentence on lines no wider than the terminal; names of files stay whole."""
     from synth.terminal.console import output
@@ -117,22 +165,45 @@ def one_command() -> Iterator[None]:
         yield
 
 
-def claim_output(folder: Path, kind: ResultKind | None = None, job: str = "") -> None:
+def claim_output(
+    folder: Path | None, kind: ResultKind | None = None, job: str = "", source: Path | None = None
+) -> None:
     """Refuse a folder that cannot be written before the search, not after it; keep others out of it from now on.
 
     Parameters
     ----------
-    folder : Path
+    folder : Path, optional
+        Without one nothing will be written.
     kind : ResultKind, optional
         What is written, where other commands have files of the same names.
     job : str
         The name of a job that several processes may work at.
+    source : Path, optional
+        The folder that is read, where its files would be lost.
     """
+    if folder is None:
+        return
     check_output(folder)
+    if source is not None and folder.resolve() == source.resolve():
+        raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
     if kind is not None:
         check_kind(folder, kind)
         check_not_held(folder, kind)
     _for_this_command.enter_context(claimed(folder, job))
+
+
+def tell_not_kept(folder: Path | None, quiet: bool) -> None:
+    """Say of what goes on from its folder that without one it cannot, before time is spent."""
+    if folder is None and not quiet:
+        tell("without -o DIR nothing is kept: if this is stopped, the same command begins anew")
+
+
+def rows_folder(rows: Path, folder: Path | None) -> Path:
+    """Return the folder for what becomes of the rows of a table, which are worked off in it: by default beside it."""
+    if folder is not None:
+        return folder
+    file = table_file(rows).path
+    return file.with_name(f"{file.stem}_batch")
 
 
 def check_output(folder: Path) -> None:

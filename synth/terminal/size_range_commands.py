@@ -8,12 +8,12 @@ from typing import Annotated
 import typer
 
 from synth.csv_style import csv_style
-from synth.errors import InputError
 from synth.output_folder import SIZE_RANGE, save_result
 from synth.results.drawings import report
+from synth.tables.table_file import read_as
 from synth.terminal.batch_commands import Database, Workers, batch_job, finish
-from synth.terminal.options import Csv, Headings, Quiet, RowFamily, RowPoints
-from synth.terminal.session import STOPPED, claim_output, tell_written
+from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowFamily, RowPoints, VisibleRows
+from synth.terminal.session import STOPPED, claim_output, rows_folder, tell_written
 
 
 def register(app: typer.Typer) -> None:
@@ -41,13 +41,16 @@ def size_range(
     gap: Annotated[float, typer.Option(help="How far from proven the choice may be, as a fraction.")] = 1e-3,
     time_limit: Annotated[str, typer.Option(help="Time for choosing, in seconds or such as '2 min'.")] = "60",
     folder: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Folder for the results; by default DIR.", metavar="DIR")
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for the results; by default DIR or ROWS_batch.", metavar="DIR"),
     ] = None,
     family: RowFamily = None,
     mapping: Headings = None,
     points: RowPoints = None,
     workers: Workers = None,
     database: Database = None,
+    encoding: Encoding = None,
+    visible_rows: VisibleRows = False,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -59,15 +62,15 @@ def size_range(
     seconds = parse_quantity(time_limit, "s", "--time-limit")
     job_id = None
     if not source.is_dir():
-        if folder is None:
-            raise InputError("--output", None, "a folder for the batch and the size range, for example -o out/")
+        place = rows_folder(source, folder)
         asked = None if objective is None else [objective]
-        job = batch_job(source, folder, family, mapping, points, None, True, 0, None, asked, None, database, style)
+        rows = Path(read_as(str(source), encoding, visible_rows))
+        job = batch_job(rows, place, family, mapping, points, None, True, 0, None, asked, None, database, style)
         job_id = job.id
-        code = finish(lambda: job, workers, None, quiet)
+        code = finish(lambda: job, workers, None, quiet, named=folder is not None)
         if code == STOPPED:
             raise typer.Exit(code)
-        source = folder
+        source = place
     target = source if folder is None else folder
     claim_output(target)
     found = choose(

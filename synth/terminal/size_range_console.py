@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import counted, percent, plain_number
+from synth.plain_text import counted
 from synth.terminal.console import output, plain_table
+from synth.text.numbers import gap_text, number_text
 
 if TYPE_CHECKING:
     from synth.variants.size_range import SizeRange
@@ -15,8 +16,8 @@ def print_size_range(found: SizeRange) -> None:
     """Print the variants of a size range, and how good it is."""
     rows = counted(found.statistics["rows_served"], "row")
     print(f"{counted(len(found.variants), 'variant')} for {rows}")
-    excess = f"{plain_number(found.cost, 6)}{'' if found.unit == '-' else f' {found.unit}'}"
-    print(f"total excess of {found.objective} over each row's own best: {excess}, proven to {percent(found.gap)}")
+    excess = f"{number_text(found.cost)}{'' if found.unit == '-' else f' {found.unit}'}"
+    print(f"total excess of {found.objective} over each row's own best: {excess}, proven to {gap_text(found.gap)}")
     fewest = "the fewest that serve all" if found.fewest_proven else "the fewest found that serve all"
     print(f"{fewest}: {found.fewest}")
     for family, names in found.taken_from_row.items():
@@ -33,7 +34,7 @@ def print_size_range(found: SizeRange) -> None:
 
 
 def _figure(value: Any) -> str:
-    return plain_number(value, 6) if isinstance(value, float) else str(value)
+    return number_text(value) if isinstance(value, float) else str(value)
 
 
 def _short(heading: str, value: Any) -> str:

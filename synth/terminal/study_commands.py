@@ -19,6 +19,7 @@ from synth.terminal.session import (
     claim_output,
     objectives,
     tell,
+    tell_not_kept,
     tell_readings,
     tell_written,
 )
@@ -43,7 +44,7 @@ def whatif(
             metavar="TEXT",
         ),
     ],
-    folder: Folder,
+    folder: Folder = None,
     points: Annotated[
         int | None, typer.Option(help="At most this many designs per step; 3 unless the spec says otherwise.")
     ] = None,
@@ -77,23 +78,26 @@ def whatif(
     must_be_a_question(asked)
     must_be_one_family(asked)
     claim_output(folder, STUDY)
+    tell_not_kept(folder, quiet)
     study = _study(asked, vary, folder, breaks, quiet)
-    target = study.save(folder, style)
+    target = None if folder is None else study.save(folder, style)
     if not quiet:
         from synth.studies.study_store import STEPS
         from synth.terminal.console import output
         from synth.terminal.study_console import print_study
 
-        print_study(study, output())
-        kept = [f"{STEPS}/"] if (target / STEPS).is_dir() else []  # not before the first step is finished
-        tell_written(target, folder, [*sorted(study.files()), *kept])
+        print_study(study, output(), folder is not None)
+        files = [] if target is None else sorted(study.files())
+        if target is not None and (target / STEPS).is_dir():  # not before the first step is finished
+            files.append(f"{STEPS}/")
+        tell_written(target, folder, files)
     if study.interrupted:
         raise typer.Exit(STOPPED)
     if not study.feasible:
         raise typer.Exit(INFEASIBLE)
 
 
-def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool) -> Study:
+def _study(asked: Spec, vary: list[str], folder: Path | None, breaks: bool, quiet: bool) -> Study:
     from synth.studies.whatif.run import POINTS, study_of
     from synth.studies.whatif.vary import split_text
     from synth.terminal.console import progress_display

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from synth.plain_text import alike, words
+from synth.plain_text import words
 from synth.question.uncertainty import RATE
-from synth.robust.rate import taken_off, told_of
+from synth.results.rating_tables import robust_sentence, taken_off, yield_text
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
-from synth.terminal.console import in_common, made_of, plain_table, print_wrapped
-from synth.terminal.robust_console import percent
+from synth.terminal.console import in_common, made_of, named_file, plain_table, print_wrapped
+from synth.text.numbers import column_texts
 from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:
@@ -25,8 +25,11 @@ MOST_BREAKS = 20
 MOST_REASONS, MOST_PLACES = 8, 4
 
 
-def print_study(study: Study, console: Console) -> None:
-    """Print a line per step with the best of each objective, the break points, and what is proven."""
+def print_study(study: Study, console: Console, kept: bool) -> None:
+    """Print a line per step with the best of each objective, the break points, and what is proven.
+
+    ``kept``: whether it is written as well.
+    """
     title = study.fronts[0].frame.title if study.fronts else ""
     varied = " and ".join(words(x.label) for x in study.varied)
     console.print(f"{title}{': ' if title else ''}{varied}, {len(study.steps)} steps")
@@ -36,21 +39,22 @@ def print_study(study: Study, console: Console) -> None:
     console.print()
     console.print(_steps(study))
     if len(study.steps) > MOST_ROWS:
-        console.print(f"{len(study.steps) - MOST_ROWS} more in whatif.csv")
+        console.print(f"{len(study.steps) - MOST_ROWS} more in {named_file('whatif.csv', kept)}")
     console.print()
     shared = _shared(study)
     if shared:
         print_wrapped(console, f"#1 of every step: {made_of(shared)}")
         console.print()
-    _print_reasons(study, console)
+    _print_reasons(study, console, kept)
     if study.breaks:
-        _print_breaks(study, console)
+        _print_breaks(study, console, kept)
     if study.interrupted:
         done = sum(s.front is not None for s in study.steps)
-        console.print(f"stopped: {study.interrupted}; {done} of {len(study.steps)} steps are kept, run again to go on")
+        state = "kept, run again to go on" if kept else "finished"
+        console.print(f"stopped: {study.interrupted}; {done} of {len(study.steps)} steps are {state}")
     for line in _robust(study):
         print_wrapped(console, line)
-    print_wrapped(console, _proven(study))
+    print_wrapped(console, _proven(study, kept))
 
 
 def _steps(study: Study) -> Table:
@@ -65,13 +69,13 @@ def _steps(study: Study) -> Table:
     last = len(heads) - 1
     table = plain_table(*heads, right=range(len(study.varied), last), wide=last)
     steps, shared = study.steps[:MOST_ROWS], _shared(study)
-    best = [alike([_best(s, n, u) for s in steps]) for n, u in zip(names, units, strict=True)]
+    best = [column_texts([_best(s, n, u) for s in steps]) for n, u in zip(names, units, strict=True)]
     for k, step in enumerate(steps):
         cells = [x.valued(v) for x, v in zip(study.varied, step.values, strict=True)]
         leader = step.front.designs[0] if step.front is not None and step.front.designs else None
         cells += [str(len(step.front.designs)) if step.front is not None else "0", *(column[k] for column in best)]
         if rates:
-            cells.append(percent(leader.robust["yield"]) if leader is not None and leader.robust else "")
+            cells.append(yield_text(leader.robust["yield"]) if leader is not None and leader.robust else "")
         if leader is None:
             cells.append("not reached" if step.front is None else "")
         else:
@@ -96,7 +100,7 @@ def _shared(study: Study) -> dict[str, str]:
     return in_common([_made(f.designs[0]) for f in study.fronts if f.designs])
 
 
-def _print_reasons(study: Study, console: Console) -> None:
+def _print_reasons(study: Study, console: Console, kept: bool) -> None:
     """Print why steps have no design, those with the same reason together."""
     reasons: dict[str, list[StudyStep]] = {}
     for step in study.steps:
@@ -108,12 +112,12 @@ def _print_reasons(study: Study, console: Console) -> None:
         names = {n for s in steps if s.front is not None for n in s.front.frame.limit_units}
         print_wrapped(console, in_words(f"no design at {'; '.join(shown)}: {reason}", names))
     if len(reasons) > MOST_REASONS:
-        console.print(f"{len(reasons) - MOST_REASONS} more reasons in whatif.csv")
+        console.print(f"{len(reasons) - MOST_REASONS} more reasons in {named_file('whatif.csv', kept)}")
     if reasons:
         console.print()
 
 
-def _print_breaks(study: Study, console: Console) -> None:
+def _print_breaks(study: Study, console: Console, kept: bool) -> None:
     assert study.along is not None
     along = study.varied[study.along]
     others = [x for k, x in enumerate(study.varied) if k != study.along]
@@ -125,13 +129,13 @@ def _print_breaks(study: Study, console: Console) -> None:
         table.add_row(words(b.objective), *values, *_told(b, along, names))
     console.print(table)
     if len(study.breaks) > MOST_BREAKS:
-        console.print(f"{len(study.breaks) - MOST_BREAKS} more in breaks.csv")
+        console.print(f"{len(study.breaks) - MOST_BREAKS} more in {named_file('breaks.csv', kept)}")
     console.print()
 
 
 def _told(b: Break, along: Varied, names: set[str]) -> list[str]:
     return [
-        along.valued(float(f"{b.value:.5g}")),
+        along.measured(b.value),
         in_words(b.change, names),
         "yes" if b.proven else f"no{': ' if b.remark else ''}{b.remark}",
     ]
@@ -139,19 +143,16 @@ def _told(b: Break, along: Varied, names: set[str]) -> list[str]:
 
 def _robust(study: Study) -> list[str]:
     """Return how the designs of all steps stand what scatters, where anything does."""
-    blocks = [f.settings["robust"] for f in study.fronts if "robust" in f.settings]
-    if not blocks:
-        return []
     designs = [d for f in study.fronts for d in f.designs]
-    lines = [told_of(designs, blocks[0]["samples"])] if any(d.robust for d in designs) else []
+    lines = [robust_sentence(designs)] if any(d.robust for d in designs) else []
     gone = sum(f.statistics["robust"].get("taken_off", 0) for f in study.fronts if "robust" in f.settings)
     if gone:
         lines.append(taken_off(gone))
     return lines
 
 
-def _proven(study: Study) -> str:
-    kinds = [front.certificate.kind for front in study.fronts]
+def _proven(study: Study, kept: bool) -> str:
+    kinds, place = [front.certificate.kind for front in study.fronts], named_file("whatif.csv", kept)
     if len(kinds) == len(study.steps) and all(kind == "global" for kind in kinds):
-        return "proven: every step over all its combinations of parts and counts (certificate and gap in whatif.csv)"
-    return f"{kinds.count('global')} of {len(study.steps)} steps are proven; the certificates stand in whatif.csv"
+        return f"proven: every step over all its combinations of parts and counts (certificate and gap in {place})"
+    return f"{kinds.count('global')} of {len(study.steps)} steps are proven; the certificates stand in {place}"

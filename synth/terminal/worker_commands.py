@@ -41,8 +41,11 @@ def register(app: typer.Typer) -> None:
 
 def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: Follow = False) -> None:
     """Work at the jobs of a database until stopped; any number of workers may, on any machines."""
+    from synth.jobs.log_lines import follow_switch
     from synth.jobs.store import Store
     from synth.jobs.worker import Worker
+
+    follow_switch()
 
     if slots is not None:
         whole_number(slots, "--slots", INPUT_LIMITS.workers, path=("slots",))

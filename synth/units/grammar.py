@@ -10,9 +10,13 @@ from functools import lru_cache
 
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
+from synth.notices import notice
+from synth.units.spellings import FORCES, SPACES, WORDS, readings
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
-ABSOLUTE_ZERO = Fraction("273.15")
+_FAHRENHEIT = Fraction(5, 9)
+# token: (factor, kelvin at its zero); these stand alone
+_DEGREES = {"degC": (Fraction(1), Fraction("273.15")), "degF": (_FAHRENHEIT, Fraction("459.67") * _FAHRENHEIT)}
 _KP = Fraction("9.80665")
 # The yard and pound agreement of 1959: exact.
 _FOOT = Fraction("0.3048")
@@ -33,13 +37,15 @@ class Unit:
     factor : float
         SI value of one of this unit [SI unit per unit].
     offset : float
-        Added after the factor [K]; 273.15 for degC, else 0.
+        Added after the factor [K]; 273.15 for degC, 255.37 for degF, else 0.
     kind : str
         Name of the kind, for example ``torque``.
     dimension : tuple of int
         Exponents of kg, m, s, K, A; an angle has none.
     ratio : Fraction
         The factor without rounding (angles: to 60 digits).
+    shift : Fraction
+        The offset without rounding.
     """
 
     text: str
@@ -48,6 +54,7 @@ class Unit:
     kind: str
     dimension: tuple[int, int, int, int, int]
     ratio: Fraction = field(repr=False, compare=False)
+    shift: Fraction = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,14 +96,16 @@ _TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
     "ft": (_FOOT, _LENGTH, 0),
     **_decades(_MASS, g=-3, kg=0, t=3),
     "lb": (_POUND, _MASS, 0),
+    "oz": (_POUND / 16, _MASS, 0),
     **_decades(_TIME, ms=-3, s=0),
     "min": (Fraction(60), _TIME, 0),
     "h": (Fraction(3600), _TIME, 0),
     **_decades(_RATE, Hz=0, kHz=3),
-    **_decades(_FORCE, mN=-3, N=0, kN=3, MN=6),
+    **_decades(_FORCE, mN=-3, cN=-2, N=0, daN=1, kN=3, MN=6),
     "kp": (_KP, _FORCE, 0),
     "kgf": (_KP, _FORCE, 0),
     "lbf": (_LBF, _FORCE, 0),
+    "ozf": (_LBF / 16, _FORCE, 0),
     **_decades(_ENERGY, Nmm=-3, mNm=-3, Nm=0, kNm=3),
     "mkp": (_KP, _ENERGY, 0),
     "kpm": (_KP, _ENERGY, 0),
@@ -119,42 +128,13 @@ _TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
     **_decades(_FLUX, mT=-3, T=0),
     "ohm": (Fraction(1), _RESISTANCE, 0),
 }
-_ALIASES = {"µm": "um", "μm": "um"}
-_FORCE_TOKENS = frozenset({"mN", "N", "kN", "MN", "kp", "kgf", "lbf"})
+_ALIASES = {"µm": "um", "μm": "um", "°C": "degC", "°F": "degF"}
+_FORCE_TOKENS = frozenset({"mN", "cN", "N", "daN", "kN", "MN", "kp", "kgf", "lbf", "ozf"})
 _MOMENT_TOKENS = frozenset({"Nmm", "mNm", "Nm", "kNm"})
 # The metre of these forces, or the foot, measures torque and work alike.
-_TORQUE_OR_WORK_TOKENS = frozenset({"kp", "mkp", "kpm", "kgf", "lbf"})
+_TORQUE_OR_WORK_TOKENS = frozenset({"kp", "mkp", "kpm", "kgf", "lbf", "ozf"})
 _ENERGY_TOKENS = frozenset({"mJ", "J", "kJ", "MJ", "Wh", "kWh", "W", "kW", "MW", "hp", "PS"})
 _LENGTH_TOKENS = frozenset({"um", "mm", "cm", "dm", "m", "km", "in", "ft"})
-
-# what people type who are used to other spellings
-_SPELLINGS = {
-    "sec": "s",
-    "hr": "h",
-    "hour": "h",
-    "u": "1/min",
-    "l": "dm3",
-    "inch": "in",
-    "inches": "in",
-    '"': "in",
-    "foot": "ft",
-    "feet": "ft",
-    "lbs": "lb, or lbf for a force,",
-    "ftlb": "lbf*ft",
-    "lbft": "lbf*ft",
-    "ftlbf": "lbf*ft",
-    "lbfft": "lbf*ft",
-    "inlb": "lbf*in",
-    "lbin": "lbf*in",
-    "lbfin": "lbf*in",
-    "cv": "PS",
-    "degree": "deg",
-    "degrees": "deg",
-    "celsius": "degC",
-    "c": "degC",
-    "°c": "degC",
-    "ω": "ohm",
-}
 
 # kind: (in words, units to type)
 _KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -199,6 +179,8 @@ _KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "voltage": ("a voltage", ("V", "mV")),
     "resistance": ("a resistance", ("ohm",)),
 }
+
+TORQUE_OF_POWER = "T = P/omega, the angular speed of the same shaft"
 
 # (dimension, power of the angle): kind, where flavour plays no part
 _BY_DIMENSION: dict[tuple[_Dimension, int], str] = {
@@ -245,7 +227,6 @@ _BY_FLAVOUR: dict[_Dimension, tuple[str, str]] = {
 
 _SUPERSCRIPTS = str.maketrans("²³⁴⁵⁶⁷⁸⁹", "23456789")
 _TOKEN = re.compile(r"([^\W\d_]+|°)(\^?)([2-9])?\Z")
-SPACES = dict.fromkeys((0x00A0, 0x2007, 0x2009, 0x202F), " ")
 _GRAMMAR = (
     "a unit such as N*m, J/(mm2 h) or 1/min: tokens joined by a space, * or /, exponent as a digit after the token"
 )
@@ -262,8 +243,9 @@ class RefusedUnit(Exception):
 def _factor(text: str, whole: str) -> tuple[str, int]:
     """Token and exponent of one factor of a unit."""
     plain = text.translate(_SUPERSCRIPTS)
-    if plain in ("degC", "°C", "%", "-"):
-        if plain in ("degC", "°C"):
+    name = _ALIASES.get(plain, plain)
+    if name in (*_DEGREES, "%", "-"):
+        if name in _DEGREES:
             raise RefusedUnit("K inside a compound unit, where a temperature is a difference")
         raise RefusedUnit(f"{plain!r} to stand alone as a unit")
     match = _TOKEN.match(plain)
@@ -281,12 +263,13 @@ def _factor(text: str, whole: str) -> tuple[str, int]:
 
 def _unknown(name: str) -> str:
     """Say what is right instead of a token that is not in the grammar."""
-    known = [*_TOKENS, "degC"]
+    known = [*_TOKENS, *_DEGREES]
     same = [token for token in known if token.casefold() == name.casefold()]
     if same:
         return f"{' or '.join(same)} instead of {name} (capitals matter in units)"
-    if name.casefold() in _SPELLINGS:
-        return f"{_SPELLINGS[name.casefold()]} instead of {name}"
+    meant = WORDS.get(name) or WORDS.get(name.casefold())
+    if meant is not None:
+        return f"{meant} instead of {name}"
     return f"a known unit instead of {name}: one of {', '.join(known)}, - or %"
 
 
@@ -300,8 +283,9 @@ def _read(text: str) -> _UnitText:
         return _UnitText(Fraction(1), _NONE, 0, {"-": 1})
     if text == "%":
         return _UnitText(Fraction(1, 100), _NONE, 0, {"%": 1})
-    if text in ("degC", "°C"):
-        return _UnitText(Fraction(1), _KELVIN, 0, {"degC": 1})
+    alone = _ALIASES.get(text, text)
+    if alone in _DEGREES:
+        return _UnitText(_DEGREES[alone][0], _KELVIN, 0, {alone: 1})
     if "**" in text:
         raise RefusedUnit("an exponent as a digit after the token, for example mm2")
     if text[0] == "/":
@@ -383,8 +367,8 @@ def _kinds(reading: _UnitText) -> dict[str, tuple[Fraction, Fraction]]:
     """Kinds a unit may be read as, the first by default, each with factor and offset."""
     tokens, dimension, ratio = reading.tokens, reading.dimension, reading.ratio
     plain = (ratio, Fraction(0))
-    if tokens == {"degC": 1}:
-        return {"temperature": (ratio, ABSOLUTE_ZERO)}
+    if not tokens.keys().isdisjoint(_DEGREES):
+        return {"temperature": _DEGREES[next(iter(tokens))]}
     if tokens == {"K": 1}:
         return {"temperature_rise": plain, "temperature": plain}
     if tokens == {"min": -1}:
@@ -427,8 +411,10 @@ def _wrong_kind(text: str, kind: str, found: str) -> str:
         return f"{words}, or one in %; {measures}"
     if kind not in _KINDS:
         return f"{words}; {measures}"
+    if kind == "force" and text in FORCES:
+        return f"{words}, for example in {FORCES[text]}; {measures}"
     if kind == "temperature_rise" and found == "temperature":
-        return f"{words} in K: a difference of 20 degC is typed as 20 K"
+        return f"{words} in K: a difference of 20 degC (36 degF) is typed as 20 K"
     if kind == "angular_speed" and found == "frequency":
         return (
             f"{words}: type 1/min or rpm for revolutions per minute, rad/s or deg/s for an angle per time; "
@@ -436,19 +422,65 @@ def _wrong_kind(text: str, kind: str, found: str) -> str:
         )
     if kind == "frequency" and found == "angular_speed":
         return f"{words}: type 1/h, 1/min, 1/s or Hz; {text} is an angular speed"
+    if kind == "torque" and found == "power":
+        measures += f" ({TORQUE_OF_POWER})"
     return f"{words}, for example in {listed}; {measures}"
 
 
 @lru_cache(maxsize=4096)
-def resolve(text: str, kind: str | None) -> Unit:
-    """Return the unit that a text names, of a kind where one is asked; raise RefusedUnit where it names none."""
+def _resolve(text: str, kind: str | None) -> Unit:
+    """Return the unit that a text names strictly, of a kind where one is asked; raise RefusedUnit where none."""
     reading = _read(text)
     kinds = _kinds(reading)
     chosen = next(iter(kinds)) if kind is None else kind
     if chosen not in kinds:
         raise RefusedUnit(_wrong_kind(text, chosen, next(iter(kinds))))
-    ratio, offset = kinds[chosen]
-    return Unit(text, float(ratio), float(offset), chosen, reading.dimension, ratio)
+    ratio, shift = kinds[chosen]
+    return Unit(text, float(ratio), float(shift), chosen, reading.dimension, ratio, shift)
+
+
+@lru_cache(maxsize=4096)
+def _respelled(text: str, kind: str) -> Unit | None:
+    """Find the unit of a kind that a text outside the grammar stands for; None where it is no unit.
+
+    Raises
+    ------
+    RefusedUnit
+        It is of another kind, or may stand for several units.
+    """
+    fitting: dict[Fraction, Unit] = {}
+    others: list[RefusedUnit] = []
+    for read in readings(text, {*_TOKENS, *_ALIASES}) if len(text) <= INPUT_LIMITS.quantity else ():
+        try:
+            unit = _resolve(read, kind)
+            fitting.setdefault(unit.ratio, unit)
+        except RefusedUnit as refusal:
+            others.append(refusal)
+    if len(fitting) > 1:
+        raise RefusedUnit(f"{' or '.join(unit.text for unit in fitting.values())} instead of {text}: it may be either")
+    if fitting:
+        return next(iter(fitting.values()))
+    if others:
+        raise others[0]
+    return None
+
+
+def resolve(text: str, kind: str) -> Unit:
+    """Find the unit of a kind that a text names, in our grammar or as name plates have it.
+
+    Raises
+    ------
+    RefusedUnit
+        It names none.
+    """
+    try:
+        return _resolve(text, kind)
+    except RefusedUnit:
+        unit = _respelled(text, kind)
+        if unit is None:
+            raise
+        notice(f"read as {unit.text}: {text}")
+        return unit
 
 
 def parse_unit(text: str, kind: str | None = None) -> Unit:
@@ -459,7 +491,8 @@ def parse_unit(text: str, kind: str | None = None) -> Unit:
     text : str
         The unit, for example ``N/mm2``.
     kind : str, optional
-        Read the unit as one of this kind. Without it the unit is a declared one and the kind follows from it.
+        Read the unit as one of this kind, in whatever way people write it. Without it the unit is a declared one, in
+        our grammar, and the kind follows from it.
 
     Returns
     -------
@@ -485,7 +518,7 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
     if not isinstance(text, str):
         raise InputError(name, text, "a unit as text, for example 'N*m'")
     try:
-        return resolve(text, kind)
+        return _resolve(text, None) if kind is None else resolve(text, kind)
     except RefusedUnit as refusal:
         raise InputError(name, text, refusal.expected) from None
 
@@ -493,7 +526,7 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
 def is_unit(text: str) -> bool:
     """Tell whether a text names a unit."""
     try:
-        resolve(text, None)
+        _resolve(text, None)
     except RefusedUnit:
         return False
     return True

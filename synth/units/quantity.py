@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from decimal import Context, Decimal
@@ -27,7 +28,9 @@ from numpy.typing import NDArray
 
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
-from synth.units.grammar import ABSOLUTE_ZERO, SPACES, RefusedUnit, Unit, is_unit, parse_unit, resolve
+from synth.text.numbers import FULL_DIGITS, shown, typed_number
+from synth.units.grammar import RefusedUnit, Unit, is_unit, parse_unit, resolve
+from synth.units.spellings import SPACES
 
 FloatArray = NDArray[np.float64]
 T = TypeVar("T")
@@ -36,6 +39,8 @@ T = TypeVar("T")
 # ---- numbers --------------------------------------------------------------------------------------------------------
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+# As inches are measured: 3/4, 1 3/4, 1-3/4; a character such as ¾ is one too.
+_FRACTION = re.compile(r"([+-]?)(?:([0-9]{1,9})(?: +|-))?([1-9][0-9]{0,8})/([0-9]{1,9})(?![0-9./])")
 _MINUS = "−‐‑‒–—﹣－"
 # What a table program makes of 1.5 or 1/5 that somebody typed, and writes as a date.
 _MONTH = "(?:jan|feb|mar|mär|mrz|apr|mai|may|jun|jul|aug|sep|okt|oct|nov|dez|dec)[a-zä]*\\.?"
@@ -68,17 +73,16 @@ def _power_of_ten(ratio: Fraction) -> int | None:
 
 
 @lru_cache(maxsize=4096)
-def _converter(ratio: Fraction, offset: float) -> Callable[[str], float]:
+def _converter(ratio: Fraction, shift: Fraction) -> Callable[[str], float]:
     """Give the function from the text of a number to its SI value."""
     power = _power_of_ten(ratio)
-    if power is not None and offset == 0.0:
+    if power is not None and not shift:
         return lambda number: _shifted(number, power)
-    shift = ABSOLUTE_ZERO if offset else Fraction(0)
 
     def exact(number: str) -> float:
         # a fraction of 1e999999999 would fill the memory before it could be called too large
         if abs(int(re.split("[eE]", number)[1] if "e" in number.lower() else 0)) > _LARGEST_EXPONENT:
-            return float(number) * float(ratio) + offset
+            return float(number) * float(ratio) + float(shift)
         try:
             return float(Fraction(number.removesuffix(".")) * ratio + shift)
         except OverflowError:
@@ -102,7 +106,7 @@ def number_to_si(number: str, unit: Unit) -> float:
     float
         SI value; infinite where it is too large for a float.
     """
-    return _converter(unit.ratio, unit.offset)(number)
+    return _converter(unit.ratio, unit.shift)(number)
 
 
 def check_number(text: str, name: str) -> str:
@@ -133,7 +137,7 @@ def check_number(text: str, name: str) -> str:
 
 def _split_number(text: str, value: object, name: str, declared: str = "-") -> tuple[str, str]:
     """Split a quantity written as text into its number and the rest; the declared unit serves as an example."""
-    plain = text.translate(SPACES).strip()
+    plain = as_decimal(text).translate(SPACES).strip()
     if not plain:
         raise InputError(name, value, "a number, not an empty text")
     if any(sign in plain for sign in _MINUS) and re.search(rf"(?:^|[eE])[{_MINUS}]\s*[0-9.]", plain):
@@ -168,9 +172,43 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
         raise InputError(name, value, "a decimal point instead of a decimal comma, for example 6.5")
     if re.match(r"(?: [0-9]{3}(?![0-9])|['’_][0-9])", rest):
         raise InputError(name, value, "a number without a separator between the thousands, for example 1500")
+    if re.match(r"(?: [0-9]+)? ?[/⁄] ?[0-9]", rest):
+        right = "a decimal number, or a fraction of whole numbers with its unit, such as 3/4 in or 1 3/4 in"
+        raise InputError(name, value, right)
+    if number == "1" and rest.startswith("/") and is_unit(plain):
+        raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
+    if re.match(r" ?['’′]", rest):
+        raise InputError(name, value, "feet and inches as one number with one unit, for example 63 in")
     if re.match(r"[.'’_,]", rest):
         raise InputError(name, value, "one number with at most one decimal point, for example 1500.5")
     return number, rest.strip()
+
+
+def is_date(text: str) -> bool:
+    """Tell whether a text is a date or a time, as table programs write them for what they took for one."""
+    return _DATE.fullmatch(text.strip()) is not None
+
+
+def as_decimal(text: str) -> str:
+    """Text of a quantity with a decimal number for a fraction; unchanged without one, or with no unit behind it.
+
+    Examples
+    --------
+    >>> as_decimal("1 3/4 in"), as_decimal("¾ in"), as_decimal("3/4"), as_decimal("60 1/min")
+    ('1.75 in', '0.75 in', '3/4', '60 1/min')
+    """
+    if "/" not in text and text.isascii():
+        return text  # as nearly all are
+    written = (unicodedata.normalize("NFKC", letter) if letter > "\x7f" else letter for letter in text)
+    plain = "".join(f" {new.replace('⁄', '/')}" if "⁄" in new else old for old, new in zip(text, written, strict=True))
+    match = _FRACTION.match(plain := plain.translate(SPACES).strip())
+    rest = plain[match.end() :].strip() if match else ""
+    if match is None or not rest:
+        return text
+    whole, above, below = (int(part or 0) for part in match.groups()[1:])
+    if below == 0 or (match[2] and above >= below):
+        return text
+    return f"{match[1]}{_WIDE.divide(Decimal(whole * below + above), Decimal(below)):f} {rest}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +228,7 @@ class Quantity:
 
     def __str__(self) -> str:
         """Return it as a user would type it: as many digits as are read back as the same number."""
-        return format_quantity(self.si, self.unit, None)
+        return typed_quantity(self.si, self.unit, None)
 
     def __repr__(self) -> str:
         """Return it as messages show what was typed."""
@@ -236,6 +274,8 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
                 unit = resolve(rest, unit.kind)
             except RefusedUnit as refusal:
                 raise InputError(field, value, refusal.expected) from None
+        else:
+            _ask_for_unit(float(number), unit, value, field)
     elif isinstance(value, Quantity):
         number = ""
         unit = parse_unit(value.unit, unit.kind)
@@ -251,12 +291,23 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
         if not math.isfinite(plain):
             raise InputError(field, value, "a finite number")
         number = repr(plain)
+        _ask_for_unit(plain, unit, value, field)
     si = value.si if isinstance(value, Quantity) else number_to_si(number, unit)
     if not math.isfinite(si):
         raise InputError(field, value, "a number that a computer can hold (below 1e308 in SI units)")
     if unit.kind == "temperature" and si < 0.0:
         raise InputError(field, value, "a temperature above absolute zero (-273.15 degC)")
     return si
+
+
+def _ask_for_unit(number: float, declared: Unit, value: object, name: str) -> None:
+    """Refuse a bare number that is as likely meant in a larger unit.
+
+    From 100 N m torques are given in kN*m as well; 50 N m are never called 0.05.
+    """
+    if declared.kind == "torque" and declared.ratio == 1 and 0.1 <= abs(number) < 1:
+        right = f"its unit, {typed_number(number)} N*m or {typed_number(number)} kN*m: without one it may be either"
+        raise InputError(name, float(value) if isinstance(value, float) else value, right)  # NumPy's as plain ones
 
 
 # ---- SI to people ---------------------------------------------------------------------------------------------------
@@ -379,8 +430,8 @@ def _as_text(number: Decimal) -> str:
     return f"{'-' if sign else ''}{text[0]}{'.' + text[1:] if len(text) > 1 else ''}e{adjusted}"
 
 
-def format_quantity(si: float, unit: str | Unit, digits: int | None = 6) -> str:
-    """Write an SI value with its unit.
+def typed_quantity(si: float, unit: str | Unit, digits: int | None = FULL_DIGITS) -> str:
+    """SI value with its unit as specs have it, for messages: what they name may be typed as it stands.
 
     Parameters
     ----------
@@ -398,9 +449,9 @@ def format_quantity(si: float, unit: str | Unit, digits: int | None = 6) -> str:
 
     Examples
     --------
-    >>> format_quantity(600.0, "N*m"), format_quantity(0.1, "-")
+    >>> typed_quantity(600.0, "N*m"), typed_quantity(0.1, "-")
     ('600 N*m', '0.1')
-    >>> format_quantity(26.6, "1/min", digits=None)
+    >>> typed_quantity(26.6, "1/min", digits=None)
     '254.01128917466497 1/min'
     """
     unit = unit if isinstance(unit, Unit) else parse_unit(unit)
@@ -410,15 +461,23 @@ def format_quantity(si: float, unit: str | Unit, digits: int | None = 6) -> str:
     elif digits is None:
         number = _shortest(si, unit)
     else:
-        number = _as_text(Context(prec=digits).plus(_in_unit(si, unit)))
-    if unit.text == "-":
-        return number
-    return f"{number}{'' if unit.text == '°' else ' '}{unit.text}"
+        number = shown(_in_unit(si, unit), digits).typed()
+    return _with_unit(number, unit)
+
+
+def written_quantity(si: float, unit: str | Unit, digits: int) -> str:
+    """SI value with its unit as files of designs have it, in so many significant digits."""
+    unit = unit if isinstance(unit, Unit) else parse_unit(unit)
+    return _with_unit(_as_text(Context(prec=digits).plus(_in_unit(float(si), unit))), unit)
+
+
+def _with_unit(number: str, unit: Unit) -> str:
+    return number if unit.text == "-" else f"{number}{'' if unit.text == '°' else ' '}{unit.text}"
 
 
 def _in_unit(si: float, unit: Unit) -> Decimal:
     """Convert an SI value to a unit, to 60 digits."""
-    exact = (Fraction(si) - (ABSOLUTE_ZERO if unit.offset else 0)) / unit.ratio
+    exact = (Fraction(si) - unit.shift) / unit.ratio
     return _WIDE.divide(Decimal(exact.numerator), Decimal(exact.denominator))
 
 

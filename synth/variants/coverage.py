@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.feasibility import TOLERANCE
+from synth.feasibility import missed_share, most_used
 from synth.margins import MARGINS, within
 from synth.model.model import DataInput, Evaluation, Model
 from synth.model.problem import DesignProblem
 from synth.model.program import InputValue
-from synth.plain_text import percent
 from synth.question.inputs import inputs_of, part_value
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.tables.catalogs import Catalogs
+from synth.units import miss_text
 
 FloatArray = NDArray[np.float64]
+TOLD = 3  # limits that a sentence names
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def objective_of_pairs(
     reasons = [""] * len(structure.asked)
     if not structure.asked or not variants:
         return result, reasons
-    instances = [_instance(structure, asked.question) for asked in structure.asked]
+    instances = [_instance(structure, asked.question, objective) for asked in structure.asked]
     model = instances[0].model
     columns = _VariantColumns(model, structure, variants)
     if not columns.complete.any():
@@ -103,9 +104,12 @@ def objective_of_pairs(
     return result, reasons
 
 
-def _instance(structure: SharedModel, question: Mapping[str, Any]) -> Instance:
+def _instance(structure: SharedModel, question: Mapping[str, Any], objective: str) -> Instance:
     asked = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
-    return Instance(Request(problem=structure.problem, catalogs=structure.catalogs, **asked))
+    # Its sense is of no account here.
+    return Instance(
+        Request(problem=structure.problem, catalogs=structure.catalogs, objectives={objective: "min"}, **asked)
+    )
 
 
 class _VariantColumns:
@@ -227,17 +231,22 @@ def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: f
 
 
 def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:
-    """Say what the nearest variant misses: that whose worst residual is least."""
+    """Say what the nearest variant misses: that whose most used limit is used least."""
     own = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.limits.judging)
-    names = [limit.name for limit in (*model.constraints, *instance.limits.judging)]
-    missed = np.array([np.nan_to_num(own.residuals[name], nan=0.0) for name in names])
+    limits = (*model.constraints, *instance.limits.judging)
+    missed = np.zeros((len(limits), columns.count))
+    for k, x in enumerate(limits):
+        share = missed_share(*own.limits[x.name], x.sense, own.scales[x.name])
+        missed[k] = np.where(own.holds[x.name], 0.0, np.nan_to_num(share, nan=np.inf))
     worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
     nearest = int(np.argmin(worst))
-    broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > TOLERANCE]
+    broken = {x.name: float(missed[k, nearest]) for k, x in enumerate(limits) if not own.holds[x.name][nearest]}
     if not broken:
         return "the designs that keep its limits have parts, counts or sizes that it does not allow"
-    shown = ", ".join(f"{name} by {percent(share)}" for share, name in sorted(broken, reverse=True)[:3])
-    return f"the nearest design misses {shown}"
+    units = {x.name: x.unit for x in limits}
+    sides = {name: own.limits[name] for name in most_used(broken)[:TOLD]}
+    missed_by = (f"{n} by {miss_text(float(v[nearest]), float(x[nearest]), units[n])}" for n, (v, x) in sides.items())
+    return f"the nearest design misses {', '.join(missed_by)}"
 
 
 def pinned_by_all(questions: Iterable[Mapping[str, Any]], model: Model) -> frozenset[str]:

@@ -9,8 +9,9 @@ from typing import Any
 from synth.errors import Described, InputError
 from synth.jobs.batch import BatchResult
 from synth.jobs.job_table import BATCH, LIVE
-from synth.jobs.kinds.asked import OF, WHERE, catalogs_of, checked_keys, of_files, read_json, seconds
+from synth.jobs.kinds.asked import OF, WHERE, catalogs_of, known_keys, of_files, read_json, seconds
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.jobs.models import Job
 from synth.jobs.store import Store
 from synth.question.spec_keys import shown_kind
@@ -18,7 +19,7 @@ from synth.variants.size_range import check_size_range, size_range
 from synth.variants.variant_settings import VARIANTS
 
 MAIN = "size_range.json"
-KEYS = (OF, "variants", "objective", "per_row", "candidates", "gap", "time_limit")
+KEYS = keys_of("size_range")
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -29,7 +30,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    stated = checked_keys(request, KEYS)
+    stated = known_keys(request, KEYS)  # each of its own meaning
     asked = _asked(stated)
     job = _batch(stated.get(OF), sources)
     families = tuple(job.content["families"])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from synth.proof_limits import ProofLimits
+from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
     from synth.results import ParetoFront
@@ -64,10 +65,11 @@ def _scale_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -
     reach = limits.same * np.maximum(np.abs(low), np.abs(high))
     for k, name in enumerate(front.frame.objectives):
         begin, end = float(front.scale.ideal[k]), float(front.scale.nadir[k])
+        first, last = typed_number(abs(begin)), typed_number(abs(end))
         if not abs(begin - low[k]) <= reach[k]:
-            yield f"scale of {name}: it begins at {abs(begin):.6g}, the best design listed has {abs(low[k]):.6g}"
+            yield f"scale of {name}: it begins at {first}, the best design listed has {typed_number(abs(low[k]))}"
         if not low[k] - reach[k] <= end <= most[k] + reach[k]:
-            yield f"scale of {name}: it ends at {abs(end):.6g}, the designs listed say {abs(most[k]):.6g} at most"
+            yield f"scale of {name}: it ends at {last}, the designs listed say {typed_number(abs(most[k]))} at most"
 
 
 def _note_faults(front: ParetoFront, signed: np.ndarray, unit: np.ndarray, limits: ProofLimits) -> Iterator[str]:

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,16 +28,17 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.restate import asked_again, problem_of
+from synth.analysis.restate import asked_again, problem_of, table_differences
 from synth.csv_style import STYLES
 from synth.errors import InputError
-from synth.feasibility import Status, holds, residual, utilisation
+from synth.feasibility import TOLERANCE, Status, holds, residual, utilisation
 from synth.files import read_bytes
 from synth.model.problem import DesignProblem
-from synth.plain_text import percent
+from synth.model.program import Node, Program
+from synth.plain_text import counted
 from synth.proof.levels import prove_regions
 from synth.proof.questions import Point, ProofOutcome
-from synth.proof.tree import NO_SCALE, ProofTree, void_without
+from synth.proof.tree import ProofTree, moved_limits, void_without
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
@@ -45,7 +46,8 @@ from synth.results.calculation import CALCULATION, load_calculation
 from synth.results.front_record import changed
 from synth.results.verification import Verification
 from synth.special import expanded
-from synth.units import format_quantity
+from synth.text.numbers import gap_text, percent, typed_number
+from synth.units import typed_quantity
 from synth.verification.contradictions import contradiction
 from synth.verification.pareto_regions import uncovered
 from synth.verification.ranking import ranking_faults
@@ -107,7 +109,8 @@ def checked(
     if front.question is not None and problem is None and catalogs is None:
         check.ask(front.question)
     else:
-        own, tables = problem_of(front, problem, catalogs)
+        own, tables = problem_of(front, problem, catalogs, kept=True)
+        check.compare_tables(*table_differences(front, tables))
         try:
             check.ask(asked_again(front, own, tables))
         except InputError as error:
@@ -133,12 +136,17 @@ class _LimitReading:
     @property
     def residual(self) -> float:
         """How far the limit is missed; not a number where a side does not exist, and then it does not hold."""
-        return float(residual(self.value, self.bound, self.sense, self.scale))
+        with np.errstate(all="ignore"):
+            return float(residual(np.float64(self.value), self.bound, self.sense, self.scale))
 
     @property
     def holds(self) -> bool:
         """Whether the limit is kept."""
-        return bool(holds(self.residual, self.guard))
+        return self.keeps(1.0)
+
+    def keeps(self, share: float) -> bool:
+        """Whether the limit is kept within a share of the tolerance."""
+        return bool(holds(self.residual, self.guard, share * TOLERANCE))
 
 
 class VerificationRun:
@@ -153,6 +161,7 @@ class VerificationRun:
         self.nodes = 0
         self._points: dict[int | None, Point | None] = {}
         self._guided_tree: ProofTree | None = None
+        self._away = False  # whether rows kept stand in for a table: then other rows cannot be spoken of
 
     def find(self, sentence: str) -> None:
         """Note what is not as claimed."""
@@ -174,7 +183,15 @@ class VerificationRun:
             self.find(f"front.json contradicts itself ({strange})")
         elif folder is not None:
             self._files(folder)
+        if not self.findings and record.get("result", self.front.result_digest) != self.front.result_digest:
+            self.find("front.json has a checksum of its result that does not fit")
         return self.readable
+
+    def compare_tables(self, away: Sequence[str], changed: Sequence[str]) -> None:
+        """Take what is told of tables that are away, and of those that have changed."""
+        self.open += away
+        self.findings += changed
+        self._away = bool(away)
 
     def _files(self, folder: Path) -> None:
         calculation = str((self.front.record or {}).get("calculation", ""))
@@ -203,6 +220,7 @@ class VerificationRun:
         self._evaluate = _evaluator(instance)
         self._refused = _refusal_functions(instance)
         self._void_without = void_without(instance.model)
+        self._moved = moved_limits(instance)
 
     def listed(self) -> bool:
         """Check what the record says of the question and of the designs; tell whether it claims what can be proven."""
@@ -224,7 +242,7 @@ class VerificationRun:
                 self.find(fault)
             self._dominance()
         self._numbers()
-        if front.certificate.kind != "global":
+        if front.certificate.kind != "global" or self._away:
             return False
         gap = front.certificate.gap
         if front.designs and not (isinstance(gap, float) and 0 < gap < 1):
@@ -290,8 +308,8 @@ class VerificationRun:
                 self.find(f"{label}: {slot.slot} {part} is not a row that this question may use")
                 return None
             index = slot.table.row_index(str(part))
-            current = slot.table.row(index)
-            told = {k: v for k, v in part.items() if k not in ("table", "hash")}
+            current = {k: v for k, v in slot.table.row(index).items() if v is not None}
+            told = {k: v for k, v in part.items() if k not in ("table", "hash") and v is not None}
             if part["table"] != slot.table.name or part["hash"] != slot.table.hashes[index] or told != current:
                 self.find(f"{label}: {slot.slot} {part} is not the row of table {slot.table.name} in force")
             rows[slot.slot] = offered.index(str(part))
@@ -333,11 +351,12 @@ class VerificationRun:
                 self.find(f"{label}: limit {name} does not hold")
             saved = design.limits.get(name, (math.nan, math.nan))
             told = design.utilisation.get(name)
-            if not (self.limits.agree(saved[0], value) and self.limits.agree(saved[1], bound)):
+            if not all(self.limits.agree(a, b, x.scale) for a, b in zip(saved, (value, bound), strict=True)):
                 self.find(f"{label}: limit {name} has sides {saved}, evaluated they are {(value, bound)}")
-            if (told is None) != (used is None) or (
-                told is not None and used is not None and not self.limits.agree(told, used)
-            ):
+            # Where both sides vanish beside the terms they are rounding, and so is one as a share of the other.
+            vanish = max(abs(value), abs(bound)) <= self.limits.same * x.scale
+            differs = told is not None and used is not None and not self.limits.agree(told, used)
+            if (told is None) != (used is None) or (differs and not vanish):
                 self.find(f"{label}: utilisation of {name} is {told}, evaluated it is {used}")
             if not self.limits.close(design.residuals.get(name, math.nan), r):
                 self.find(f"{label}: residual of {name} is {design.residuals.get(name)}, evaluated it is {r}")
@@ -352,9 +371,9 @@ class VerificationRun:
             x = float(point.variables[k])
             reach = self.limits.same * max(abs(instance.ranges.lower[k]), abs(instance.ranges.upper[k]))
             if not instance.ranges.lower[k] - reach <= x <= instance.ranges.upper[k] + reach:
-                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
+                self.find(f"{label}: {v.name} {typed_quantity(x, v.unit)} is outside of its bounds")
             elif len(grid) and not np.any(np.abs(grid - x) <= self.limits.same * np.abs(grid)):
-                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
+                self.find(f"{label}: {v.name} {typed_quantity(x, v.unit)} is not on its grid")
         for code, refused in self._refusals(point):
             if refused:
                 self.find(f"{label}: refused, {code}")
@@ -363,11 +382,14 @@ class VerificationRun:
         self, point: Point, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
     ) -> Iterator[_LimitReading]:
         """Yield how every limit stands at a design; behind a guard that fails the guard alone says that it is none."""
+        scales = self.instance.evaluate(point.variables[None, :], point.data).scales
         for x in self.model.limits:
             void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
-            yield _LimitReading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
+            scale = float(np.ravel(scales[x.name])[0])
+            yield _LimitReading(x.name, *limits[x.name], x.sense, scale, x.guard, void)
         for own in self.instance.limits.judging:
-            yield _LimitReading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
+            scale = float(np.ravel(scales[own.name])[0])
+            yield _LimitReading(own.name, values[own.quantity], float(own.bound), own.sense, scale)
 
     def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
         """Yield the refusals over several slots, and whether each forbids a design."""
@@ -383,7 +405,7 @@ class VerificationRun:
         if design.status is Status.OPTIMAL and not proven:
             self.find(f"{label}: status optimal, but the certificate proves no gap")
         if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + self.limits.same)):
-            self.find(f"{label}: gap {percent(design.gap)} is above what the certificate claims")
+            self.find(f"{label}: gap {gap_text(design.gap)} is above what the certificate claims")
 
     # -- the front -----------------------------------------------------------------------------
 
@@ -412,13 +434,15 @@ class VerificationRun:
             self.find("complete is claimed without a proof")
         if front.interrupted and proven:
             self.find("the search was stopped, so that it cannot have proven anything")
-        if front.certificate.combinations != self.instance.combinations.count:
+        if not self._away and front.certificate.combinations != self.instance.combinations.count:
             self.find(
-                f"the certificate speaks of {front.certificate.combinations} combinations, "
+                f"the certificate speaks of {counted(front.certificate.combinations, 'combination')}, "
                 f"the question has {self.instance.combinations.count}"
             )
-        if not front.designs and front.status not in (Status.INFEASIBLE, Status.NOT_SOLVED):
+        if not front.designs and front.status not in (Status.INFEASIBLE, Status.NOT_FOUND, Status.NOT_SOLVED):
             self.find(f"status {front.status.value} without a design")
+        if front.status is Status.INFEASIBLE and not proven:
+            self.find("status infeasible, but the certificate is no proof")
         if front.designs and front.status not in (Status.OPTIMAL, Status.FEASIBLE):
             self.find(f"status {front.status.value} with designs")
         if front.status is Status.OPTIMAL and not proven:
@@ -432,16 +456,16 @@ class VerificationRun:
         self.signed = np.stack([values[name] for name in self.front.frame.objectives], axis=1) * self.senses
         if not self._measured(resolution, gap):
             return
-        self.tree = ProofTree(self.instance, self.front.frame.objectives, self.limits)
+        self._begin(gap)
         outcome = self._prove(self._thresholds(gap))
-        self._judge(outcome, f"no design improves one listed by more than {percent(gap)}", "feasible")
+        self._judge(outcome, f"no design improves one listed by more than {gap_text(gap)}", "feasible")
 
     # -- the claim -----------------------------------------------------------------------------
 
     def claim(self) -> None:
         """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
         front = self.front
-        self.tree = ProofTree(self.instance, front.frame.objectives, self.limits)
+        self._begin(front.certificate.gap if front.designs else None)
         if not front.designs:
             everywhere = np.full((1, len(self.senses)), math.inf)
             self._judge(self._prove(everywhere), "no design is feasible", "feasible")
@@ -455,13 +479,19 @@ class VerificationRun:
         first = self._prove(self._thresholds(gap), gap)
         self.proven, decisive = (gap, first) if first.closed else self._smallest_gap(gap, first)
         left = f"{len(first.open_regions)} of {len(front.designs)} designs stay open"
-        self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "", left)
+        self._judge(decisive, f"no design improves a listed one by more than {gap_text(gap)}", "", left)
+
+    def _begin(self, gap: float | None) -> None:
+        """Prepare a proof to a gap, or that nothing is feasible."""
+        self.share = self.limits.share_for(gap)
+        self.tree = ProofTree(self.instance, self.front.frame.objectives, self.limits, share=self.share)
 
     def _measured(self, resolution: Mapping[str, float], gap: float) -> bool:
         """Read what a gap is a share of: the value, or what makes it the amount that the certificate tells."""
         amounts = np.array([resolution.get(name, math.nan) for name in self.front.frame.objectives])
         self.per_gap = amounts / gap
-        unclear = np.isnan(amounts) & ~np.all(self.signed > 0, axis=0) | ~(np.isnan(amounts) | (amounts > 0))
+        nothing = (amounts == 0) & np.all(self.signed == 0, axis=0)  # of what is zero every share is
+        unclear = np.isnan(amounts) & ~np.all(self.signed > 0, axis=0) | ~(np.isnan(amounts) | (amounts > 0) | nothing)
         for name, doubtful in zip(self.front.frame.objectives, unclear, strict=True):
             if doubtful:
                 self.find(f"the certificate does not tell by how much {name} must be better to count")
@@ -487,7 +517,8 @@ class VerificationRun:
     def _guided(self) -> ProofTree:
         """Return the tree that proves regions one by one, made once."""
         if self._guided_tree is None:
-            self._guided_tree = ProofTree(self.instance, self.front.frame.objectives, self.limits, guided=True)
+            objectives = self.front.frame.objectives
+            self._guided_tree = ProofTree(self.instance, objectives, self.limits, guided=True, share=self.share)
         return self._guided_tree
 
     def _next_to(self, ends: np.ndarray, gap: float) -> list[list[Point]]:
@@ -499,9 +530,12 @@ class VerificationRun:
     def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
         """Tell whether a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
         values, limits, _ = self._evaluate(point)
-        if not np.any(np.all(self._signed_values(values) < ends, axis=1)):
-            return False
-        kept = all(x.void or x.holds for x in self._readings(point, values, limits))
+        signed = self._signed_values(values)
+        if not (np.isfinite(signed).all() and np.any(np.all(signed < ends, axis=1))):
+            return False  # what has no finite value of an objective is no candidate
+        kept = all(
+            x.void or x.keeps(self.share if self._moved[x.name] else 1.0) for x in self._readings(point, values, limits)
+        )
         return kept and not any(refused for _, refused in self._refusals(point))
 
     def _signed_values(self, values: Mapping[str, float]) -> np.ndarray:
@@ -510,7 +544,11 @@ class VerificationRun:
 
     def _thresholds(self, gap: float) -> np.ndarray:
         """Return, per design, what a design must undercut in every objective to improve it by more than the gap."""
-        ends: np.ndarray = self.signed - gap * self._sizes() - self.limits.same * np.abs(self.signed)
+        # What is exactly zero has no share; it is undercut by what is not zero but for rounding.
+        least = np.where(
+            (self.signed == 0) & (self._sizes() == 0), self.limits.noise, self.limits.same * np.abs(self.signed)
+        )
+        ends: np.ndarray = self.signed - gap * self._sizes() - least
         return ends
 
     def _sizes(self) -> np.ndarray:
@@ -570,13 +608,13 @@ class VerificationRun:
     def _told(self, point: Point) -> str:
         """Return the variables, parts, counts and choices of a design."""
         words = [
-            f"{v.name} {format_quantity(float(x), v.unit)}"
+            f"{v.name} {typed_quantity(float(x), v.unit)}"
             for v, x in zip(self.model.variables, point.variables, strict=True)
         ]
         words += [f"{s.slot} {s.table.designations[s.rows[point.rows[s.slot]]]}" for s in self.instance.selection.slots]
         for entry, value in zip(self.model.data_inputs, point.data, strict=True):
             if entry.kind == "count":
-                words.append(f"{entry.name} {value:g}")
+                words.append(f"{entry.name} {typed_number(value)}")
             elif entry.kind == "choice":
                 words.append(f"{entry.name} {self.model.declaration.choices[entry.name].labels[int(value)]}")
         return ", ".join(words)
@@ -587,12 +625,25 @@ def _is_text(found: str, name: str, text: str) -> bool:
     return found == text or (name.endswith(".csv") and any(found == style.text(text) for style in STYLES.values()))
 
 
+class _LackingProgram(Program):
+    """Formulas by which the larger or smaller of two has no value where one has none; CasADi takes the other one."""
+
+    def apply(self, node: Node, args: Sequence[Any]) -> Any:
+        """Return one instruction carried out on CasADi symbols."""
+        result = super().apply(node, args)
+        if node.op not in (ca.OP_FMIN, ca.OP_FMAX):
+            return result
+        return ca.if_else(ca.logic_and(args[0] <= math.inf, args[1] <= math.inf), result, math.nan)
+
+
 def _evaluator(instance: Instance) -> Any:
     """Return a function of a point: values, sides of limits and remarks, by CasADi on the written-out formulas."""
     model = instance.model
     outputs = list(model.quantity_sx.values()) + [side for x in model.limits for side in (x.value, x.limit)]
     outputs += [a.when for a in model.declaration.advices]
     written = expanded(ca.vertcat(*outputs), model.calls)
+    if not all(entry.required for entry in model.data_inputs):
+        written = ca.vertcat(*_LackingProgram(model.inputs, ca.vertsplit(written)).symbolic(model.inputs))
     function = ca.Function("check", [ca.vertcat(*model.inputs)], [written])
 
     def evaluate(point: Point) -> tuple[dict[str, float], dict[str, tuple[float, float]], set[str]]:

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+import pandas as pd
 import pytest
 
 import synth
@@ -275,3 +276,27 @@ def test_every_function_of_trees_can_be_computed():
         count = 2 if name in ("atan2", "hypot", "fmod", "copysign", "min", "max") else 1
         argument = 1.5 if name == "acosh" else 0.5
         assert math.isfinite(function(*[argument] * count)), name
+
+
+def test_an_own_problem_with_tables_of_its_own_is_read_from_its_front(tmp_path):
+    pads = pd.DataFrame({"designation": ["a", "b"], "mass [kg]": [2.0, 3.0]})
+
+    class Padded(synth.DesignProblem):
+        """A problem that no entry point names, of a part of a table that is not shipped."""
+
+        name = "padded"
+
+        def declare(self, d):
+            pad, size = d.part("pad", "pads"), d.variable("size", "m", 1, 2)
+            d.derive("weight", "kg", pad.mass * size)
+            d.objective("weight")
+
+    front = synth.synthesize(Padded(), {}, catalogs={"pads": pads})
+    expected = synth.calculation(front).to_json()
+    assert synth.calculation(front, catalogs={"pads": pads}).to_json() == expected
+    assert front.verify(catalogs={"pads": pads}).holds
+    loaded = synth.load_front(front.save(tmp_path / "front"))
+    assert synth.calculation(loaded).to_json() == expected
+    assert synth.calculation(loaded, catalogs={"pads": pads}, problem=Padded).to_json() == expected
+    with pytest.raises(synth.InputError, match="padded"):
+        synth.calculation(loaded, catalogs={"pads": pads})

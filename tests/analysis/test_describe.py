@@ -14,6 +14,7 @@ from synth.declaration import Block, Option, Requirement, RowRange
 from synth.errors import InputError
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
+from tests.shipped import FAMILIES
 
 
 class Sample(synth.DesignProblem):
@@ -172,7 +173,7 @@ def test_an_unknown_option_is_refused() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", synth.families())
+@pytest.mark.parametrize("family", FAMILIES)
 def test_every_family_can_be_described(family: str) -> None:
     table = describe(family)
     assert not table.duplicated(["kind", "name"]).any()

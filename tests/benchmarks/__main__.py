@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import platform
-import shutil
 import sys
 from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from synth.kernels.loading import native_code
 from tests.benchmarks import batch, parts, practice, service, studies
 from tests.benchmarks.families import families
 from tests.benchmarks.tables import Report, write_csv
@@ -44,10 +44,9 @@ def machine() -> str:
             shown.append(f"{name} {version(name)}")
         except PackageNotFoundError:
             shown.append(f"{name} not installed")
-    compiler = next((c for c in ("cc", "gcc", "clang") if shutil.which(c)), "none")
     return (
         f"{model}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}, "
-        f"C compiler {compiler}\n{', '.join(shown)}"
+        f"kernels {native_code()}\n{', '.join(shown)}"
     )
 
 

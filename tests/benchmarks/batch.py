@@ -29,11 +29,13 @@ from synth.question.settings import SearchSettings
 from synth.variants.p_median import Chooser
 from tests.benchmarks import cases
 from tests.benchmarks.tables import Report
+from tests.sample_problems.rod import Rod
 
 ROOT = Path(__file__).parents[2]
 FAMILY = "multi_plate_clutch"
 MIB = 2**20
 EMPTY_ROWS = 2000
+LONG = "long"
 
 
 def case(rows: int, points: int, size: str, folder: Path) -> BatchJob:
@@ -151,8 +153,53 @@ def overhead(rows: int, database: str | None = None) -> dict[str, Any]:
     }
 
 
+def long_table(rows: int, workers: int) -> dict[str, Any]:
+    """Return what a file of many rows of three numbers costs, where solving costs nothing."""
+    known, chance = runner.solve_unit, np.random.default_rng(1)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "rows.csv"
+        with path.open("w", encoding="utf-8") as file:
+            file.write("force [kN],safety_factor,diameter_limit [mm]\n")
+            for force, safety, room in chance.uniform((1, 1, 10), (400, 3, 90), (rows, 3)):
+                file.write(f"{force:.3f},{safety:.4f},{room:.2f}\n")
+        begin = time.monotonic()
+        common = {"parts": None, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
+        job = BatchJob(Rod, path, Path(folder) / "out", None, None, None, SearchSettings(points=1), common)
+        for _ in job.table.lines():
+            pass
+        opened = time.monotonic()
+        checked = [opened]  # when the last row was
+        job.plan(workers, lambda state: checked.append(time.monotonic()) if state["stage"] == "checked" else None)
+        planned = time.monotonic()
+        units = sum(job.store.open_units(job.id))
+        runner.solve_unit = _answered_at_once
+        try:
+            job.work(None, None, None)
+        finally:
+            runner.solve_unit = known
+        worked = time.monotonic()
+        job.write()
+        written = time.monotonic()
+        job.close()
+        size = sum(file.stat().st_size for file in (Path(folder) / "out").glob("jobs.sqlite*"))
+    unit = 1024 if sys.platform != "darwin" else 1
+    return {
+        "rows": rows,
+        "units": units,
+        "read s": opened - begin,
+        "check s": checked[-1] - opened,
+        "plan s": planned - checked[-1],
+        "claim and keep s": worked - planned,
+        "write s": written - worked,
+        "processor s, master": time.process_time(),
+        "database MB": size / 1e6,
+        "MiB, master": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / MIB,
+        "MiB, worker": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit / MIB,
+    }
+
+
 def in_a_process(rows: int, points: int, size: str, workers: int, most: float) -> dict[str, Any]:
-    """Measure a batch in a process of its own."""
+    """Measure a batch in a process of its own; of the size ``long`` a table of three numbers a row."""
     command = [sys.executable, "-m", "tests.benchmarks.batch", str(rows), str(points), size, str(workers)]
     print(f"... batch {rows} rows, {points} points, {size}", file=sys.stderr, flush=True)
     try:
@@ -170,6 +217,7 @@ def batches(quick: bool) -> list[Report]:
     if quick:
         table = [in_a_process(4, 1, "tiny", 1, 300.0)]
         spent = [overhead(40)]
+        long = [in_a_process(3_000, 1, LONG, 2, 300.0)]
     else:
         table = [
             in_a_process(1_000, 1, "110k", 2, 3600.0),
@@ -178,6 +226,7 @@ def batches(quick: bool) -> list[Report]:
         ]
         addresses = [None, *filter(None, [os.environ.get("CLUTCHSYNTH_DATABASE")])]
         spent = [overhead(EMPTY_ROWS, address) for address in addresses]
+        long = [in_a_process(rows, 1, LONG, 2, 14_400.0) for rows in (10_000, 1_000_000)]
     return [
         Report("batch", table, ["least mass, or mass against force, to 0.1 %, makeable sizes; rows around the hoist"]),
         Report(
@@ -185,6 +234,7 @@ def batches(quick: bool) -> list[Report]:
             spent,
             ["per row, with answers that cost nothing; SQLite, and the server that CLUTCHSYNTH_DATABASE names, if any"],
         ),
+        Report("long table", long, ["three numbers a row, two processes, answers that cost nothing, SQLite"]),
     ]
 
 
@@ -232,4 +282,7 @@ def _plane(rows: int, columns: int) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    print(json.dumps(measure(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], int(sys.argv[4]))))
+    if sys.argv[3] == LONG:
+        print(json.dumps(long_table(int(sys.argv[1]), int(sys.argv[4]))))
+    else:
+        print(json.dumps(measure(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], int(sys.argv[4]))))

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from synth.problems.multi_plate.model import MultiPlateClutch
 
-from problems.multi_plate.model import MultiPlateClutch
 from synth.declaration import Declaration
 from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of

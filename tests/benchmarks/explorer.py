@@ -12,7 +12,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from reports.explorer.page import explorer_page
+from synth.reports.explorer.page import explorer_page
+
 from tests.reports.browser import CHROMIUM, MISSING, chromium, opened
 from tests.reports.explorer_records import grown
 

@@ -1,7 +1,8 @@
-"""How many small continuous problems are solved per second: arrays, compiled code and IPOPT on the same problems."""
+"""How many small continuous problems are solved per second: arrays, the kernel and IPOPT on the same problems."""
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from typing import Any
@@ -9,8 +10,9 @@ from typing import Any
 import numpy as np
 
 import synth
+from synth.kernels.loading import VARIABLE
 from synth.model.constraint import Goal, NodeConstraint
-from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import Rows
 from synth.question.catalogs import as_catalogs
@@ -69,10 +71,11 @@ class Workload:
         self.tasks = Tasks(np.full((count, 2), 1e-6), slopes, caps, np.ones(2))
         self.void = np.stack([x.void(self.data, (count,)) for x in model.constraints], axis=1)
 
-    def batch(self, code: Code) -> Callable[[], Solutions] | None:
-        """Return a call that solves all problems at once; None where it was to be compiled and could not be."""
-        solver = BatchNlp(self.model.program, self.n, self.rows, code)
-        if code != "arrays" and not solver.compiled:
+    def batch(self, native: bool) -> Callable[[], Solutions] | None:
+        """Call that solves all problems at once; None where the kernel is wanted and was not built."""
+        os.environ[VARIABLE] = "1" if native else "0"
+        solver = BatchNlp(self.model.program, self.n, self.rows)
+        if native and not solver.compiled:
             return None
         return lambda: solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void)
 
@@ -106,17 +109,16 @@ def measure(count: int = 20_000, referee: int = 60, repeats: int = 3) -> dict[st
     Returns
     -------
     dict
-        ``numpy``, ``general`` and ``native`` (None without a compiler) and ``ipopt``: problems per second and core;
+        ``numpy``, ``kernel`` (None where it was not built) and ``ipopt``: problems per second and core;
         ``solved``: share of problems for which a feasible point was found.
     """
     work = Workload(count)
-    plain, general, compiled = work.batch("arrays"), work.batch("general"), work.batch("own")
+    plain, kernel = work.batch(False), work.batch(True)
     assert plain is not None
-    solution = (compiled or plain)()
+    solution = (kernel or plain)()
     return {
         "numpy": _rate(plain, count, repeats),
-        "general": None if general is None else _rate(general, count, repeats),
-        "native": None if compiled is None else _rate(compiled, count, repeats),
+        "kernel": None if kernel is None else _rate(kernel, count, repeats),
         "ipopt": _rate(work.one_by_one(referee), referee, 1),
         "solved": float(np.mean(solution.violation <= FEASIBLE)),
     }

@@ -161,9 +161,8 @@ def nlp(settings: Settings) -> list[Report]:
     more = {"count": 2000, "referee": 10, "repeats": 1} if settings.quick else {"repeats": settings.repeat}
     found = nlp_rate.measure(**more)
     ways = {
-        "arrays, no compiler": "numpy",
-        "compiled once for all": "general",
-        "compiled": "native",
+        "over arrays": "numpy",
+        "by the kernel": "kernel",
         "IPOPT one by one": "ipopt",
     }
     table = [{"solver": label, "NLPs per second and core": found[name]} for label, name in ways.items()]

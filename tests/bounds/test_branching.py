@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from synth.bounds.clusters import ClusterTree, Factor
 from synth.tuning import TUNING
 from tests.sample_problems.strut import designs_of, strut_form
 
@@ -46,6 +47,38 @@ def test_what_teaches_nothing_is_passed_over():
     branching.learn(multipliers, np.ones(2))
     assert branching.learned == 0
     assert branching.weights is before
+
+
+@pytest.mark.parametrize("importance", [0.0, np.inf, np.nan])
+def test_what_has_no_importance_or_no_end_of_it_teaches_nothing(importance):
+    bounding = strut_form().bounding
+    branching = bounding.branching
+    multipliers = np.eye(2, len(bounding.question.constraints) + 3)
+    with np.errstate(all="raise"):
+        branching.learn(multipliers, np.array([importance, 1.0]))
+    assert branching.learned == 1
+    assert np.isfinite(branching.weights).all()
+
+
+def test_scores_are_finite_where_widths_have_no_end():
+    form = strut_form()
+    branching, root = form.bounding.branching, form.boxes.root()
+    ends = replace(root, low=np.full(root.low.shape, 1e-250), high=np.full(root.high.shape, 1e250))
+    with np.errstate(all="raise"):
+        idle = branching.scores(ends, [False] * len(form.constraints), 0)
+        scores = branching.scores(ends, [True] * len(form.constraints), 1)
+    assert not idle.any()
+    assert np.isfinite(scores).all()
+
+
+def test_a_cutoff_that_is_missing_spreads_clusters_without_an_end_to_it():
+    form = strut_form()
+    branching, influences = form.bounding.branching, form.bounding._influences
+    tree = ClusterTree(Factor("", (), np.array([[-2.0], [3.0], [np.inf]]), (0,)), np.ones(1))
+    with np.errstate(all="raise"):
+        spread = branching._spread(tree, influences.anywhere)
+    assert np.isfinite(spread).all()
+    assert spread[0].max() > 100 * spread[1:].max()  # what has a cutoff is told from what has none first
 
 
 def test_statistics_are_handed_over_between_questions_of_a_kind():

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from synth.bounds.intervals import BACKWARD, FORWARD, SLACK, loosened
+from synth.bounds.intervals import BACKWARD, FORWARD, loosened
+from synth.feasibility import SLACK
 from synth.model.program import TEMPLATES
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-13
@@ -144,7 +145,7 @@ def test_inverses_keep_arguments_that_rounding_has_nearly_lost(op, formula, poin
 
 
 def test_limits_are_loosened_outward():
-    assert loosened(np.array(10.0), 1e-9, +1) == pytest.approx(10.0 * (1 + SLACK), rel=1e-15)
-    assert loosened(np.array(-10.0), 1e-9, +1) == pytest.approx(-10.0 * (1 - SLACK), rel=1e-15)
-    assert loosened(np.array(0.0), 0.5, -1) == -0.5 * SLACK
+    assert loosened(np.array(10.0), 1e-9, SLACK) == pytest.approx(10.0 * (1 + SLACK), rel=1e-15)
+    assert loosened(np.array(-10.0), 1e-9, SLACK) == pytest.approx(-10.0 * (1 - SLACK), rel=1e-15)
+    assert loosened(np.array(0.0), 0.5, -SLACK) == -0.5 * SLACK
     assert SLACK >= 2e-6  # twice the tolerance of feasibility

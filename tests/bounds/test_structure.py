@@ -6,11 +6,11 @@ import casadi as ca
 import numpy as np
 import pytest
 from scipy.special import erf
+from synth.problems.mechanics.guide_friction import sum_geometric, sum_lipka
+from synth.problems.mechanics.heat import peak_rise_per_work
+from synth.problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
 
 import synth
-from problems.mechanics.guide_friction import sum_geometric, sum_lipka
-from problems.mechanics.heat import peak_rise_per_work
-from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
 from synth.bounds.elementary import LOG_BELOW_ONE, MIRRORED, OUTER
 from synth.bounds.shapes import LONGEST
 from synth.bounds.structure import classify

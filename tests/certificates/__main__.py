@@ -15,6 +15,7 @@ from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, make
+from tests.certificates.sums import SUMS
 
 VERIFYING = 20.0  # seconds
 OPEN_BY_DESIGN = ("hard",)  # a structure that no search proves
@@ -46,7 +47,7 @@ def tried(structure: str, seeds: range, verify: bool) -> Counter[str]:
 def main() -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m tests.certificates", description=__doc__)
-    every = [s for s in dict.fromkeys([*STRUCTURES, *SIGNS, *KINKS]) if s not in OPEN_BY_DESIGN]
+    every = [s for s in dict.fromkeys([*STRUCTURES, *SIGNS, *KINKS, *SUMS]) if s not in OPEN_BY_DESIGN]
     parser.add_argument("structures", nargs="*", default=every, metavar="STRUCTURE", help=", ".join(every))
     parser.add_argument("--seeds", default="0:40", help="first and one past the last (0:40)")
     parser.add_argument("--verify", action="store_true", help="prove each front again")

@@ -180,6 +180,7 @@ class Reference:
         result = {}
         for name, x in self.case.limits.items():
             by, size = missed(x.value(u), x.limit(u), x.sense)
+            size = size if x.terms is None else np.maximum(size, x.terms(u))
             for column in x.void_without:
                 void = np.isnan(u[column])
                 by, size = np.where(void, -np.inf, by), np.where(void, 1.0, size)
@@ -269,7 +270,8 @@ class Reference:
         """Return points found by trying to improve listed designs in every objective, as shares of their slack."""
         if not self.free:
             return self.explored
-        return self.minimise(listed.objectives, 1.0 / slack, listed)
+        # Of what is exactly zero nothing is forgiven.
+        return self.minimise(listed.objectives, 1.0 / np.maximum(slack, 1e-12), listed)
 
     def minimise(self, base: np.ndarray, weights: np.ndarray, own: Points | None = None) -> Points:
         """Minimise max_k weights_k (objective_k - base_k) for several rows of weights, from many starts each."""

@@ -238,7 +238,8 @@ def _signs_equality(b: Builder) -> None:
     if b.chance():
         b.case.limits["balance"] = Limit("equal", lambda u: u["y"], free)
     else:
-        b.case.limits["balance"] = Limit("equal", difference, lambda u: 0.0)
+        size: Formula = lambda u: np.maximum(1e-12, np.maximum(np.abs(u["y"]), np.abs(free(u))))  # noqa: E731
+        b.case.limits["balance"] = Limit("equal", difference, lambda u: 0.0, terms=size)
     _objectives(b, [*names, "y"], 1 + b.case.seed % 2)
     _finish(b)
 

@@ -61,13 +61,17 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit between two sides; ``void_without`` names optional columns whose absence makes it void."""
+    """A limit between two sides; ``void_without`` names optional columns whose absence makes it void.
+
+    ``terms`` is the size of its largest term, where one side is zero.
+    """
 
     sense: str
     value: Formula
     limit: Formula
     guard: bool = False
     void_without: tuple[str, ...] = ()
+    terms: Formula | None = None
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
+from tests.certificates.sums import SUMS
 from tests.repetitions import repetitions
 from tests.tuned import tuned
 
@@ -40,7 +41,7 @@ pytestmark = pytest.mark.slow  # hundreds of searches
 INSTANCES = (
     dict.fromkeys(STRUCTURES, repetitions(2, 3))
     | dict.fromkeys(("waves", "maximised", "continuous", "pieces", "scales", "signs_poles"), 3)
-    | dict.fromkeys(("signed", "guards", "mixed", "poles", "mismatch", "knife_edge", "refusals", *KINKS), 4)
+    | dict.fromkeys(("signed", "guards", "mixed", "poles", "mismatch", "knife_edge", "refusals", *KINKS, *SUMS), 4)
     | dict.fromkeys(("infeasible", "equality", "alternatives"), 6)
     | {"discrete": repetitions(3, 6), "degenerate": 5, "expressions": repetitions(6, 9), "hard": 0}
 )
@@ -62,6 +63,7 @@ PROVABLE = (
     "knife_edge",
     "degenerate",
     "infeasible",
+    "zero_sided",
     "scales",
     "signs_gridded",
     "signs_pinned",
@@ -81,10 +83,10 @@ def test_a_front_claims_nothing_that_is_wrong(structure, seed):
     ("structure", "seed"),
     [(s, k) for s, kinds in (("signs_gridded", 2), ("signs_pinned", 2), ("signs_poles", 3)) for k in range(kinds)],
 )
-def test_compiled_code_loses_no_value_of_any_sign(structure, seed):
+def test_arrays_lose_no_value_of_any_sign(structure, seed, monkeypatch):
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     case = make(structure, 4 + seed)
-    at_once = tuned(compiling={"boxes": 0})
-    a = Answer(case, run(case, at_once, time_limit=PATIENT), Reference(case))
+    a = Answer(case, run(case, time_limit=PATIENT), Reference(case))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{4 + seed}: {a.front.certificate}", *wrong])
 
@@ -126,7 +128,8 @@ def relaxed(monkeypatch):
 
 @pytest.mark.parametrize("structure", [s for s in INSTANCES if s != "hard"])
 def test_one_best_by_all_limits_together_claims_nothing_that_is_wrong(relaxed, structure):
-    for seed in range(repetitions(1, 2)):
+    first = {"posynomial": 2}.get(structure, 0)  # those before are proven without
+    for seed in range(first, first + repetitions(1, 2)):
         made = make(structure, seed)
         case = replace(made, objectives=dict(list(made.objectives.items())[:1]), points=1)
         front = run(case, tuned(tree={"first_try": 3, "together": TOGETHER}), time_limit=PATIENT)
@@ -266,7 +269,7 @@ def fills(monkeypatch):
 
 @pytest.mark.parametrize(
     ("structure", "seed", "points", "enough"),
-    [("discrete", 2, 8, True), ("posynomial", 1, 12, True), ("discrete", 2, 20, False), ("gridded", 1, 20, False)],
+    [("discrete", 2, 8, True), ("discrete", 2, 20, False), ("gridded", 1, 20, False)],
 )
 def test_what_lies_between_levels_is_found_until_it_is_enough_or_all(fills, structure, seed, points, enough):
     case = of_two(structure, seed, points)

@@ -17,6 +17,11 @@ from tests.asking import instance_of
 from tests.conformance.cases_magnetic import SOURCES, magnetic
 from tests.repetitions import repetitions
 
+OF_SHAFTS = {
+    "synth.problems.practice:SHAFT_STEEL": (1, -1, -2, 0, 0),
+    "synth.problems.mechanics.shaft:TEST_BAR": (0, 1, 0, 0, 0),
+}
+
 
 @dataclass(frozen=True)
 class Case:
@@ -254,10 +259,10 @@ FITTING_SPRINGS = {
 FITTING_COUNTS = {"return_springs": 3, "clamp_springs": 3, "friction_surfaces": 8}
 
 BUILT = {
-    "problems.mechanics.centrifugal:FURTHER_PLATE": (0, 1, 0, 0, 0),
-    "problems.mechanics.centrifugal:FURTHER_CORE": (0, 1, 0, 0, 0),
-    "problems.mechanics.centrifugal:COVER": (0, 1, 0, 0, 0),
-    "problems.centrifugal.body:LEAST_WORK": (1, 2, -2, 0, 0),
+    "synth.problems.mechanics.centrifugal:FURTHER_PLATE": (0, 1, 0, 0, 0),
+    "synth.problems.mechanics.centrifugal:FURTHER_CORE": (0, 1, 0, 0, 0),
+    "synth.problems.mechanics.centrifugal:COVER": (0, 1, 0, 0, 0),
+    "synth.problems.centrifugal.body:LEAST_WORK": (1, 2, -2, 0, 0),
 }
 
 BUILT_RAMPS = Design(
@@ -426,7 +431,7 @@ CASES: dict[str, Family] = {
         },
         requirements=CAR,
         needed={"practice=on": {"wear_life_min": "10000", "top_speed": "6000 1/min"}},
-        constants={"problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
+        constants={"synth.problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
         designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC)
         | {
             "practice_standard": Design(

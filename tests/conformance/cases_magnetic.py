@@ -12,7 +12,7 @@ from synth.question.instance import Instance
 WINDER = {"required_torque": "30 N*m"}
 SPINDLE = {"load_torque": "8 N*m", "driver_speed": "960 1/min", "driven_inertia": "0.05 kg*m2"}
 DRUM = {**SPINDLE, "load_torque": "30 N*m"}
-MAGNETICS = "problems.mechanics.magnetics:"
+MAGNETICS = "synth.problems.mechanics.magnetics:"
 CONSTANTS = {
     MAGNETICS + "MU_0": (1, 1, -2, 0, -2),
     MAGNETICS + "COPPER_RESISTIVITY": (1, 3, -3, 0, -2),
@@ -23,12 +23,12 @@ CONSTANTS = {
     MAGNETICS + "UNIT_SPEED": (0, 1, -1, 0, 0),
 }
 
-POWDER = "problems.magnetic_powder.formulas:"
+POWDER = "synth.problems.magnetic_powder.formulas:"
 POWDER_CONSTANTS = {
     POWDER + "SHIELD_DENSITY": (1, -3, 0, 0, 0),
     POWDER + "SHIELD_THICKNESS": (0, 1, 0, 0, 0),
     POWDER + "SHAFT_ENDS": (0, 1, 0, 0, 0),
-    "problems.magnetic_powder.model:GRAVITY": (0, 1, -2, 0, 0),
+    "synth.problems.magnetic_powder.model:GRAVITY": (0, 1, -2, 0, 0),
 }
 
 
@@ -232,7 +232,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any], design: Calla
             ),
             culprits=frozenset({"torque_capacity", "outer_diameter", "pull_in", "pole_flux_density"}),
             sound=sound_electromagnetic_clutches,
-            constants=CONSTANTS | {"problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
+            constants=CONSTANTS | {"synth.problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
             designs={
                 "practice": design(
                     {

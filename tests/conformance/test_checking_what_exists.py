@@ -12,7 +12,7 @@ import synth
 from synth.question.catalogs import as_catalogs
 from synth.question.refusals import allowed_together
 from synth.special import expanded
-from synth.units import format_quantity
+from synth.units import typed_quantity
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, front_of
 
@@ -82,7 +82,7 @@ def test_sizes_outside_of_the_range_are_computed(found):
     model, tried, finite = instance.model, 0, 0
     spec, problem = design.to_spec(), synth.load(family, **case.options)
     for name, value in moved_out(instance):
-        stated = format_quantity(value, model.units[name], None)
+        stated = typed_quantity(value, model.units[name], None)
         values = {**spec["values"], name: stated}
         other = evaluated(problem, case.requirements, values, spec["parts"])
         if isinstance(other, synth.InputError):

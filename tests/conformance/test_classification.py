@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from synth.problems.mechanics.guide_friction import sum_geometric
+from synth.problems.mechanics.heat import peak_rise_per_work
+from synth.problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
 
 import synth
-from problems.mechanics.guide_friction import sum_geometric
-from problems.mechanics.heat import peak_rise_per_work
-from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
 from synth.bounds.structure import Structure, classify
 from synth.declaration import Declaration
 from synth.model.model import Model
@@ -32,16 +32,18 @@ class Claims:
 
     def __init__(self, model: Model, found: Structure) -> None:
         self.program, self.found = model.program, found
-        self.evaluate = model.program.compile(list(range(len(model.program.nodes))))
+        self.nodes = model.program.nodes[: len(found.nodes)]
+        self.evaluate = model.program.compile(list(range(len(self.nodes))))
         self.signs = np.array([shape.sign for shape in found.nodes])
         choosing = (ca.OP_FMIN, ca.OP_FMAX, ca.OP_IF_ELSE_ZERO, OP_SELECT)
-        two = [(k, *n.args) for k, n in enumerate(model.program.nodes) if n.op != OP_SPECIAL and len(n.args) == 2]
+        two = [(k, *n.args) for k, n in enumerate(self.nodes) if n.op != OP_SPECIAL and len(n.args) == 2]
         self.pairs = np.array(two, dtype=np.int64).reshape(-1, 3).T  # nodes of two things, and both of them
-        self.chosen = self.program.downstream(k for k, node in enumerate(self.program.nodes) if node.op in choosing)
+        chosen = self.program.downstream(k for k, node in enumerate(self.nodes) if node.op in choosing)
+        self.chosen = chosen[: len(self.nodes)]
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Return the value of every node."""
-        result = np.empty((len(self.program.nodes), len(points)))
+        result = np.empty((len(self.signs), len(points)))
         with np.errstate(all="ignore"):
             for k, value in enumerate(self.evaluate(list(points.T))):
                 result[k] = value
@@ -53,7 +55,7 @@ class Claims:
         own, first, second = self.pairs
         larger = np.maximum(np.abs(values[first]), np.abs(values[second]))
         good[own] &= (np.abs(values[own]) > CANCELLED * larger) | (values[own] == 0)
-        for k, node in enumerate(self.program.nodes):
+        for k, node in enumerate(self.nodes):
             if node.op == OP_SPECIAL:
                 above = self.program.specials[int(node.constant)].above
                 if above is not None:
@@ -82,9 +84,9 @@ class Claims:
             excess = at - (low + high) / 2
             slack = 1e-9 * (1 + np.abs(low) + np.abs(high))
             if shape.curvature in ("log-convex", "log-affine"):
-                assert np.all(excess <= slack), (k, self.program.nodes[k])
+                assert np.all(excess <= slack), (k, self.nodes[k])
             if shape.curvature in ("log-concave", "log-affine"):
-                assert np.all(excess >= -slack), (k, self.program.nodes[k])
+                assert np.all(excess >= -slack), (k, self.nodes[k])
         return judged
 
     def check_elasticities(self, points: np.ndarray, factors: np.ndarray, low: np.ndarray, high: np.ndarray) -> int:
@@ -112,7 +114,7 @@ class Claims:
                 slack = 1e-7 * (1 + np.abs(rise))
                 within = (rise >= least - slack) & (rise <= most + slack)
                 for k in np.flatnonzero(np.any(rows & ~within, axis=1)):
-                    raise AssertionError((int(k), self.program.nodes[k], self.found.inputs[i]))
+                    raise AssertionError((int(k), self.nodes[k], self.found.inputs[i]))
         return judged
 
 
@@ -220,7 +222,7 @@ def grow(rng, d, inputs, choice, size):
         return a - b
 
     def work(formula, a, b, c):
-        if a.is_constant() or b.is_constant():
+        if a.is_constant() or b.is_constant() or (a - b).is_constant():
             return c
         positive(a, b)
         return formula(a, b, c, 2.0, 0.5)

@@ -10,12 +10,12 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from synth.reports.drawing.dxf import dxf_document
+from synth.reports.drawing.page import paper_sheet
+from synth.reports.drawing.paper import corners_of, overlap
+from synth.reports.drawing.svg import drawing_svg
 
 import synth
-from reports.drawing.dxf import dxf_document
-from reports.drawing.page import paper_sheet
-from reports.drawing.paper import corners_of, overlap
-from reports.drawing.svg import drawing_svg
 from synth.analysis.designs import make_design, make_frame, part_row
 from synth.analysis.drawing import drawing_of, draws, shown_measure, weighed
 from synth.results.design import DesignSteps

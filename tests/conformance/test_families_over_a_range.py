@@ -8,7 +8,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.uncertainty import read_block
 from synth.robust.counterpart import robust_counterpart
 from synth.robust.uncertainty import CATALOGUE, LEAST, MOST, SLIDING
-from synth.units import format_quantity
+from synth.units import typed_quantity
 from tests.asking import instance_of, rater_of
 from tests.conformance.cases import CASES
 
@@ -45,7 +45,7 @@ def designs_of(family, case, instance):
     for k in rows[:POINTS]:
         parts, counts, choices = instance.combinations.describe(int(combinations[k]))
         sizes = {
-            v.name: format_quantity(float(x), v.unit, None)
+            v.name: typed_quantity(float(x), v.unit, None)
             for v, x in zip(instance.model.variables, variables[k], strict=True)
         }
         yield synth.evaluate(
@@ -82,6 +82,7 @@ def test_posed_limits_are_those_of_the_family_and_proofs_hold(family):
             for side, posed_one in zip(sides, own.limits[name], strict=True):
                 np.testing.assert_allclose(posed_one, side[0], rtol=1e-9, atol=1e-12, err_msg=name)
         told = rater.one(design)["limits"]
+        assert not [name for name, x in told.items() if x["holds"] is None]  # bounds are tight enough for every family
         points = rng.random((500, len(things)))
         sides = rater.sides(design, points)
         for limit, values, (value, bound) in zip(rater.limits, rater.residuals(design, points), sides, strict=True):

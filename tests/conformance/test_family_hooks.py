@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from synth.reports.figure import figure_svg
 
 import synth
-from reports.figure import figure_svg
 from synth.units import parse_unit, split_header, to_si
 from tests.conformance.cases import CASES, front_of
 

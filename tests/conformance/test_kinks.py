@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import synth
-from synth.compiled.execution import Execution
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Tasks
 from synth.nlp.ipopt import Task
@@ -69,7 +68,7 @@ class Question:
         asked = chosen_objectives(model, case.settings.get("objectives")) | chosen_objectives(model, None)
         names = model.declaration.objectives
         objectives = {name: sense for name, sense in with_ties(model, asked).items() if name in names}
-        self.form = form = Formulation(instance, objectives, len(asked), execution=Execution(compiled=False))
+        self.form = form = Formulation(instance, objectives, len(asked))
         self.own = np.zeros(STARTS, dtype=np.int64)
         self.data = [float(np.asarray(x).ravel()[0]) for x in instance.data(self.own[:1])]
         self.void = void_limits(form.constraints, self.data, 1)[0]

@@ -8,7 +8,6 @@ from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
 from synth.search.formulation import Formulation
 from tests.asking import instance_of
-from tests.tuned import tuned
 
 DUTY = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
 CLUTCH = synth.load("multi_plate_clutch", practice="off")
@@ -18,12 +17,12 @@ PARTS = {"friction_pair": ["cork_wet"], "inner_plate": ["core 1.5"], "outer_plat
 @pytest.mark.parametrize("ratio", [0.11, 0.13, 0.16, 0.2])
 @pytest.mark.parametrize("outer", [351])
 @pytest.mark.parametrize("compiled", [False, True])
-def test_a_pinned_ring_that_is_feasible_is_kept(outer, ratio, compiled):
-    tuning = tuned(compiling={"boxes": 0 if compiled else 1e9})
+def test_a_pinned_ring_that_is_feasible_is_kept(outer, ratio, compiled, monkeypatch):
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1" if compiled else "0")
     inner = round(outer * (1 - ratio) / (1 + ratio))
     fix = {"ramp_time": "2 s", "d_out": f"{outer} mm", "d_in": f"{inner} mm", "friction_surfaces": 24}
     instance = instance_of(CLUTCH, DUTY, as_catalogs(None), PARTS, None, fix)
-    form = Formulation(instance, with_ties(instance.model, chosen_objectives(instance.model, None)), 2, tuning=tuning)
+    form = Formulation(instance, with_ties(instance.model, chosen_objectives(instance.model, None)), 2)
     forces = np.geomspace(500, 20000, 400)
     points = np.column_stack([np.full(400, outer / 1e3), np.full(400, inner / 1e3), forces, np.full(400, 2.0)])
     result = instance.model.evaluate(points, instance.data(np.array([0])))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
 import pytest
+from synth.problems.mechanics.shaft import fatigue_shear, size_factor
+from synth.problems.practice import SHAFT_STEEL
 
 import synth
 from synth.tables.catalogs import Catalogs
@@ -31,8 +33,10 @@ SAME = {
 }
 
 
-def asked(family: str, name: str, catalogs: Any = None, **changed: str) -> synth.Design:
-    """Return the design that is known of an option set, with some of its options changed."""
+def asked(
+    family: str, name: str, catalogs: Any = None, typed: Mapping[str, str] | None = None, **changed: str
+) -> synth.Design:
+    """Design known of an option set, with some of its requirements and options changed."""
     data = CASES[family]
     design: Design = data.designs[name]
     chosen = {**data.option_sets[name], **changed}
@@ -45,7 +49,12 @@ def asked(family: str, name: str, catalogs: Any = None, **changed: str) -> synth
     declared = set(synth.describe(plain).query("kind == 'option'")["name"])
     return synth.evaluate(
         synth.load(family, **{key: word for key, word in chosen.items() if key in declared}),
-        {**data.requirements, **SAME.get(family, {}), **{key: own for more in needed for key, own in more.items()}},
+        {
+            **data.requirements,
+            **SAME.get(family, {}),
+            **{key: own for more in needed for key, own in more.items()},
+            **(typed or {}),
+        },
         values={**design.sizes, **design.counts},
         parts=design.parts,
         catalogs=catalogs,
@@ -96,6 +105,34 @@ def test_the_next_shaft_end_and_its_key_are_named(family: str, name: str) -> Non
     assert found.needed <= found.value * (1 + 1e-9)
     assert found.beside is not None
     assert not asked(family, name, practice="off", mass_scope="parts").next_rows
+
+
+TYPED = {
+    "wrap_spring": "bore_diameter",
+    "wrap_spring_actuated": "bore_diameter",
+    "magnetic_powder_clutch": "shaft_radius",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "name"), KNOWN)
+def test_a_typed_shaft_must_stand_its_torque(family: str, name: str) -> None:
+    size = TYPED.get(family, "shaft_diameter")
+    share = 2 if size == "shaft_radius" else 1
+    before = asked(family, name)
+    thick, shear = before.next_rows["shaft_end"].needed, before.limits["shaft_strength"][0]
+    for diameter in (thick, 8e-3):
+        found = asked(family, name, typed={size: f"{diameter / share!r} m"})
+        stands, limit = found.limits["shaft_strength"]
+        assert stands == pytest.approx(shear * (thick / diameter) ** 3)  # 16 M/(pi d**3)
+        assert limit == pytest.approx(fatigue_shear(SHAFT_STEEL, size_factor(diameter), 1.5))
+        assert ("shaft_strength" in found.violated) == (stands > limit)
+        assert found.steps["shaft_shear"] == pytest.approx(stands)
+        end = found.next_rows["shaft_end"]
+        assert end.typed
+        assert "typed" in str(end)
+        assert "needed" not in str(end)
+    assert "shaft_strength" not in before.violated
 
 
 RULED = {

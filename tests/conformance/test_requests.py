@@ -18,7 +18,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.search.question import Question, pose
-from synth.units import Quantity, format_quantity, from_si
+from synth.units import Quantity, from_si, typed_quantity
 from tests.conformance.cases import CASES
 
 SETTINGS = st.builds(
@@ -50,7 +50,7 @@ def requests(draw: st.DrawFn, family: str) -> Request:
         r = d.requirements[d.names()[word]]
         if np.isfinite([r.lower, r.upper]).all() and draw(st.booleans()):
             si = draw(st.floats(r.lower, r.upper))
-            ways = [Quantity(si, r.unit), format_quantity(si, r.unit), np.float64(from_si(si, r.unit))]
+            ways = [Quantity(si, r.unit), typed_quantity(si, r.unit), np.float64(from_si(si, r.unit))]
             requirements[word] = draw(st.sampled_from(ways))
     quantities = draw(st.lists(st.sampled_from(list(model.quantity_sx)), max_size=2, unique=True))
     limits = {

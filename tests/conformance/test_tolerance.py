@@ -4,7 +4,6 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.compiled.execution import Execution
 from synth.feasibility import TOLERANCE
 from synth.nlp.ipopt import Task
 from synth.search.formulation import Formulation
@@ -76,9 +75,7 @@ def reached(form, combination, variables, phi):
 
 def test_no_design_is_dominated_by_another_combination_that_keeps_the_limits_closely(front):
     instance, rng = front.question, np.random.default_rng(5)
-    form = Formulation(
-        instance, front.frame.objectives, len(front.frame.objectives), execution=Execution(compiled=False)
-    )
+    form = Formulation(instance, front.frame.objectives, len(front.frame.objectives))
     made = [combination_of(instance, d) for d in front.designs]
     points = np.array([[d.values[v.name] for v in instance.model.variables] for d in front.designs])
     _, phi = form.points.feasible_rows(points, np.array(made))

@@ -6,6 +6,7 @@ import casadi as ca
 import numpy as np
 import pandas as pd
 import pytest
+from synth.problems.mechanics.guide_friction import sum_geometric
 
 import synth
 from synth.declaration import (
@@ -19,7 +20,9 @@ from synth.declaration import (
     Variable,
     grid_values,
 )
+from synth.feasibility import SMALLEST
 from synth.model.numbers import number
+from synth.special import recorded
 from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 
@@ -156,9 +159,9 @@ def test_a_variable_has_bounds_and_grid_in_si():
     assert not len(d.variables["free"].grid)
 
 
-@pytest.mark.parametrize(("lower", "upper"), [(5, 5), (6, 5)])
-def test_a_variable_needs_room(lower, upper):
-    with pytest.raises(DeclarationError, match="lower < upper"):
+@pytest.mark.parametrize(("lower", "upper"), [(6, 5), (-1, -2)])
+def test_the_ends_of_a_variable_are_in_order(lower, upper):
+    with pytest.raises(DeclarationError, match="needs lower <= upper"):
         declaration().variable("side", "mm", lower, upper)
 
 
@@ -303,13 +306,48 @@ def test_conditions_may_be_several_and_empty_ones_are_none():
 
 
 def test_a_column_that_the_table_lacks_or_that_is_text_is_refused():
-    rod = declaration().part("rod", "rods")
-    with pytest.raises(
-        synth.InputError, match=r"table rods, column mass: is missing; expected a number column, which slot rod uses"
-    ):
-        _ = rod.mass
-    with pytest.raises(synth.InputError, match="number column"):
-        _ = rod.note
+    for column in ("mass", "note"):
+        d = declaration()
+        d.derive("told", "kg", 2 * getattr(d.part("rod", "rods"), column))
+        right = f"table rods, column {column}: is missing; expected a number column, which slot rod uses"
+        with pytest.raises(synth.InputError, match=right):
+            d.settle_columns([])
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        pytest.param(lambda d, x: d.derive("told", "kg", 2 * x), id="quantity"),
+        pytest.param(lambda d, x: d.at_most("told", x, 3, "kg"), id="limit"),
+        pytest.param(lambda d, x: d.at_least("told", 3, x, "kg"), id="bound"),
+        pytest.param(lambda d, x: d.requirement("told", "kg", default=2 * x), id="default"),
+        pytest.param(lambda d, x: d.refuse("told", x > 3, "heavy"), id="refusal"),
+        pytest.param(lambda d, x: d.advise("told", x > 3, "heavy"), id="remark"),
+    ],
+)
+def test_a_column_that_results_read_is_asked_of_the_table(read):
+    d = declaration()
+    read(d, d.part("rod", "rods").mass)
+    with pytest.raises(synth.InputError, match="column mass"):
+        d.settle_columns([])
+
+
+def test_a_column_that_hooks_alone_read_is_not_asked_of_the_table():
+    d = declaration()
+    rod = d.part("rod", "rods")
+    d.derive("told", "mm", rod.diameter)
+    d.step("length", "mm", rod.free_length - rod.diameter)
+    d.settle_columns([])
+    assert {name for name, column in rod.columns.items() if column.required} == {"diameter"}
+
+
+def test_a_column_that_a_special_function_reads_is_asked_of_the_table():
+    with recorded() as calls:
+        d = declaration()
+        rod = d.part("rod", "rods")
+        d.derive("told", "-", sum_geometric(rod.diameter, sum_geometric(rod.mass, 3)))
+    with pytest.raises(synth.InputError, match="column mass"):
+        d.settle_columns(calls)
 
 
 def test_a_table_that_is_not_there_is_refused():
@@ -424,7 +462,7 @@ def test_limits_have_three_senses():
     assert [limit.sense for limit in d.limits.values()] == ["at_most", "at_least", "equal"]
     assert [limit.guard for limit in d.limits.values()] == [False, True, False]
     assert d.limits["c"].scale == 0.0005
-    assert d.limits["a"].scale == 1e-9
+    assert d.limits["a"].scale == SMALLEST
     with pytest.raises(DeclarationError, match="guard"):
         d.equal("e", x, 1, "mm", guard=True)
 
@@ -437,7 +475,7 @@ def test_a_unit_that_does_not_exist_is_told():
         lambda: d.derive("c", "furlong", 1.0),
         lambda: d.at_most("d", 1.0, 2.0, "furlong"),
     ):
-        with pytest.raises(synth.InputError, match="furlong"):
+        with pytest.raises(DeclarationError, match="furlong"):
             make()
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import problems.mechanics
+import synth.problems.mechanics
 
 PAGE = Path(__file__).parents[2] / "docs" / "mechanics.md"
 BEGIN = "<!-- What follows is written by `make mechanics`. -->\n"
@@ -75,8 +75,8 @@ class Formula:
 
 def modules() -> list[ModuleType]:
     """Return the modules that are promised."""
-    names = [name for name in problems.mechanics.__all__ if name != "Quantity"]
-    return [importlib.import_module(f"problems.mechanics.{name}") for name in names]
+    names = [name for name in synth.problems.mechanics.__all__ if name != "Quantity"]
+    return [importlib.import_module(f"synth.problems.mechanics.{name}") for name in names]
 
 
 def sections(text: str) -> dict[str, str]:
@@ -124,7 +124,7 @@ def formulas() -> list[Formula]:
 
 def plain(text: str) -> str:
     """Return words of a docstring as words of a page."""
-    text = re.sub(r":\w+:`([^`]+)`", lambda m: f"`{m[1].removeprefix('problems.mechanics.')}`", text)
+    text = re.sub(r":\w+:`([^`]+)`", lambda m: f"`{m[1].removeprefix('synth.problems.mechanics.')}`", text)
     return re.sub(r"\s+", " ", text.replace("``", "`")).replace("|", "\\|").strip()
 
 

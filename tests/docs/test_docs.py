@@ -18,10 +18,10 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 import types
 from contextlib import redirect_stdout
 from dataclasses import dataclass
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -33,6 +33,7 @@ from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
 from tests.docs import mechanics_page
+from tests.shipped import FAMILIES
 from tests.terminal.entry import at_once, in_process
 
 ROOT = Path(__file__).parents[2]
@@ -247,12 +248,29 @@ def test_every_key_of_a_spec_is_documented() -> None:
         assert f"`{key}`" in page, key
 
 
+def test_the_readme_is_short_and_has_a_duty_for_every_family() -> None:
+    readme = text_of("README.md")
+    assert len(readme.splitlines()) <= 150
+    table = readme.split("## Which clutch for which duty")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| \[([^\]]+)\]\(docs/(\w+)\.md\) \| (.+) \|$", table, re.MULTILINE)
+    assert sorted((name, title) for title, name, _ in rows) == [
+        (name, synth.load(name).title) for name in sorted(FAMILIES)
+    ]
+
+
+def test_every_extra_is_documented() -> None:
+    extras = set(tomllib.loads(text_of("pyproject.toml"))["project"]["optional-dependencies"]) - {"dev", "bench"}
+    table = text_of("docs/install.md").split("## Outputs and extras")[1].split("\n## ")[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == extras
+    for extra in extras - {"all"}:
+        assert f"`{extra}`" in text_of("README.md"), extra
+
+
 def test_every_exit_code_is_documented() -> None:
     codes = {terminal.FOUND, terminal.INTERNAL, terminal.BAD_INPUT, terminal.INFEASIBLE, terminal.STOPPED}
     codes |= {terminal.DOES_NOT_HOLD, terminal.NOT_PROVEN}
-    for page in ("README.md", "docs/results.md"):
-        table = text_of(page).split("## Exit codes")[1].split("\n## ")[0]
-        assert {int(code) for code in re.findall(r"^\| (\d) \|", table, re.MULTILINE)} == codes
+    table = text_of("docs/results.md").split("## Exit codes")[1].split("\n## ")[0]
+    assert {int(code) for code in re.findall(r"^\| (\d) \|", table, re.MULTILINE)} == codes
 
 
 def test_every_public_name_is_documented() -> None:
@@ -265,7 +283,7 @@ def test_every_verb_of_a_declaration_is_documented() -> None:
     from synth.declaration import Declaration
 
     page = text_of("docs/own_problem.md")
-    views = {"names", "quantities", "finish", "asked"}
+    views = {"names", "quantities", "finish", "asked", "words", "settle_columns", "tables"}
     verbs = {name for name in vars(Declaration) if not name.startswith("_")} - views
     assert {"requirement", "variable", "part", "at_most"} <= verbs
     for verb in verbs:
@@ -283,7 +301,7 @@ def test_every_column_of_the_results_is_documented() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", [point.name for point in entry_points(group="clutchsynth.problems")])
+@pytest.mark.parametrize("family", FAMILIES)
 def test_every_family_has_a_worked_example(family: str) -> None:
     page = text_of(f"docs/{family}.md")
     assert f"family: {family}" in page
@@ -316,10 +334,10 @@ def test_the_picture_of_the_readme_is_what_the_program_draws(tmp_path: Path) -> 
 
 def test_every_family_is_in_the_gallery_of_drawings() -> None:
     page = text_of("docs/drawings.md")
-    for point in entry_points(group="clutchsynth.problems"):
-        assert f"(pictures/drawing_{point.name}.svg)" in page, point.name
-        drawn = text_of(f"docs/pictures/drawing_{point.name}.svg")
-        assert f"<title>{synth.load(point.name).title}: " in drawn, "make gallery draws it anew"
+    for family in FAMILIES:
+        assert f"(pictures/drawing_{family}.svg)" in page, family
+        drawn = text_of(f"docs/pictures/drawing_{family}.svg")
+        assert f"<title>{synth.load(family).title}: " in drawn, "make gallery draws it anew"
 
 
 @pytest.mark.slow
@@ -339,6 +357,12 @@ def test_every_table_is_in_the_readme_of_the_catalogues() -> None:
         with (ROOT / "catalogs" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
             rows = sum(1 for _ in csv.reader(file)) - 1
         assert f"| {name} | {rows} |" in readme, name
+
+
+def test_the_index_lists_every_page() -> None:
+    listed = {target for target, _ in LINK.findall(text_of("docs/index.md"))}
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert pages <= listed, pages - listed
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md"], ids=lambda page: page.name)

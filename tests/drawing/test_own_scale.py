@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 
-from reports.drawing.page import OWN_LEAST, OWN_MOST, paper_sheet
+from synth.reports.drawing.page import OWN_LEAST, OWN_MOST, paper_sheet
+
 from synth.drawing import Area, Balloon, Drawing, Item, View, rectangle
 
 

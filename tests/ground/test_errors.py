@@ -56,6 +56,16 @@ def told(ask: Callable[[], Any]) -> InputError:
     return fault.value
 
 
+def test_what_python_refuses_to_write_is_refused_in_words() -> None:
+    deep: list[Any] = []
+    for _ in range(100_000):
+        deep = [deep]
+    for value in (10**5000, [10**5000], deep):
+        error = InputError("points", value, "a whole number")
+        assert str(error) == "points: got a value too long to be shown; expected a whole number"
+        assert error.told()["value"] == "a value too long to be shown"
+
+
 # ---- how much is repeated -------------------------------------------------------------------------------------------
 
 DOORS: list[Callable[[str], Any]] = [

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.feasibility import TOLERANCE, Status, holds, residual, utilisation
+from synth.feasibility import TOLERANCE, Status, binds, holds, missed_share, most_used, residual, utilisation
 
 SENSES = ("at_most", "at_least", "equal")
 NUMBERS = st.floats(-1e9, 1e9, allow_nan=False)
@@ -119,5 +119,33 @@ def test_utilisation_agrees_with_the_residual(value, limit, sense):
 
 
 def test_status_reads_as_its_word():
-    assert {s.value for s in Status} == {"optimal", "feasible", "infeasible", "not_solved", "failed"}
+    assert {s.value for s in Status} == {"optimal", "feasible", "infeasible", "not_found", "not_solved", "failed"}
     assert Status("optimal") is Status.OPTIMAL
+
+
+@given(
+    st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3), st.sampled_from(("at_most", "at_least")))),
+    st.floats(0.0, 1.0),
+)
+@settings(deadline=None, derandomize=True)
+def test_what_is_missed_ranks_limits_as_what_is_used_does(limits, scale):
+    used = {str(k): float(utilisation(*x)) for k, x in enumerate(limits)}
+    missed = {name: float(missed_share(*x, scale)) for name, x in zip(used, limits, strict=True)}
+    for name, share in used.items():
+        assert missed[name] == pytest.approx(1 - 1 / share if share > 1 else share - 1, rel=1e-9, abs=1e-12)
+    order = [used[name] for name in most_used(used)]
+    assert order == sorted(used.values(), reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("used", "sense", "told"),
+    [
+        (1.0, "at_most", True),
+        (0.99, "at_most", False),
+        (1.0, "equal", False),
+        (None, "at_least", False),
+        (np.inf, "at_least", True),
+    ],
+)
+def test_a_limit_that_is_reached_binds(used, sense, told):
+    assert binds(used, sense) is told

@@ -4,25 +4,22 @@ import numpy as np
 import pytest
 
 import synth
-from synth.compiled import compiler
+from synth.kernels.loading import best_variant
 from synth.margins import above, below, within
 from synth.question.catalogs import catalogs_for
 from synth.question.settings import SearchSettings
 from synth.search.formulation import Formulation
 from synth.search.question import one_best
 from tests.asking import instance_of
-from tests.tuned import synthesize, tuned
 
-OVER_ARRAYS = tuned(compiling={"boxes": 1e9})
-HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
-COMPILED = [False, pytest.param(True, marks=pytest.mark.skipif(not HERE, reason="no C compiler"))]
+BUILT = pytest.mark.skipif(best_variant("boxes") is None, reason="no kernel was built")
+COMPILED = [False, pytest.param(True, marks=BUILT)]
 
 
-@pytest.fixture(params=COMPILED, ids=["arrays", "compiled"])
+@pytest.fixture(params=COMPILED, ids=["arrays", "kernel"])
 def code(request, monkeypatch):
-    """Take boxes over arrays, or by compiled code from the first on; the numbers to ask with."""
+    """Take boxes over arrays, or by the kernel."""
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1" if request.param else "0")
-    return tuned(compiling={"boxes": 0})
 
 
 class Tilt(synth.DesignProblem):
@@ -64,27 +61,29 @@ def test_ends_of_any_sign_move_outward():
 
 
 @pytest.mark.parametrize("pinned", [None, -5.0, -10.0, -3.75])
-def test_negative_makeable_and_pinned_values_are_found(code, pinned):
-    front = synthesize(code, Tilt, {}, points=1, fix={} if pinned is None else {"angle": pinned})
+@pytest.mark.usefixtures("code")
+def test_negative_makeable_and_pinned_values_are_found(pinned):
+    front = synth.synthesize(Tilt, {}, points=1, fix={} if pinned is None else {"angle": pinned})
     assert front.status.value == "optimal"
     assert np.rad2deg(front.designs[0].values["angle"]) == pytest.approx(-10.0 if pinned is None else pinned)
     assert front.verify().holds
 
 
-def test_a_front_of_negative_makeable_values_is_whole(code):
-    front = synthesize(code, Tilt, {}, objectives=["cost", "lean"], points=10)
+@pytest.mark.usefixtures("code")
+def test_a_front_of_negative_makeable_values_is_whole():
+    front = synth.synthesize(Tilt, {}, objectives=["cost", "lean"], points=10)
     assert front.certificate.kind == "global"
     angles = {round(float(np.rad2deg(d.values["angle"])), 6) for d in front.designs}
     assert angles == {-10.0, -7.5, -5.0}
     assert front.verify().holds
 
 
-def test_thin_boxes_of_any_sign_are_kept_and_split(code):
+@pytest.mark.usefixtures("code")
+def test_thin_boxes_of_any_sign_are_kept_and_split():
     form = Formulation(
         instance_of(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False),
         {"cost": "min"},
         1,
-        tuning=code,
     )
     size = 4096
     rng = np.random.default_rng(0)
@@ -99,7 +98,7 @@ def test_thin_boxes_of_any_sign_are_kept_and_split(code):
 def test_what_falls_without_end_beside_a_pole_is_not_proven():
     problem = synth.load(Pole)
     instance = instance_of(problem, {}, catalogs_for(problem, None))
-    front = one_best(instance, "cost", SearchSettings(points=1), 3000, tuning=OVER_ARRAYS)
+    front = one_best(instance, "cost", SearchSettings(points=1), 3000)
     assert front.statistics["boxes"] > 3000
     assert front.certificate.kind != "global"
 

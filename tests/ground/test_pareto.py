@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.pareto import Scale, non_dominated, rank, signs_of, spread_subset
+from synth.pareto import Scale, knee_of, non_dominated, rank, signs_of, spread_subset
 
 
 def dominated_by_hand(phi):
@@ -205,3 +205,16 @@ def test_the_largest_numbers_there_are_have_their_place() -> None:
     largest = np.finfo(float).max
     phi = np.array([[-largest, 2.0], [-largest, 3.0], [1.0, 1.0], [largest, 0.5], [np.inf, 0.5]])
     assert non_dominated(phi).tolist() == [True, False, True, True, False]
+
+
+def test_every_ranked_front_has_a_knee() -> None:
+    assert knee_of(["smallest mass", "", "knee; smallest force"]) == 2
+    for count in (1, 2, 3, 6):
+        for width in (1, 2, 3):
+            names = {f"f{k}": "min" for k in range(width)}
+            values = np.random.default_rng(count).random((count, width))
+            ranking = rank(names, values, [1.0] * width)
+            notes = [ranking.notes[k] for k in ranking.order]
+            named = [k for k, note in enumerate(notes) if "knee" in note]
+            assert knee_of(notes) == (named[0] if named else 0)
+            assert bool(named) == (count > 2 and width > 1)

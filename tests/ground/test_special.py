@@ -3,8 +3,8 @@
 import casadi as ca
 import numpy as np
 import pytest
+from synth.problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
 
-from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
 from synth.bounds.contractor import Contractor
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.model.constraint import Goal, NodeConstraint

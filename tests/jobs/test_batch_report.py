@@ -17,6 +17,7 @@ import pytest
 import synth
 from synth.errors import InputError
 from synth.jobs.batch import BatchResult
+from synth.text.numbers import page_text
 from tests.analysis.test_calculation import Beam
 from tests.jobs.many_rows import multiplied
 from tests.terminal.entry import in_process as clutchsynth
@@ -62,7 +63,7 @@ def test_a_row_in_full_is_computed_again_as_the_batch_has_found_it(result: Batch
     told = words(tmp_path / "report.html")
     best = result.designs().query("name == 'first' and rank == 1").iloc[0]
     shown = told[told.index("Line 2: first") :]
-    assert f"{best['modulus [mm3]']:.5g}" in shown
+    assert page_text(best["modulus [mm3]"]) in shown
     assert "Limits, the most used first" in shown
     front = synth.synthesize(Beam, {"mass_carried": "100 kg"}, objectives={"width": "min", "height": "min"}, points=4)
     assert f"{len(front.designs)} designs: proven to 0.1 %" in shown
@@ -155,15 +156,18 @@ def test_the_same_batch_gives_the_same_bytes(result: BatchResult, tmp_path: Path
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
 
 
-def test_without_an_extra_nothing_is_written(
+def test_without_an_extra_what_needs_none_is_written(
     result: BatchResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "xlsxwriter", None)
     with pytest.raises(InputError, match=re.escape("--xlsx needs the extra excel: pip install 'clutchsynth[excel]'")):
         result.report(tmp_path / "new", formats=["html", "xlsx"])
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["report.html"]
+    with pytest.raises(InputError, match="--xlsx needs the extra excel"):
+        result.report(tmp_path / "none", formats=["xlsx"])
     with pytest.raises(InputError, match="some of html, pdf, xlsx for a batch"):
-        result.report(tmp_path / "new", formats=["docx"])
-    assert not (tmp_path / "new").exists()
+        result.report(tmp_path / "none", formats=["docx"])
+    assert not (tmp_path / "none").exists()
 
 
 def test_a_size_range_of_these_rows_stands_in_their_report(result: BatchResult, tmp_path: Path) -> None:
@@ -182,7 +186,7 @@ def test_many_rows_are_read_from_their_database(result: BatchResult, tmp_path: P
     large = multiplied(result.folder, tmp_path / "large", 1000)
     assert clutchsynth("report", large, "--xlsx", "-q").returncode == 0
     told = words(large / "report.html")
-    assert "500 of 1 000 rows have designs, 500 NOT" in told
+    assert "500 of 1000 rows have designs, 500 NOT" in told
     assert "300 more: see report.html or rows.csv." in told
     book = openpyxl.load_workbook(large / "batch.xlsx", read_only=True)
     assert sum(1 for _ in book["rows"].iter_rows()) == 1001

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import gc
+import logging
 import os
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +19,7 @@ import pytest
 
 import synth
 from synth.errors import InputError
+from synth.jobs import executors
 from synth.jobs.executors import Cluster
 from synth.jobs.job_settings import ClusterSettings, JobSettings, RunnerSettings
 from tests.jobs.asked import batch
@@ -37,10 +41,11 @@ class Parts:
             free.bind(("127.0.0.1", 0))
             self.address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
         self.folder = folder
+        self.path = ROOT  # where they find the program
         self.processes: list[subprocess.Popen[bytes]] = []
 
     def start(self, module: str, *words: str) -> subprocess.Popen[bytes]:
-        environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"}
+        environment = {**os.environ, "PYTHONPATH": str(self.path), "PYTHONWARNINGS": "ignore"}
         with (self.folder / f"{module}.log").open("ab") as log:
             process = subprocess.Popen(
                 [sys.executable, "-m", f"distributed.cli.{module}", *words, "--no-dashboard"],
@@ -120,13 +125,15 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
         assert "failed" not in [kind for _, kind, _ in store.events(result.job)]
 
 
-def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts) -> None:
+def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts, capfd: pytest.CaptureFixture[str]) -> None:
     scheduler = parts.scheduler()
     parts.ready(0)
     said: list[str] = []
-    cluster = Cluster(parts.address, said.append, ClusterSettings(answer=2.0, retry=0.1, patience=0.3))
+    cluster = Cluster(parts.address, said.append, ClusterSettings(answer=2.0, recount=0.0, retry=0.1, patience=0.3))
     assert cluster.alive()
-    assert cluster.slots == 2
+    assert [cluster.slots, cluster.slots] == [2, 2]
+    assert said == [f"the scheduler at {parts.address} has no workers; waiting for them"]
+    said.clear()
     scheduler.kill()
     scheduler.wait()
     deadline = time.monotonic() + 30
@@ -136,6 +143,84 @@ def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts) -> None:
     assert not cluster.reconnect(lambda: False)
     assert "does not answer; nothing is lost" in said[0]
     cluster.shutdown()
+    del cluster
+    gc.collect()
+    assert capfd.readouterr().err == ""
+
+
+@contextlib.contextmanager
+def answering(reply: bytes | None) -> Iterator[str]:
+    """Give the address of a server that is no scheduler: it says something and hangs up, or says nothing."""
+    kept: list[socket.socket] = []
+
+    def serve() -> None:
+        while True:
+            try:
+                connection, _ = server.accept()
+            except OSError:
+                return
+            kept.append(connection)
+            if reply is not None:
+                with contextlib.suppress(OSError):
+                    connection.sendall(reply)
+                    connection.close()
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        server.shutdown(socket.SHUT_RDWR)
+    thread.join()
+    for connection in kept:
+        connection.close()
+
+
+@pytest.mark.parametrize("reply", [None, b"", b"SSH-2.0-OpenSSH_9.6" + bytes(200), b"HTTP/1.1 400 Bad" + bytes(60)])
+def test_a_server_that_is_no_scheduler_is_told_in_one_sentence(
+    reply: bytes | None, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with answering(reply) as address, pytest.raises(InputError, match="the address of a Dask scheduler that answers"):
+        Cluster(address, print, ClusterSettings(answer=0.5))
+    gc.collect()  # a client that was never connected must not complain when it goes
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    "address", ["tls://127.0.0.1:1", "ucx://127.0.0.1:1", "inproc://1/2", "", "ö://x", "tcp://[::1"]
+)
+def test_an_address_of_another_kind_is_told_in_one_sentence(address: str, capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(InputError, match=r"--scheduler: .* expected the address of a Dask scheduler that answers"):
+        Cluster(address, print, ClusterSettings(answer=0.5))
+    gc.collect()
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_cluster_with_another_program_is_told_in_one_sentence(
+    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "other" / "synth").mkdir(parents=True)
+    (tmp_path / "other" / "synth" / "__init__.py").write_text("raise ImportError('there is none')", encoding="utf-8")
+    parts.path = tmp_path / "other"
+    parts.scheduler()
+    parts.ready(0)
+    with pytest.raises(InputError, match="expected the same clutchsynth"):
+        synth.batch(Rod, rows(3), tmp_path / "out", objectives=["mass"], points=1, scheduler=parts.address)
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("name", ["distributed.client", "distributed.core", "tornado.application", "asyncio"])
+def test_what_dask_logs_reaches_no_screen_but_handlers_of_others(name: str, capfd: pytest.CaptureFixture[str]) -> None:
+    import distributed
+
+    executors._quiet_client(distributed.Client)
+    heard: list[logging.LogRecord] = []
+    other = logging.Handler()
+    other.emit = heard.append  # type: ignore[method-assign]
+    logging.getLogger(name).addHandler(other)
+    logging.getLogger(name).error("lost", exc_info=TimeoutError("no answer"))
+    logging.getLogger(name).removeHandler(other)
+    assert len(heard) == 1
+    assert capfd.readouterr().err == ""
 
 
 def test_a_worker_with_another_version_is_noticed() -> None:

@@ -254,8 +254,86 @@ def test_what_is_over_goes_and_what_is_pinned_stays(store: Store) -> None:
     assert store.prune() == 1
     assert {job.id for job in store.jobs()} == {kept, live}
     assert {event.job for event in store.happenings(0)} == {kept, live}
-    store.delete(live)
+    assert store.delete(live)
+    assert not store.delete(kept)  # as long as it is pinned
     assert [job.id for job in store.jobs()] == [kept]
+    store.change(kept, pinned=False)
+    assert store.delete(kept)
+
+
+def over(store: Store, *jobs: str) -> None:
+    """Let the time of some jobs be over."""
+    with store.engine.begin() as connection:
+        connection.execute(sa.update(Job).where(Job.id.in_(jobs)).values(expires=moment() - 1.0))
+
+
+@pytest.mark.parametrize("how", ["of", "parent"])
+@pytest.mark.parametrize("why", ["open", "younger", "pinned"])
+def test_what_a_job_refers_to_stays_as_long_as_that_does(store: Store, how: str, why: str) -> None:
+    def follow(title: str, before: str) -> str:
+        given: dict[str, Any] = {"parent": before} if how == "parent" else {"request": {"of": before}}
+        return store.submit(asked(title, keep=100.0, **given))[0]
+
+    front, _ = store.submit(asked("front", keep=100.0))
+    prices = follow("prices", front)
+    report = follow("report", prices)
+    other, _ = store.submit(asked("other", keep=100.0))
+    for job in (front, prices, other, *(() if why == "open" else (report,))):
+        store.cancel(job)
+    store.change(report, pinned=why == "pinned")
+    over(store, front, prices, other, *(() if why == "younger" else (report,)))
+    assert store.prune() == 1
+    assert {job.id for job in store.jobs()} == {front, prices, report}
+    assert store.prune() == 0
+    store.cancel(report)
+    store.change(report, pinned=False)
+    over(store, report)
+    assert [store.prune() for _ in range(4)] == [1, 1, 1, 0]
+    assert store.jobs() == []
+
+
+def test_the_time_of_a_job_runs_from_its_last_use(store: Store) -> None:
+    def left(job: str) -> float:
+        found = store.job(job)
+        assert found is not None
+        assert found.expires is not None
+        return found.expires - time.time()
+
+    def is_kept(job: str) -> bool:
+        return 90.0 < left(job) < 110.0
+
+    job, _ = store.submit(asked("a", keep=100.0))
+    over(store, job)
+    assert store.prune() == 0  # it is open
+    assert store.end(job, Ending(state=DONE))
+    assert is_kept(job)  # its end is a use: it has waited for longer than it is kept
+    over(store, job)
+    store.note_use([job])
+    assert is_kept(job)
+    cancelled, _ = store.submit(asked("b", keep=100.0))
+    over(store, cancelled)
+    store.cancel(cancelled)
+    assert is_kept(cancelled)
+    for_ever, _ = store.submit(asked("c"))
+    store.note_use([for_ever], 5.0)
+    store.cancel(for_ever)
+    found = store.job(for_ever)
+    assert found is not None
+    assert found.expires is None
+    with store.engine.begin() as connection:  # as an earlier version has made it
+        connection.execute(sa.update(Job).where(Job.id == job).values(content={}, expires=moment() + 7.0))
+    store.note_use([job])
+    assert 0.0 < left(job) < 8.0
+    store.note_use([job], 100.0)
+    assert is_kept(job)
+
+
+def test_an_open_job_tells_what_it_waits_for(store: Store) -> None:
+    front, _ = store.submit(asked("front"))
+    report, _ = store.submit(asked("report", request={"of": front}))
+    assert (store.waits_for(front), store.waits_for(report)) == (report, None)
+    store.cancel(report)
+    assert store.waits_for(front) is None
 
 
 def test_a_file_gets_smaller_when_jobs_go(tmp_path: Path) -> None:

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+import stat
+import subprocess
+import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import sqlalchemy as sa
 
 from synth.errors import InputError
-from synth.jobs.database import HEAD, engine_for, file_url
+from synth.jobs.database import HEAD, DamagedError, engine_for, file_url, refuse_damaged
 from synth.jobs.job_table import NewJob
 from synth.jobs.maintenance import back_up, bring_up, examine
 from synth.jobs.store import Store
@@ -77,7 +81,18 @@ def test_no_backup_is_written_over_another(tmp_path: Path) -> None:
         back_up(url, tmp_path / "nowhere" / "copy")
 
 
-def test_a_damaged_file_is_told_and_not_copied(tmp_path: Path) -> None:
+WOUNDS: dict[str, Callable[[bytearray], bytes]] = {
+    "pages": lambda content: bytes(content[: 20 * 4096]) + b"\x07" * (4 * 4096) + bytes(content[24 * 4096 :]),
+    "first page": lambda content: bytes(content[:100]) + b"\x07" * 3996 + bytes(content[4096:]),
+    "head": lambda content: b"\x07" * 100 + bytes(content[100:]),
+    "end": lambda content: bytes(content[: len(content) // 2]),
+    "half a page": lambda content: bytes(content[:5000]),
+    "text": lambda _: b"this is no database at all, and longer than the head of one" * 10,
+}
+
+
+@pytest.mark.parametrize("wound", WOUNDS)
+def test_a_damaged_file_is_told_not_copied_and_not_served(tmp_path: Path, wound: str) -> None:
     file = tmp_path / "jobs.sqlite"
     url = file_url(file).render_as_string()
     with Store(url) as store:
@@ -85,17 +100,35 @@ def test_a_damaged_file_is_told_and_not_copied(tmp_path: Path) -> None:
             store.submit(NEW)
         store.engine.connect().exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
     assert examine(url).faults == ()
-    content = bytearray(file.read_bytes())
-    content[20 * 4096 : 24 * 4096] = b"\x07" * (4 * 4096)
-    file.write_bytes(bytes(content))
-    try:
-        faults = examine(url).faults
-    except InputError as error:
-        faults = (str(error),)
-    assert faults
-    with pytest.raises(InputError, match="a job database that is whole"):
+    refuse_damaged(store.engine)
+    file.write_bytes(WOUNDS[wound](bytearray(file.read_bytes())))
+    assert examine(url).faults
+    with pytest.raises(DamagedError, match=r"move .*jobs.sqlite-wal.* away, and copy the backup to"):
         back_up(url, tmp_path / "copy")
     assert not list(tmp_path.glob("copy*"))
+    with pytest.raises(DamagedError, match="a job database that is whole"), Store(url) as store:
+        refuse_damaged(store.engine)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="rights of files are those of their folder")
+def test_nobody_else_can_read_what_is_kept(tmp_path: Path) -> None:
+    def rights(place: Path) -> int:
+        return stat.S_IMODE(place.stat().st_mode)
+
+    for data, before in ((tmp_path / "new", None), (tmp_path / "empty", 0o755), (tmp_path / "used", 0o755)):
+        if before is not None:
+            data.mkdir(mode=before)
+        if data.name == "used":
+            (data / "notes.txt").write_text("of somebody")
+            (data / "jobs.sqlite").touch(mode=0o644)
+        url = file_url(data / "jobs.sqlite").render_as_string()
+        with Store(url) as store:
+            store.submit(NEW)
+            back_up(url, data / "copy.sqlite")
+            assert rights(data) == (0o755 if data.name == "used" else 0o700)  # a folder of others' files is theirs
+            made = [file for file in data.iterdir() if file.name != "notes.txt"]
+            assert {file.name for file in made} == {"jobs.sqlite", "jobs.sqlite-wal", "jobs.sqlite-shm", "copy.sqlite"}
+            assert {rights(file) for file in made} == {0o600}
 
 
 def test_rows_that_belong_to_nothing_are_told(tmp_path: Path) -> None:
@@ -136,3 +169,21 @@ def test_tables_are_brought_to_those_of_today(new_database: str) -> None:
     assert not examine(new_database).current
     with pytest.raises(InputError, match="99"):
         bring_up(new_database)
+
+
+def test_who_opens_a_file_again_ends_no_lock_on_it(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    url = file_url(file).render_as_string()
+    program = "import sqlite3, sys; sqlite3.connect(sys.argv[1], timeout=0.1).execute('BEGIN IMMEDIATE')"
+
+    def others_write() -> bool:
+        return subprocess.run([sys.executable, "-c", program, file], capture_output=True, check=False).returncode == 0
+
+    with Store(url) as store:
+        assert others_write()
+        with store.engine.connect() as connection:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+            assert not others_write()
+            with Store(url, create=False):
+                assert not others_write()
+            assert not others_write()

@@ -6,11 +6,14 @@ import math
 import random
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import synth
 from synth import deadline
@@ -20,6 +23,7 @@ from synth.jobs.database import digest
 from synth.jobs.executors import Processes
 from synth.jobs.job_settings import GroupSettings, JobSettings, RunnerSettings
 from synth.jobs.row_groups import RowGroups, neighbourhoods
+from synth.jobs.row_questions import alikeness
 from synth.jobs.signs import show
 from synth.jobs.solve import ALONE, GROUP, Shared, answered_together, is_group, solve_unit
 from synth.jobs.store import Outcome, Store
@@ -68,14 +72,15 @@ def without_seconds(result: Any) -> list[dict[str, Any]]:
 
 def groups(asked: Sequence[Mapping[str, Any]], settings: GroupSettings = SMALL.groups) -> dict[str, set[str]]:
     """Return the keys of questions by the name of their group."""
-    own, keys = RowGroups(settings), [digest(q) for q in asked]
-    for key, q in zip(keys, asked, strict=True):
-        own.show(key, place([float(text.split()[0]) for text in q["requirements"].values()]), q)
     found: dict[str, set[str]] = {}
-    for key in keys:
-        member = own.member(key)
-        if member is not None:
-            found.setdefault(member.name, set()).add(key)
+    with closing(RowGroups(settings)) as own:
+        keys = [(digest(q), alikeness(q)) for q in asked]
+        for (key, alike), q in zip(keys, asked, strict=True):
+            own.show(key, alike, place([float(text.split()[0]) for text in q["requirements"].values()]))
+        for key, alike in keys:
+            member = own.member(key, alike)
+            if member is not None:
+                found.setdefault(member.name, set()).add(key)
     return found
 
 
@@ -110,11 +115,50 @@ def test_a_number_that_is_written_in_two_ways_is_in_the_group_twice() -> None:
     assert sorted(map(len, found.values())) == [5, 5]
 
 
+@pytest.mark.parametrize(
+    ("rows", "units"), [(32, 2), (200, 12), (1024, 64), (1100, 64), (2047, 64), (2048, 64), (3000, 64)]
+)
+def test_rows_are_units_for_many_workers(rows: int, units: int) -> None:
+    """The size of a group follows from the rows: 64 or more, where each can have 16 rows."""
+    asked = [question(round(10 * 1.003**k, 3), 20 + k % 7) for k in range(rows)]
+    found = groups(asked, GroupSettings())
+    sizes = [len(own) for own in found.values()]
+    assert len(sizes) >= units
+    assert max(sizes) <= GroupSettings().size(rows)
+    assert sum(sizes) > 0.9 * rows
+
+
+def test_rows_that_ask_in_several_ways_are_counted_together() -> None:
+    asked = [question(10 + k, limits={"mass": [f"<= {k % 40} kg"]}) for k in range(1600)]
+    sizes = [len(own) for own in groups(asked, GroupSettings()).values()]
+    assert len(sizes) >= 64
+    assert sum(sizes) > 1400
+
+
+@given(st.integers(1, 3_000_000), st.integers(1, 200))
+def test_a_row_more_rarely_changes_the_size_of_groups(rows: int, more: int) -> None:
+    settings = GroupSettings()
+    before, after = settings.size(rows), settings.size(rows + more)
+    assert settings.smallest <= before <= after <= settings.most
+    assert before & (before - 1) == 0
+    assert rows < settings.smallest * settings.units or rows // before >= settings.units
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_groups_do_not_depend_on_how_much_is_in_memory(seed: int) -> None:
+    chance = random.Random(seed)
+    asked = [question(chance.choice([5, 5.0, chance.uniform(1, 900)]), chance.choice([9, 30.5])) for _ in range(300)]
+    whole = groups(asked, GroupSettings(least=4, most=9))
+    assert len(whole) > 12
+    for portion in (1, 9, 40, 299):
+        assert groups(asked, GroupSettings(least=4, most=9, portion=portion, cache=1)) == whole
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_neighbourhoods_hold_every_point_once_and_are_cells_of_space(seed: int) -> None:
     chance = np.random.default_rng(seed)
     points = chance.normal(scale=[1, 30, 0], size=(300, 3))
-    found = neighbourhoods(points, 20)
+    found = list(neighbourhoods(points, 20))
     assert sorted(np.concatenate(found).tolist()) == list(range(300))
     assert max(map(len, found)) <= 20
     corners = [(points[own].min(axis=0), points[own].max(axis=0)) for own in found]

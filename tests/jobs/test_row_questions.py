@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import openpyxl
 import pytest
 
 from synth.errors import InputError
@@ -155,6 +156,31 @@ def test_headings_of_ones_own_are_carried_along(header: str) -> None:
     assert ([c.title for c in found.carried], row.unused) == (
         ([], (header,)) if header == "driver_inertia" else ([header], ())
     )
+
+
+@pytest.mark.parametrize("above", ["Drives of 2026\n", "\n", "Drives,,\n,,\n,in kN,\n"])
+def test_titles_above_the_header_are_told(tmp_path: Path, above: str) -> None:
+    path = tmp_path / "rows.csv"
+    path.write_text(f"{above}id,Kraft [kN],steel\nA,10,S185\n", encoding="utf-8")
+    line = above.count("\n") + 1
+    with pytest.raises(
+        InputError, match=f"the header in the first line; it stands in line {line}: delete what is above"
+    ):
+        questioner(path, mapping={"Kraft [kN]": "force"})
+
+
+def test_first_sheets_without_rows_are_told(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    book.active.append(["ACME"])
+    sheet = book.create_sheet("Drives")
+    sheet.append(["force [kN]", "steel"])
+    sheet.append([10, "S185"])
+    book.save(tmp_path / "rows.xlsx")
+    right = r"it stands in line 1 of sheet Drives: name that sheet \(#Drives behind the name\)"
+    with pytest.raises(InputError, match=rf"rows.xlsx, line 1: got 'ACME'; .*{right}"):
+        questioner(tmp_path / "rows.xlsx")
+    (row,) = questioner(f"{tmp_path / 'rows.xlsx'}#Drives").rows()
+    assert row.faults == ()
 
 
 def test_a_heading_beside_the_name_it_resembles_is_another_one() -> None:

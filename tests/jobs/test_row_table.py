@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import tracemalloc
 from pathlib import Path
 
 import openpyxl
@@ -9,6 +11,7 @@ import pandas as pd
 import pytest
 
 from synth.errors import InputError
+from synth.input_limits import INPUT_LIMITS
 from synth.jobs.cells import read_fix, read_limits, read_options, read_parts
 from synth.jobs.row_table import RowTable, read_table, text_of
 
@@ -102,3 +105,29 @@ def test_entries_of_a_cell() -> None:
 def test_entries_that_are_none_are_refused(read: object, text: str) -> None:
     with pytest.raises(InputError, match="column x"):
         read(text, "column x")  # type: ignore[operator]
+
+
+@pytest.mark.slow
+def test_a_long_file_is_read_in_little_memory(tmp_path: Path) -> None:
+    path = tmp_path / "rows.csv"
+    with path.open("w", encoding="utf-8") as file:
+        file.write("name;force [kN]\n")
+        file.writelines(f"{k} {'ü' * 400};{k},5\n" for k in range(30_000))
+    assert path.stat().st_size > 20_000_000  # more than any file that is read as a whole
+    tracemalloc.start()
+    table = read_table(path)
+    assert table.count() == 30_000
+    assert len(table.digest()) == 64
+    assert "decimal commas" in table.sentence()
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 5_000_000
+    assert next(itertools.islice(table.lines(), 29_999, None))[1][1] == "29999.5"
+
+
+@pytest.mark.slow
+def test_more_rows_than_may_be_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "rows.csv"
+    path.write_text("force\n" + "1\n" * (INPUT_LIMITS.rows + 1), encoding="utf-8")
+    with pytest.raises(InputError, match="line 2000002: got more rows than that; expected at most 2000000 rows"):
+        read_table(path).count()

@@ -10,16 +10,18 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 import sqlalchemy as sa
 import yaml
 
+from synth.jobs import engine_process
 from synth.jobs.batch import batch
 from synth.jobs.database import file_url
 from synth.jobs.engine_process import (
@@ -29,15 +31,17 @@ from synth.jobs.engine_process import (
     Engines,
     EngineTimeoutError,
 )
-from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, READ_TASK
-from synth.jobs.job_settings import JOBS, EngineSettings, JobSettings
+from synth.jobs.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, FILES_TASK, READ_TASK
+from synth.jobs.job_settings import INTERACTIVE, JOBS, EngineSettings, JobSettings
 from synth.jobs.job_table import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
 from synth.jobs.kinds.contract import NOTHING
 from synth.jobs.models import Job, JobRecord, WorkUnit
 from synth.jobs.shelf import Shelf
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
+from synth.operating_system import processor_time
 from tests.jobs.test_migrations import hoists
+from tests.waiting import PATIENCE, until
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
@@ -56,7 +60,7 @@ def engines() -> Iterator[Engines]:
 
 def submit(store: Store, engines: Engines, kind: str, request: dict[str, Any], **more: Any) -> str:
     sources = Shelf(store).sources(LOCAL, request)
-    read = engines.call(READ_TASK, {"kind": kind, "request": request, "sources": sources}, 60.0)
+    read = engines.call(READ_TASK, {"kind": kind, "request": request, "sources": sources}, PATIENCE)
     new = NewJob(
         kind=kind,
         title=read["title"],
@@ -82,18 +86,8 @@ def serving(store: Store, slots: int = 1, settings: JobSettings = JOBS, **more: 
         thread.join()
 
 
-def ended(store: Store, job: str, within: float = 90.0) -> Job:
-    return until(lambda: store.job(job), lambda found: found is not None and found.state not in (OPEN, RUNNING), within)
-
-
-def until(look: Callable[[], Any], right: Callable[[Any], bool], within: float = 60.0) -> Any:
-    deadline = time.monotonic() + within
-    while time.monotonic() < deadline:
-        found = look()
-        if right(found):
-            return found
-        time.sleep(0.02)
-    pytest.fail(f"not within {within} s: {look()}")
+def ended(store: Store, job: str) -> Job:
+    return until(lambda: store.job(job), lambda found: found is not None and found.state not in (OPEN, RUNNING))
 
 
 def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_path: Path) -> None:
@@ -142,7 +136,7 @@ def test_a_search_that_runs_is_cancelled_and_the_slot_goes_on(database: str, eng
         until(lambda: worker.tasks, bool)
         until(lambda: store.job(job), lambda found: bool(found.progress))
         store.cancel(job)
-        until(lambda: worker.tasks, lambda tasks: not tasks, 2.0)
+        until(lambda: worker.tasks, lambda tasks: not tasks)
         assert worker.restarts == {"cancelled": 1}
         assert ended(store, submit(store, engines, "synthesis", QUICK)).state == DONE
         found = store.job(job)
@@ -208,10 +202,14 @@ def test_limits_of_time_and_memory_stop_a_job(tmp_path: Path, engines: Engines) 
 
 def test_a_search_that_stops_by_itself_keeps_what_it_has_found(tmp_path: Path, engines: Engines) -> None:
     with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store):
-        job = ended(store, submit(store, engines, "synthesis", {**LONG, "time_limit": 1.0}))
-        assert job.state == STOPPED
-        assert job.error is None
-        assert job.summary["designs"] > 0
+        limit, found = 1.0, 0
+        while not found:  # on a busy machine a search finds something later
+            job = ended(store, submit(store, engines, "synthesis", {**LONG, "time_limit": limit}))
+            assert job.state == STOPPED
+            assert job.error is None
+            found = job.summary["designs"]
+            limit *= 4
+            assert limit < PATIENCE
         assert "front.json" in store.records(job.id)
 
 
@@ -220,10 +218,8 @@ def test_bulk_work_makes_room_and_is_done_afterwards(tmp_path: Path, engines: En
     with Store(file_url(tmp_path / "jobs.sqlite")) as store, serving(store, settings=quick) as worker:
         slow = submit(store, engines, "synthesis", LONG, priority=0)
         until(lambda: worker.tasks.get(0), bool)
-        begun = time.monotonic()
         waiting = submit(store, engines, "synthesis", QUICK)
         assert ended(store, waiting).state == DONE
-        assert time.monotonic() - begun < 20
         assert worker.restarts["preempted"] == 1
         found = until(lambda: store.job(slow), lambda job: worker.tasks.get(0) is not None)
         assert found.state == RUNNING
@@ -293,14 +289,62 @@ def test_a_warm_process_answers_and_a_late_one_is_replaced() -> None:
 
 
 def test_processes_that_nobody_needs_are_not_started() -> None:
-    lazy = Engines(2, lazy=True)
+    lazy = Engines(3, at_once=0)
     try:
         assert not len(lazy.pool)
         for _ in range(2):
             lazy.call(EXAMPLES_TASK, {}, 60.0)
-        assert len(lazy.pool) == 1  # the first was free again
+        assert len(lazy.pool) == 2  # the first was free again, and one is ready beside it
     finally:
         lazy.close()
+
+
+class Looks:
+    """Counts how often it was looked at the time that a process has had, and lets it go on after some looks."""
+
+    def __init__(self, most: int) -> None:
+        self.most, self.count = most, 0
+
+    def __call__(self, process: int) -> float:
+        self.count += 1
+        if self.count == self.most:
+            os.kill(process, signal.SIGCONT)
+        return processor_time(process)
+
+
+def test_a_process_that_waits_for_its_turn_is_not_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What counts is the time that it has had on a processor: none, however long the machine was busy."""
+    engine = EngineProcess(EngineSettings(look=0.02, stuck=1e6))
+    try:
+        assert engine.warm(60.0)
+        engine.call(FILES_TASK, {"kind": "batch"}, 60.0)
+        looks = Looks(50)  # a second, of a limit of half of one
+        monkeypatch.setattr(engine_process, "processor_time", looks)
+        os.kill(engine.pid, signal.SIGSTOP)
+        assert "rows.csv" in engine.call(FILES_TASK, {"kind": "batch"}, 0.5)
+        assert looks.count >= looks.most
+    finally:
+        engine.end()
+
+
+def test_a_process_that_is_stuck_is_ended() -> None:
+    engine = EngineProcess(EngineSettings(look=0.02, stuck=1.0))
+    assert engine.warm(60.0)
+    os.kill(engine.pid, signal.SIGSTOP)
+    with pytest.raises(EngineTimeoutError):
+        engine.call(FILES_TASK, {"kind": "batch"}, 0.2)
+    assert not engine.is_alive()
+
+
+def test_what_somebody_waits_for_is_not_nicer_than_a_search() -> None:
+    kept = psutil.Process().nice()
+    engine = EngineProcess(INTERACTIVE)
+    try:
+        assert engine.warm(60.0)
+        assert psutil.Process(engine.pid).nice() == kept
+        assert JOBS.engine.nice > INTERACTIVE.nice == 0
+    finally:
+        engine.end()
 
 
 def test_a_process_goes_with_the_one_that_has_started_it(tmp_path: Path) -> None:
@@ -319,7 +363,7 @@ def test_a_process_goes_with_the_one_that_has_started_it(tmp_path: Path) -> None
     engine = int(process.stdout.readline())
     process.kill()
     process.communicate()
-    until(lambda: Path(f"/proc/{engine}").exists(), lambda there: not there, 20.0)
+    until(lambda: Path(f"/proc/{engine}").exists(), lambda there: not there)
 
 
 def test_an_error_of_a_program_is_told_with_its_place_and_the_process_goes_on(engines: Engines) -> None:

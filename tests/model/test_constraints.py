@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.compiled.execution import Execution
 from synth.declaration import Origin
-from synth.feasibility import SMALLEST, holds
+from synth.feasibility import SMALLEST, holds, size_of_miss
 from synth.model.constraint import SIGNS, Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
@@ -23,7 +22,7 @@ from synth.robust.counterpart import robust_counterpart
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.studies.infeasibility.relaxation import AMOUNT, Relaxed
-from synth.units import format_quantity
+from synth.units import typed_quantity
 from synth.verification.verify import VerificationRun
 from tests.asking import instance_of, rater_of
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
@@ -62,7 +61,7 @@ class Asked:
         for k in range(CHECKED):
             parts, counts, choices = self.instance.combinations.describe(int(self.combinations[k]))
             sizes = {v.name: float(x) for v, x in zip(model.variables, self.variables[k], strict=True)}
-            typed = {name: format_quantity(x, model.units[name], None) for name, x in sizes.items()}
+            typed = {name: typed_quantity(x, model.units[name], None) for name, x in sizes.items()}
             design = synth.evaluate(
                 self.problem,
                 self.requirements,
@@ -86,9 +85,9 @@ def own_limits(instance, variables, combinations, rng):
         bound = float(np.nanmedian(values[name]))
         sense = ("at_most", "at_least")[int(rng.integers(2))]
         if bound <= derived[name].ceiling and math.isfinite(bound):
-            limits[name] = f"{SIGNS[sense]} {format_quantity(bound, instance.model.units[name], None)}"
+            limits[name] = f"{SIGNS[sense]} {typed_quantity(bound, instance.model.units[name], None)}"
     for first in instance.model.variables[:1]:
-        limits[first.name] = f"<= {format_quantity(first.upper, first.unit, None)}"
+        limits[first.name] = f"<= {typed_quantity(first.upper, first.unit, None)}"
     return limits
 
 
@@ -203,7 +202,7 @@ def test_the_check_of_a_design_reads_limits_as_the_question_does(asked):
 
 @pytest.mark.slow
 def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
-    form = Formulation(asked.instance, {}, 0, execution=Execution(compiled=False))
+    form = Formulation(asked.instance, {}, 0)
     result, refused = asked.result, ~not_refused(form.instance, asked.combinations)
     feasible = result.feasible & ~refused
     rows = [form.points.feasible_rows, form.points.edge_rows]
@@ -216,8 +215,8 @@ def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
 
 
 @pytest.mark.slow
-def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
-    form = Formulation(asked.instance, asked.chosen, len(asked.chosen), execution=Execution(compiled=False))
+def test_rows_of_the_solver_are_logarithms_or_shares_of_the_size_of_a_miss(asked):
+    form = Formulation(asked.instance, asked.chosen, len(asked.chosen))
     result, goals, logs = asked.result, len(form.goals), form.continuous.rows.log_constraints
     assert form.node_constraints == [NodeConstraint.of(x) for x in asked.instance.constraints]
     comparable = guarded(asked, result)
@@ -227,12 +226,14 @@ def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
     rows = np.flatnonzero(comparable)[:CHECKED]
     expected = np.zeros(len(rows))
     for x, log in zip(asked.instance.constraints, logs, strict=True):
-        r = result.residuals[x.name][rows]
+        value, limit = (np.broadcast_to(side, len(asked.variables))[rows] for side in result.limits[x.name])
+        scale = np.broadcast_to(result.scales[x.name], len(asked.variables))[rows]
         with np.errstate(all="ignore"):
-            row = np.where(r < 0, np.log1p(r), -np.log1p(-r)) if log else r
-        row = np.where(np.isnan(r), np.inf, row + (GUARD_MARGIN if x.guard else 0.0))
+            amount = np.log(value / limit) if log else (value - limit) / size_of_miss(value, limit, scale)
+        row = {"at_most": amount, "at_least": -amount, "equal": np.abs(amount)}[x.sense]
+        row = np.where(np.isnan(row), np.inf, row + (GUARD_MARGIN if x.guard else 0.0))
         expected = np.maximum(expected, np.where(result.void[x.name][rows], 0.0, row))
-    nlp = BatchNlp(asked.instance.model.program, form.n, form.continuous.rows, "arrays")
+    nlp = BatchNlp(asked.instance.model.program, form.n, form.continuous.rows)
     nothing = np.zeros((len(rows), goals))
     tasks = Tasks(nothing, nothing, np.full((len(rows), goals), np.inf), form.objectives.scales, 0.0)
     points, data = asked.variables[rows], asked.instance.data(asked.combinations[rows])
@@ -254,7 +255,9 @@ def test_verification_reads_limits_by_itself_and_alike(asked):
         assert [x.name for x in readings] == [x.name for x in asked.instance.constraints]
         assert all(x.void or x.holds for x in readings) == result.feasible[k]
         for own, x in zip(readings, asked.instance.constraints, strict=True):
-            assert (own.sense, own.scale, own.guard) == (x.sense, x.scale, x.guard)
+            assert (own.sense, own.guard) == (x.sense, x.guard)
+            scale = np.ravel(result.scales[x.name])[k if x.terms is not None else 0]
+            assert own.scale == pytest.approx(scale, rel=1e-12, nan_ok=True)
             assert own.void == result.void[x.name][k]
             if every[k] and not own.void:
                 same(own.residual, result.residuals[x.name][k], x.name)
@@ -335,25 +338,27 @@ class Worn(synth.DesignProblem):
         d.derive("life", "-", size * pad.optional("life"))
         d.derive("left", "-", np.sqrt(1.8 - size), needs=("fits",))
         d.objective("life", "max")
+        d.objective("left", "max", default=False)
 
 
-def worn(limits):
+def worn(limits, objectives=None):
     import pandas as pd
 
     pads = pd.DataFrame({"designation": ["told", "untold"], "life [-]": [3.0, np.nan]})
-    return instance_of(Worn(), {}, as_catalogs({"pads": pads}), limits=limits)
+    return instance_of(Worn(), {}, as_catalogs({"pads": pads}), limits=limits, objectives=objectives)
 
 
 def test_what_a_user_limits_must_have_a_value():
-    instance = worn({"life": ">= 2"})
-    result = instance.evaluate(np.full((2, 1), 1.5), instance.data(np.arange(2)))
-    assert result.holds["life >= 2"].tolist() == [True, False]
-    form = Formulation(instance, {}, 0)
-    assert form.points.feasible_rows(np.full((2, 1), 1.5), np.arange(2))[0].tolist() == [0]
+    instance, every = worn({"life": ">= 2"}), worn({"left": ">= 0.1"}, ["left"])
+    assert (instance.combinations.count, every.combinations.count) == (1, 2)
+    reason = "no value in column life, which life needs"
+    assert instance.selection.left_out == [{"slot": "pad", "designation": "untold", "reason": reason}]
+    data, sizes = every.data(np.arange(2)), np.full((2, 1), 1.5)
+    assert instance.evaluate(sizes, data).holds["life >= 2"].tolist() == [True, False]
     relaxed = Relaxed(instance, instance.limits.judging, {}, [x.name for x in instance.constraints]).model(
         frozenset(), None
     )
-    both = relaxed.evaluate(np.array([[1.5, 0.0], [1.5, 0.0]]), instance.data(np.arange(2)))
+    both = relaxed.evaluate(np.array([[1.5, 0.0], [1.5, 0.0]]), data)
     assert both.feasible.tolist() == [True, False]
 
 

@@ -283,7 +283,7 @@ def test_dependence_and_needed_nodes():
 def test_a_special_function_is_one_node_and_the_same_call_is_the_same_node():
     x = ca.SX.sym("x")
     name = next(n for n in TABLE if n.endswith(".sum_geometric"))
-    from problems.mechanics.guide_friction import sum_geometric
+    from synth.problems.mechanics.guide_friction import sum_geometric
 
     with recorded() as calls:
         outputs = [sum_geometric(10.0, x * 2), 1 + sum_geometric(10.0, 2 * x), sum_geometric(10.0, 3 * x)]
@@ -316,7 +316,7 @@ def test_special_functions_may_be_nested():
 
 
 def test_special_functions_of_numbers_are_just_called():
-    from problems.mechanics.guide_friction import sum_geometric
+    from synth.problems.mechanics.guide_friction import sum_geometric
 
     with recorded() as calls:
         assert float(sum_geometric(2.0, 0.0)) == pytest.approx(2.0)

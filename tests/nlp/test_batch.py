@@ -2,45 +2,39 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
-from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
 import pytest
 
 import synth
-from synth.compiled import compiler
+from synth.kernels.loading import LEVELS, best_variant, processor_level, variant
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
-from synth.nlp import interior_point_c as native
-from synth.nlp import interior_point_c_interpreted as native_general
-from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp import kernel_solver
+from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import GUARD_MARGIN, Rows
-from synth.operating_system import COMPILER_FLAGS
 from synth.question.catalogs import as_catalogs
 from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 from tests.asking import instance_of
 
-pytestmark = pytest.mark.usefixtures("own_cache")
-HAS_COMPILER = shutil.which("cc") is not None
-NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
+BUILT = pytest.mark.skipif(best_variant("solver") is None, reason="no kernel was built")
+Code = Literal["arrays", "kernel"]
 
 
 # -- small problems with known answers ---------------------------------------------------------
 
 
 def solver_of(program: Program, n: int, rows: Rows, code: Code, settings: NlpSettings = TUNING.nlp) -> BatchNlp:
-    """Return a solver whose own code is compiled without optimisation: that of a clutch is, below."""
+    """Solver over arrays or by the kernel."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(native, "library", partial(native.library, flags=(*COMPILER_FLAGS, "-O0")))
-        return BatchNlp(program, n, rows, code, settings=settings)
+        patch.setenv("CLUTCHSYNTH_NATIVE", "0" if code == "arrays" else "1")
+        return BatchNlp(program, n, rows, settings=settings)
 
 
 Row = tuple[str, Any, Any]  # sense, value and limit: expressions, or a number as the right side
@@ -118,10 +112,7 @@ class Small:
         return self.solver.solve(tasks, data, *points, self.bounds, gone)
 
 
-# Code of its own is compiled for each problem, which takes a while.
-OWN = pytest.param("own", marks=[NEEDS_COMPILER, pytest.mark.slow])
-COMPILED = [pytest.param("general", marks=NEEDS_COMPILER), OWN]
-EVERY = pytest.mark.parametrize("code", ["arrays", *COMPILED])
+EVERY = pytest.mark.parametrize("code", ["arrays", pytest.param("kernel", marks=BUILT)])
 
 
 def box(x: Sequence[Any], d: Sequence[Any]) -> tuple[list[Row], list[Any]]:
@@ -407,13 +398,12 @@ FUNCTIONS = {
 }
 
 
-@NEEDS_COMPILER
-@pytest.mark.parametrize("code", ["general", OWN])
-def test_compiled_functions_have_the_values_of_numpy(code):
+@BUILT
+def test_functions_of_the_kernel_have_the_values_of_numpy():
     def write(x, d):
         return [("at_most", x[0] * d[0], 1e3)], [function(x[0]) for function in FUNCTIONS.values()]
 
-    pair = [Small(1, 1, write, logs=False, code=own) for own in ("arrays", code)]
+    pair = [Small(1, 1, write, logs=False, code=own) for own in ("arrays", "kernel")]
     points = np.linspace(0.2, 15.0, 40)[:, None]  # pinned: only evaluated
     none = np.zeros(len(FUNCTIONS))
     plain, compiled = (
@@ -541,12 +531,11 @@ def test_ipopt_finds_nothing_better(kind, count):
 
 
 @pytest.mark.slow
-@NEEDS_COMPILER
+@BUILT
 @pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])
-@pytest.mark.parametrize("code", ["general", OWN])
-def test_compiled_and_not_compiled_give_the_same(code, kind):
+def test_kernel_and_arrays_give_the_same(kind):
     clutch = Clutch(600, 4, kind)
-    plain, compiled = clutch.solve("arrays"), clutch.solve(code)
+    plain, compiled = clutch.solve("arrays"), clutch.solve("kernel")
     holds = plain.violation <= 1e-8
     assert holds.sum() > 100
     assert np.sum(holds != (compiled.violation <= 1e-8)) <= 3  # rounding decides now and then
@@ -591,74 +580,33 @@ def test_starts_where_nothing_exists_find_the_way():
     assert np.sum(good & ~again) <= 0.02 * good.sum()
 
 
-# -- compiled code -----------------------------------------------------------------------------
+# -- the kernel ----------------------------------------------------------------------------------
 
 
-def small_functions() -> Any:
-    return Small(3, 2, box).solver.functions
-
-
-@pytest.mark.slow
-@NEEDS_COMPILER
-def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    functions = small_functions()
-    assert native.native(functions, TUNING.nlp) is not None
-    (kept,) = (tmp_path / "clutchsynth").iterdir()
-    assert kept.suffix == ".so"
-    written = kept.stat().st_mtime_ns
-
-    def fail(*_: Any, **__: Any) -> None:
-        raise AssertionError("compiled again")
-
-    monkeypatch.setattr(subprocess, "run", fail)
-    assert native.native(functions, TUNING.nlp) is not None
-    assert kept.stat().st_mtime_ns == written
-
-
-@NEEDS_COMPILER
-def test_what_was_compiled_once_solves_what_was_never_compiled_for(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert Small(3, 2, box, code="general").solver.compiled
-    kept = [path.name for path in (tmp_path / "clutchsynth").iterdir()]
-    other = Small(1, 1, lambda x, d: ([("at_most", x[0], d[0])], [1 / x[0]]), code="general")
-    np.testing.assert_allclose(other.solve([3.0], 1.0, 0.1, 9.0).variables, [[3.0]], rtol=1e-7)
-    assert [path.name for path in (tmp_path / "clutchsynth").iterdir()] == kept
-    assert other.solver.evaluations > 0
-
-
-@NEEDS_COMPILER
-def test_what_is_too_large_for_general_code_is_solved_over_arrays():
-    most = native_general.MOST["N"]
+@BUILT
+def test_what_is_too_large_for_the_kernel_is_solved_over_arrays():
+    most = kernel_solver.MOST["N"]
     for n in (most, most + 1):
         small = Small(n, 1, lambda x, d: ([("at_least", sum(x), d[0])], [sum(y * y for y in x)]))
-        small.solver = BatchNlp(small.program, n, small.rows, "general")
+        small.solver = BatchNlp(small.program, n, small.rows)
         assert small.solver.compiled == (n == most)
         np.testing.assert_allclose(small.solve([float(n)], 2.0, 0.1, 9.0).variables, np.ones((1, n)), rtol=1e-4)
 
 
-def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    assert native.native(small_functions(), TUNING.nlp) is None
-    assert not list(tmp_path.iterdir())
-    assert native_general.general(small_functions(), TUNING.nlp) is None
-    for code in ("general", "own"):
-        solver = BatchNlp((s := Small(3, 2, box)).program, 3, s.rows, code)
-        assert not solver.compiled
+@BUILT
+@pytest.mark.parametrize("level", [level for level in LEVELS if level < processor_level()])
+@pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])
+def test_the_kernel_gives_the_same_bits_on_every_processor(kind, level, monkeypatch):
+    best = Clutch(200, 4, kind).solve("kernel")
+    monkeypatch.setattr(kernel_solver, "kernel", lambda name: variant(name, level))
+    other = Clutch(200, 4, kind).solve("kernel")
+    for field in fields(Solutions):
+        assert getattr(best, field.name).tobytes() == getattr(other, field.name).tobytes(), field.name
 
 
-def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
-    (tmp_path / "clutchsynth").write_text("a file in the way")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert native.native(small_functions(), TUNING.nlp) is None
-
-
-def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
-    broken = tmp_path / "cc"
-    broken.write_text('#!/bin/sh\n[ "$1" = --version ] && echo broken && exit 0\nexit 1\n')
-    broken.chmod(0o755)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(compiler, "_compiler", lambda: (str(broken), "broken"))
-    assert native.native(small_functions(), TUNING.nlp) is None
-    assert not list((tmp_path / "clutchsynth").iterdir())
+@BUILT
+def test_settings_of_the_method_reach_the_kernel():
+    method = replace(TUNING.nlp.method, max_evaluations=2)
+    given_up = Small(3, 2, box, code="kernel", settings=replace(TUNING.nlp, method=method))
+    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "cutoffs": (np.inf, np.inf)}
+    assert not given_up.solve([np.array([1.0]), 50.0], 1.0, 1e-2, 1e2, **more).converged.any()

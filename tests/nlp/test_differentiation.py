@@ -29,6 +29,8 @@ EXPRESSIONS = {
     "hyperbolic": lambda x, y, z, d: ca.sinh(x) * ca.cosh(y) + ca.tanh(z - x) + ca.erf(x * y),
     "signs": lambda x, y, z, d: ca.fabs(x - y) * z + ca.sign(y - z) * x + ca.copysign(x, y - 1) + ca.fabs(x * y),
     "steps": lambda x, y, z, d: x * ca.floor(3 * y) + ca.ceil(z) * ca.fmod(x + y, 0.7),
+    "a step and a number": lambda x, y, z, d: ca.ceil(2 * x) + 1,
+    "steps alone": lambda x, y, z, d: ca.floor(3 * x) + ca.ceil(y * z) + ca.sign(y - 1) + 2 + d,
     "least and most": lambda x, y, z, d: ca.fmin(x * y, z) + ca.fmax(x, d) * y - ca.fmax(x + y, 2 * z),
     "choices": lambda x, y, z, d: ca.if_else(x < y, x * z, y + z**2) / ca.if_else(ca.logic_not(z < 1), x, 0.5 + y),
     "a piece that does not count": lambda x, y, z, d: ca.if_else(x > 0, x * y, ca.log(-x)) + z,
@@ -99,6 +101,31 @@ def test_derivatives_of_logarithms(name, sense):
     assert there.sum() > COUNT // 3
     for own, other in zip(ours, theirs, strict=True):
         np.testing.assert_allclose(own[..., there], other[..., there], rtol=1e-8, atol=1e-8)
+
+
+def repeated(x, count, step):
+    for k in range(count):
+        x = step(x, k)
+    return x
+
+
+DEEP = {
+    "functions": lambda x, y, z, d: repeated(x + y, 400, lambda e, k: ca.sin(e) if k % 3 else ca.tanh(e * y)) + z,
+    "steps in time": lambda x, y, z, d: repeated(z, 400, lambda v, k: v + 0.01 * (x - y * v * v)),
+    "products": lambda x, y, z, d: repeated(x, 600, lambda e, k: e * (y / z, z / y)[k % 2]) + d,
+    "quotients": lambda x, y, z, d: repeated(x, 400, lambda e, k: y / (z + e)),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("log", [True, False])
+@pytest.mark.parametrize("name", DEEP)
+def test_derivatives_of_deep_formulas(name, log):
+    ours, theirs = derivatives(DEEP[name], log, "at_most", True)
+    there = np.isfinite(theirs[0][0]).ravel()
+    assert there.sum() > COUNT // 3
+    for own, other in zip(ours, theirs, strict=True):
+        np.testing.assert_allclose(own[..., there], other[..., there], rtol=1e-6, atol=1e-6)
 
 
 def test_a_lower_limit_shows_the_way_back_from_below_zero():

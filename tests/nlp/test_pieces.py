@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
@@ -14,9 +13,10 @@ import yaml
 
 import synth
 from synth.feasibility import residual
+from synth.kernels.loading import best_variant
 from synth.model.constraint import Goal, NodeConstraint, void_limits
 from synth.model.program import Program
-from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
@@ -26,10 +26,9 @@ from tests.regimes import best_in_any_regime, referee
 from tests.repetitions import repetitions
 
 ROOT = Path(__file__).parents[2]
-pytestmark = pytest.mark.usefixtures("own_cache")
-HAS_COMPILER = shutil.which("cc") is not None
-NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
-EVERY = pytest.mark.parametrize("code", ["arrays", pytest.param("general", marks=NEEDS_COMPILER)])
+Code = Literal["arrays", "kernel"]
+CODES: tuple[Code, ...] = ("arrays", "kernel") if best_variant("solver") else ("arrays",)
+EVERY = pytest.mark.parametrize("code", CODES)
 
 Row = tuple[str, Any, Any]  # sense, value and limit
 Formula = Callable[[Sequence[Any]], Any]
@@ -57,8 +56,11 @@ class Kinked:
         moving, nodes = self.program.dependence(range(n)), self.program.nodes
         edges = [nodes[k] for k in kinks if nodes[k].op in (ca.OP_FMAX, ca.OP_FMIN)]
         edged = any(moving[list(node.args)].all() for node in edges)
-        first = BatchNlp(self.program, n, self.rows, code, TUNING.nlp.edge if edged else 0.0)
-        self.solver = KinkedNlp(first, PiecedNlp(self.pieces, code))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("CLUTCHSYNTH_NATIVE", "0" if code == "arrays" else "1")
+            first = BatchNlp(self.program, n, self.rows, TUNING.nlp.edge if edged else 0.0)
+            self.solver = KinkedNlp(first, PiecedNlp(self.pieces))
+            assert first.compiled == self.solver.pieced.nlp.compiled == (code == "kernel")
         self.referee = ParametricNlp(self.program, n, self.rows)
         self._sides = self.program.compile()
 
@@ -207,10 +209,9 @@ STARTS = 6
 def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(kind):
     feasible, best, solved = 0, 0, []
     seeds = 6 if kind in QUICK else repetitions(2, 6)
-    codes: tuple[Code, ...] = ("arrays", "general") if HAS_COMPILER else ("arrays",)
     for seed in range(seeds):
         known: float | None = None
-        for code in codes:
+        for code in CODES:
             rng = np.random.default_rng([seed, KINDS.index(kind)])
             n = int(rng.integers(2, 4))
             problem = Kinked(n, kind(rng, n), code)
@@ -235,7 +236,7 @@ def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(ki
                 best += bool(np.min(cost[holds], initial=np.inf) <= known + 1e-6)
                 if kind in CONVEX:
                     np.testing.assert_allclose(cost[holds], known, atol=1e-6)
-    assert feasible > 0.5 * seeds * len(codes)
+    assert feasible > 0.5 * seeds * len(CODES)
     assert np.mean(solved) > 0.9
     # From these few starts; the search goes on where such an answer is not the best.
     assert best >= (1.0 if kind in CONVEX else 0.75) * feasible

@@ -444,13 +444,13 @@ def lightest(question: Question) -> float | None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("at_once", [True, False], ids=["compiled", "not_compiled"])
+@pytest.mark.parametrize("native", ["1", "0"], ids=["kernel", "arrays"])
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
-def test_struts(grid: bool, at_once: bool) -> None:
-    tuning = tuned(compiling={"boxes": 0 if at_once else math.inf})
+def test_struts(grid: bool, native: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", native)
     loaded = ((3, 1.5), (20, 4), (89, 9.9))
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in loaded]
-    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid, tuning=tuning)
+    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
     check_each(whole, lambda k: lightest(whole[k]))
 
 

@@ -364,6 +364,7 @@ class Beyond(synth.DesignProblem):
         n, part = d.count("n", 1, 3), d.part("part", "things")
         a, b, c = (rng.integers(-4, 5, 3) / 2).tolist()
         left = (a * x + b * y * n + c, x * y + c, a * x + b * y - n)[self.seed % 3]
+        left = x - c if left.is_constant() else left
         d.at_least("left", left, 0, "-", guard=True)
         behind = self.FORMULAS[self.seed % 5](left)
         d.derive("behind", "-", behind, needs=("left",))

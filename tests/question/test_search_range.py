@@ -59,7 +59,7 @@ def test_a_count_between_its_steps_is_computed():
     design = strut(plates=2.5)
     assert design.outside == {"plates": "2.5, searched is 1 to 4 in steps of 1"}
     assert design.values["area"] == pytest.approx(2.5 * 0.05 * 0.002, rel=1e-12)
-    assert spread(one=4).outside == {"one": "4, searched is 3 to 3"}
+    assert spread(one=4).outside == {"one": "4, searched is 3"}
 
 
 def test_what_is_told_is_stated_and_evaluated_again():

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -14,8 +16,14 @@ from synth.errors import InputError
 from synth.question.settings import SearchSettings
 from synth.question.spec import read_spec, spec_from_mapping
 from synth.question.spec_keys import FIELDS
+from tests.question.hostile_values import ENTRIES, JUNK
+from tests.repetitions import repetitions
 
 SMALL = "family: multi_plate_clutch\nrequirements:\n  load_torque: 600 N*m\n"
+HOIST = {
+    "family": "multi_plate_clutch",
+    "requirements": {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"},
+}
 
 
 def write(folder: Path, text: str | bytes, name: str = "hoist.yaml") -> Path:
@@ -197,16 +205,8 @@ def test_a_spec_cannot_be_changed(tmp_path: Path) -> None:
         spec.requirements["load_torque"] = 1  # type: ignore[index]
 
 
-words = st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=12)
-anything = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | words,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
-    max_leaves=6,
-)
-
-
 @settings(deadline=None, derandomize=True)
-@given(st.dictionaries(st.sampled_from([*FIELDS, "other"]), anything, max_size=6))
+@given(st.dictionaries(st.sampled_from([*FIELDS, "other"]), JUNK, max_size=6))
 def test_any_mapping_is_read_or_refused(content: dict[str, object]) -> None:
     try:
         spec = spec_from_mapping(content, "spec.yaml", Path())
@@ -214,6 +214,61 @@ def test_any_mapping_is_read_or_refused(content: dict[str, object]) -> None:
         assert str(error).startswith("spec.yaml")  # noqa: PT017  (either outcome is right, a third is not)
     else:
         assert spec.family == content["family"]
+
+
+def written_out(content: Any, ending: str) -> str:
+    """Text of a YAML or JSON file, however long its numbers are."""
+    before = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)
+    try:
+        return json.dumps(content) if ending == "json" else yaml.safe_dump(content)
+    finally:
+        sys.set_int_max_str_digits(before)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", ["yaml", "json"])
+@settings(deadline=None, derandomize=True, max_examples=repetitions(200, 5000))
+@given(content=ENTRIES)
+def test_whatever_stands_in_a_spec_is_asked_or_refused(
+    tmp_path_factory: pytest.TempPathFactory, ending: str, content: dict[str, Any]
+) -> None:
+    path = tmp_path_factory.getbasetemp() / f"spec.{ending}"
+    path.write_text(written_out(HOIST | content, ending), encoding="utf-8")
+    try:
+        spec = read_spec(path)
+        spec.settings()
+        if not spec.compares:
+            spec.request()
+    except InputError as error:
+        assert len(str(error)) < 2000  # noqa: PT017
+
+
+@pytest.mark.parametrize("ending", ["yaml", "json"])
+@pytest.mark.parametrize("digits", [400, 5000])
+@pytest.mark.parametrize("key", FIELDS)
+def test_numbers_without_end_are_refused_under_every_key(tmp_path: Path, key: str, digits: int, ending: str) -> None:
+    for value in (10**digits, [10**digits], {"mass": 10**digits}, {"mass": [10**digits]}):
+        path = write(tmp_path, written_out(HOIST | {key: value}, ending), f"hoist.{ending}")
+        try:
+            read = read_spec(path).stated([key])
+        except InputError as error:
+            assert "hoist" in str(error)  # noqa: PT017
+        else:
+            assert key in ("requirements", "fix", "values", "robust")
+            assert digits == 400
+            assert read == {key: value}  # one number there is refused by whoever knows its unit
+
+
+def test_tolerances_that_are_no_mapping_are_refused(tmp_path: Path) -> None:
+    spec = read_spec(write(tmp_path, written_out(HOIST | {"robust": {"tolerance": "+-1 mm"}}, "yaml")))
+    with pytest.raises(InputError, match="robust: tolerance: got '\\+-1 mm'"):
+        spec.request()
+
+
+@pytest.mark.parametrize("tag", ["!!bool x", "!!timestamp x", "!!binary x", "!!int x", "!!set {a}", "!own x", "! x"])
+def test_tags_of_yaml_are_refused(tmp_path: Path, tag: str) -> None:
+    assert "line 4: got a tag" in str(refusal(write(tmp_path, SMALL + f"points: {tag}\n")))
 
 
 @settings(deadline=None, derandomize=True)

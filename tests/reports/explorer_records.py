@@ -7,8 +7,9 @@ import random
 from functools import cache
 from typing import Any
 
+from synth.reports.explorer.record import explorer_record
+
 import synth
-from reports.explorer.record import explorer_record
 
 HOSTILE = "</script><img src=x onerror=alert(1)>\u202egnp.exe\u2066 <b>&amp;`${1}`"
 ASKED = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}

@@ -40,6 +40,7 @@ FUNCTIONS = {
     "min": min,
     "max": max,
     "ceil": math.ceil,
+    "floor": math.floor,
     "hypot": lambda a, b: root(a**2 + b**2),
     **{name: (lambda f: lambda x: f(angle(x)))(getattr(math, name)) for name in ("sin", "cos", "tan")},
     **{name: (lambda f: lambda *x: f(*map(bare, x)))(getattr(math, name)) for name in ("asin", "acos", "atan", "erf")},

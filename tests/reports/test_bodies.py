@@ -7,9 +7,9 @@ import math
 import struct
 
 import pytest
+from synth.reports.drawing.bodies import assembly, glb_of, left_out, plain, round_areas, step_of
 
 import synth
-from reports.drawing.bodies import assembly, glb_of, left_out, plain, round_areas, step_of
 from synth.analysis.drawing import drawing_of, quantity_of, weighed
 from synth.analysis.reporting import report
 from synth.drawing import Area, Drawing, Item, Line, LineKind, View, disc, rectangle
@@ -74,9 +74,12 @@ def test_a_drawing_without_round_parts_has_no_bodies_and_it_is_told(front, tmp_p
         return Drawing("front view", (View("Front view", (area,)),), (Item(1, "Plate"),), ("the rest",))
 
     monkeypatch.setattr(type(synth.load("multi_plate_clutch")), "drawing", flat)
-    _, names, notes = report(front, tmp_path, formats=["svg", "step", "glb"])
-    assert [name for name in names if "drawing" in name] == ["design_01_drawing.svg"]
-    assert notes == ["STEP and glTF are without all parts (Plate): only parts that are round about the axis are bodies"]
+    written = report(front, tmp_path, formats=["svg", "step", "glb"])
+    assert [name for name in written.files if "drawing" in name] == ["design_01_drawing.svg"]
+    assert written.lacking == ()  # nothing is missed where there is nothing to make
+    assert written.notes == [
+        "STEP and glTF are without all parts (Plate): only parts that are round about the axis are bodies"
+    ]
 
 
 def test_bodies_are_as_large_and_as_heavy_as_they_are_drawn(front, tmp_path):
@@ -128,9 +131,9 @@ def test_the_same_drawing_gives_the_same_files():
 
 def test_files_of_a_report_are_written(front, tmp_path):
     pytest.importorskip("build123d")
-    _, names, notes = report(front, tmp_path, formats=["step", "glb"])
-    assert {"design_01_drawing.step", "design_01_drawing.glb"} <= set(names)
-    assert notes == []
+    written = report(front, tmp_path, formats=["step", "glb"])
+    assert {"design_01_drawing.step", "design_01_drawing.glb"} <= set(written.files)
+    assert written.notes == []
 
 
 def test_halves_of_coils_stand_on_the_side_where_they_are_drawn():

@@ -9,11 +9,11 @@ from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
+from synth.reports.drawing.dxf import dxf_document
+from synth.reports.drawing.files import dxf_of, svg_of
+from synth.reports.drawing.page import paper_sheet
 
 import synth
-from reports.drawing.dxf import dxf_document
-from reports.drawing.files import dxf_of, svg_of
-from reports.drawing.page import paper_sheet
 from synth.analysis.drawing import drawing_of
 from synth.analysis.reporting import explored, report
 from synth.drawing import (
@@ -205,9 +205,11 @@ def test_hostile_texts_do_nothing_in_drawings(text):
 def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
     design = front.designs[0]
     old = replace(design, steps=type(design.steps)({k: v for k, v in design.steps.items() if k != "release_gap"}))
-    _, names, notes = report(replace(front, designs=(old,)), tmp_path, formats=["html", "svg"])
-    assert names == ["report.html", "design_01_sheet.html"]
-    assert [note for note in notes if note.startswith("no drawing of design #1: design: release_gap: is missing")]
+    written = report(replace(front, designs=(old,)), tmp_path, formats=["html", "svg"])
+    assert written.files == ["report.html", "design_01_sheet.html"]
+    assert [
+        note for note in written.notes if note.startswith("no drawing of design #1: design: release_gap: is missing")
+    ]
 
 
 def test_the_extra_is_named_where_it_is_missing(front, tmp_path, monkeypatch):

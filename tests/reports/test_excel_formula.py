@@ -7,9 +7,9 @@ import re
 
 import numpy as np
 import pytest
+from synth.reports.excel_formula import LONGEST, from_si_text, number_text, to_si_text, write
+from synth.reports.excel_names import LegalNames
 
-from reports.excel_formula import LONGEST, from_si_text, number_text, to_si_text, write
-from reports.excel_names import LegalNames
 from synth.results.expression import FUNCTIONS, value_of
 from synth.units import from_si, to_si
 from tests.reports.spreadsheet import computed

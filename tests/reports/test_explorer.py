@@ -10,9 +10,9 @@ from html.parser import HTMLParser
 from importlib.resources import files
 
 import pytest
+from synth.reports.explorer.page import IMPORT, explorer_files, explorer_frame, explorer_page, one_script
+from synth.reports.explorer.record import explorer_record
 
-from reports.explorer.page import IMPORT, explorer_files, explorer_frame, explorer_page, one_script
-from reports.explorer.record import explorer_record
 from synth.errors import InputError
 from synth.results.drawings import report
 from tests.reports.explorer_records import HOSTILE, empty_record, grown, hostile_record, small_front, small_record
@@ -154,8 +154,9 @@ def test_a_service_finds_modules_and_record_by_name():
     assert handed is not None
     assert record is explorer_record
     assert {"explorer.js", "explorer.css"} <= set(handed())
-    there = {path.name for path in files("reports.explorer").iterdir() if path.name.endswith((".js", ".css"))}
-    assert set(handed()) == there
+    homes = (files("synth.reports.explorer"), files("synth.ui"))
+    there = [path.name for home in homes for path in home.iterdir() if path.name.endswith((".js", ".css"))]
+    assert sorted(handed()) == sorted(there)
     assert "export function mount(" in handed()["explorer.js"]
 
 

@@ -12,9 +12,8 @@ from typing import Any
 
 import pytest
 import yaml
+from synth.reports.explorer.page import explorer_files, explorer_frame, explorer_page
 
-from reports.explorer.page import explorer_files, explorer_frame, explorer_page
-from reports.numbers import printed, shown_number
 from tests.reports.browser import DESKTOP, FORMS, PHONE, Opened, chromium, needs_chromium, opened, serious
 from tests.reports.explorer_records import HOSTILE, empty_record, grown, hostile_record, small_front, small_record
 
@@ -235,17 +234,6 @@ def test_a_design_taken_along_reads_back_and_the_table_is_safe(shown: Shown):
         rows = list(csv.reader(io.StringIO(Path(taken.value.path()).read_text(encoding="utf-8-sig"))))
         assert rows[0][:3] == ["rank", "note", "mass [kg]"]
         assert len(rows) == 1 + len(small_front().designs)
-
-
-def test_numbers_are_shown_as_reports_print_them(shown: Shown, browser: Any, tmp_path: Path):
-    values = [0, 30, -12.5, 1058.8235, 1.2566370614e-6, 12345678.9, 0.00012345, 123456.78, 999999.96, 1e6, -3e-9, 0.5]
-    module = explorer_files()["numbers.js"].replace("export ", "")
-    path = tmp_path / "numbers.html"
-    script = f"<script>{module}; window.shown = {json.dumps(values)}.map((v) => number(v));</script>"
-    path.write_text(f"<!doctype html><meta charset=utf-8>{script}", encoding="utf-8")
-    with opened(browser, path) as found:
-        told = [text.replace("\u202f", "") for text in found.page.evaluate("window.shown")]
-    assert told == [printed(shown_number(float(v))) for v in values]
 
 
 def test_a_notebook_frame_works_closed_off(browser: Any, tmp_path: Path):

@@ -22,9 +22,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.style import context
 from matplotlib.text import Text
+from synth.reports.figure import STYLE, figure_png, figure_svg, make_figure
 
 import synth
-from reports.figure import STYLE, figure_png, figure_svg, make_figure
 from synth.errors import InputError
 from tests.sample_problems.ropes import Ropes, ropes
 
@@ -286,7 +286,7 @@ def test_the_drawing_depends_on_the_frame_alone() -> None:
         assert figure_svg(sample()) == svg
     assert mpl.rcParams["svg.hashsalt"] is None  # and leaves the settings of others alone
     program = (
-        "import sys\nfrom tests.reports.test_figure import sample\nfrom reports.figure import figure_svg\n"
+        "import sys\nfrom tests.reports.test_figure import sample\nfrom synth.reports.figure import figure_svg\n"
         "sys.stdout.buffer.write(figure_svg(sample()).encode())"
     )
     done = subprocess.run(

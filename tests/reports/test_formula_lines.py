@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from reports.formula.layout import MINUS, PLUS, TIMES, Amount, Fence, Fraction, Letter, Power, Row, Word
-from reports.formula.lines import broken, width
-from reports.formula.mathml import mathml
-from reports.formula.plain import plain
-from reports.formula.typst import typst_math
-from reports.numbers import Shown, shown
+from synth.reports.formula.layout import MINUS, PLUS, TIMES, Amount, Fence, Fraction, Letter, Power, Row, Word
+from synth.reports.formula.lines import broken, width
+from synth.reports.formula.mathml import mathml
+from synth.reports.formula.plain import plain
+from synth.reports.formula.typst import typst_math
+from synth.reports.numbers import ShownQuantity, in_its_unit
+
+from synth.text.numbers import Shown
 
 
 def letters(sign, names):
@@ -50,8 +52,8 @@ def test_signs_of_typst_keep_their_distance():
 
 
 def test_a_unit_that_begins_with_a_digit_stands_apart_from_its_number():
-    speed = Amount(shown(26.6, "1/min"))
+    speed = Amount(in_its_unit(26.6, "1/min"))
     assert "thick" in typst_math(speed)
     assert "0.45em" in mathml(speed)
-    assert "thick" not in typst_math(Amount(Shown("3", 0, "mm")))
-    assert typst_math(Amount(Shown("90", 0, "deg"))).strip() == 'upright("90")upright("°")'
+    assert "thick" not in typst_math(Amount(ShownQuantity(Shown("", "3"), "mm")))
+    assert typst_math(Amount(ShownQuantity(Shown("", "90"), "deg"))).strip() == 'upright("90")upright("°")'

@@ -6,9 +6,9 @@ from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
+from synth.reports.front_plot import Axis, front_file, front_svg
 
 import synth
-from reports.front_plot import Axis, front_file, front_svg
 from tests.analysis.test_calculation import Beam
 
 SVG = "{http://www.w3.org/2000/svg}"

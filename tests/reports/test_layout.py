@@ -6,14 +6,14 @@ import math
 from xml.etree import ElementTree
 
 import pytest
+from synth.reports.formula.layout import Typesetter, by_symbol, textbook
+from synth.reports.formula.lines import WIDEST, broken, width
+from synth.reports.formula.mathml import mathml
+from synth.reports.formula.plain import plain
+from synth.reports.formula.symbols import symbol_parts
+from synth.reports.formula.typst import string, typst_math
+from synth.reports.numbers import in_its_unit, printed
 
-from reports.formula.layout import Typesetter, by_symbol, textbook
-from reports.formula.lines import WIDEST, broken, width
-from reports.formula.mathml import mathml
-from reports.formula.plain import plain
-from reports.formula.symbols import symbol_parts
-from reports.formula.typst import string, typst_math
-from reports.numbers import printed, shown, shown_number
 from synth.results.calculation import NamedQuantity
 from synth.units import unit_text
 
@@ -171,11 +171,11 @@ def test_wide_sums_are_broken_before_terms():
     ],
 )
 def test_numbers_are_shown_in_significant_digits(value, digits, line):
-    assert shown_number(value, digits).plain() == line
+    assert in_its_unit(value, "-", digits).plain() == line
 
 
 def test_numbers_carry_units_as_people_print_them():
-    assert printed(shown(0.00012, "mm2")) == "120 mm²"
-    assert printed(shown(1.5e-12, "kg")) == "1.5·10⁻¹² kg"
-    assert printed(shown(math.pi / 6, "deg")) == "30°"
+    assert printed(in_its_unit(0.00012, "mm2")) == "120 mm²"
+    assert printed(in_its_unit(1.5e-12, "kg")) == "1.5·10⁻¹² kg"
+    assert printed(in_its_unit(math.pi / 6, "deg")) == "30°"
     assert unit_text("W/(m2*K)") == "W/(m² K)"

@@ -13,12 +13,11 @@ import pypdfium2
 import pytest
 import typst
 from fontTools.ttLib import TTFont
-
-from reports.about import About
-from reports.extras import needed
-from reports.formula.layout import PLUS, TIMES, Amount, Cases, Fence, Fraction, Letter, Power, Row, Sign, Word
-from reports.numbers import Shown
-from reports.sheet.blocks import (
+from synth.reports.about import About
+from synth.reports.extras import needed
+from synth.reports.formula.layout import PLUS, TIMES, Amount, Cases, Fence, Fraction, Letter, Power, Row, Sign, Word
+from synth.reports.numbers import ShownQuantity
+from synth.reports.sheet.blocks import (
     Bullets,
     Code,
     Column,
@@ -34,12 +33,14 @@ from reports.sheet.blocks import (
     TableBlock,
     TableRow,
 )
-from reports.sheet.design_sheet import SheetRequest, design_sheet
-from reports.sheet.pdf import pdf, pdf_with_notes
-from reports.sheet.typst_source import typst_source
+from synth.reports.sheet.design_sheet import SheetRequest, design_sheet
+from synth.reports.sheet.pdf import pdf, pdf_with_notes
+from synth.reports.sheet.typst_source import typst_source
+
 from synth import InputError
 from synth.analysis.calculation import calculation_of
 from synth.analysis.designs import make_design, make_frame, part_row
+from synth.text.numbers import Shown
 from tests.conformance.cases import CASES, question
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="10"><rect width="20" height="5"/></svg>'
@@ -73,7 +74,7 @@ def every_block(words="words", rows=3):
         symbol=Letter("M_k"),
         equal=(
             (Row((Letter("mu"), TIMES, Letter("F0"))), Row((PLUS, Letter("r")))),
-            (Row((Amount(Shown("1058.8", 0, "N*m")),)),),
+            (Row((Amount(ShownQuantity(Shown("", "1058.8"), "N*m")),)),),
         ),
         plain=("M_k = mu * F0 + r", "= 1058.8 N*m"),
         notes=((words, Letter("z")),),

@@ -7,8 +7,8 @@ import re
 
 import numpy as np
 import pytest
+from synth.reports.sheet.steps import Steps
 
-from reports.sheet.steps import Steps
 from synth.analysis.calculation import calculation_of
 from tests.conformance.cases import CASES, question
 from tests.reports.printed import NUMBER, UNIT, difference

@@ -7,10 +7,10 @@ import re
 from dataclasses import replace
 
 import pytest
+from synth.reports.files import report_files
+from synth.reports.sheet.html import asset
 
 import synth
-from reports.files import report_files
-from reports.sheet.html import asset
 from synth.results import front_record as records
 from synth.results.plain import digest_of
 from tests.analysis.test_calculation import Beam
@@ -25,7 +25,7 @@ def front():
 
 
 def page_of(front, **more):
-    files, notes = report_files({"calculation": synth.calculation(front), "front": front, **more})
+    files, notes, _ = report_files({"calculation": synth.calculation(front), "front": front, **more})
     assert notes == []
     return Page(files["report.html"]), files
 
@@ -58,6 +58,23 @@ def test_the_state_stands_first(front, make, head):
     if "design_01_sheet.html" in files:
         sheet = words(Page(files["design_01_sheet.html"]))
         assert sheet.index("Feasible") < sheet.index("Input")
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 6])
+def test_the_knee_of_any_front_has_a_sheet(front, count):
+    files = page_of(replace(front, designs=front.designs[:count]), chosen=["knee"])[1]
+    sheets = [name for name in files if name.endswith("_sheet.html")]
+    assert len(sheets) == min(count, 1)
+    if count:
+        noted = [d.rank for d in front.designs[:count] if "knee" in d.note] or [1]
+        assert sheets == [f"design_{noted[0]:02d}_sheet.html"]
+
+
+def test_the_knee_and_its_rank_are_one_sheet(front):
+    one = replace(front, designs=front.designs[:1])
+    assert sum("_sheet" in name for name in page_of(one, chosen=["1", "knee", " knee "])[1]) == 1
+    with pytest.raises(synth.InputError, match="a rank from 1 to 1, or knee"):
+        page_of(one, chosen=["2"])
 
 
 def test_three_objectives_are_drawn_in_pairs():

@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from reports.formula.symbols import symbol_parts
+from synth.reports.formula.symbols import symbol_parts
+
 from synth.analysis.calculation import calculation_of
 from tests.conformance.cases import CASES, question
 

@@ -9,11 +9,11 @@ from dataclasses import replace
 import pytest
 from rich.cells import cell_len
 from rich.console import Console
+from synth.reports.front_plot import Drawn
+from synth.reports.label_spots import Box, label_spots
+from synth.reports.terminal_plot import ASCII_SIGNS, BRAILLE_SIGNS, Canvas, plot_lines, print_plot
 
 import synth
-from reports.front_plot import Drawn
-from reports.label_spots import Box, label_spots
-from reports.terminal_plot import ASCII_SIGNS, BRAILLE_SIGNS, Canvas, plot_lines, print_plot
 from tests.analysis.test_calculation import Beam
 
 MIN2 = {"width": "min", "height": "min"}

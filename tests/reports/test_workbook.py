@@ -13,16 +13,16 @@ from dataclasses import replace
 import numpy as np
 import openpyxl
 import pytest
+from synth.reports.about import About
+from synth.reports.excel_formula import LONGEST
+from synth.reports.workbook import live_workbook
 
 import synth
-from reports.about import About
-from reports.excel_formula import LONGEST
-from reports.workbook import live_workbook
 from synth import InputError
 from synth.errors import RefusedError
 from synth.model.problem import DesignProblem
 from synth.results.design import PartRow
-from synth.units import format_quantity
+from synth.units import typed_quantity
 from tests.conformance.cases import CASES
 from tests.repetitions import repetitions
 from tests.reports.spreadsheet import Spreadsheet
@@ -56,7 +56,7 @@ def asked_otherwise(sampled, family, rng):
         change = other_requirements(sampled, rng)
         asked = dict(design.frame.requirements)
         for name, value in change.numbers.items():
-            asked[name] = format_quantity(value, calculation.quantities[name].unit, None)
+            asked[name] = typed_quantity(value, calculation.quantities[name].unit, None)
         try:
             return change, synth.evaluate(problem, asked, design)
         except RefusedError:  # some do not go together

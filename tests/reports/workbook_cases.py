@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import openpyxl
+from synth.reports.workbook import VALUE, live_workbook
+from synth.reports.workbook_cells import legal_names
+from synth.reports.workbook_limits import HOLDS, NOT_GIVEN, NOT_TOLD, USED, VERDICT, VIOLATED
 
-from reports.workbook import VALUE, live_workbook
-from reports.workbook_cells import legal_names
-from reports.workbook_limits import HOLDS, NOT_GIVEN, NOT_TOLD, USED, VERDICT, VIOLATED
 from synth.analysis.calculation import calculation_of
 from synth.analysis.designs import make_design, make_frame, part_row
 from synth.feasibility import residual

@@ -43,7 +43,8 @@ def test_designs_are_ranked_as_the_search_has_ranked_them(front: ParetoFront) ->
         ("exhaustive", True, "", "feasible"),
         ("heuristic", True, "time limit", "feasible"),
         ("global", False, "", "infeasible"),
-        ("heuristic", False, "", "infeasible"),
+        ("heuristic", False, "", "not_found"),
+        ("exhaustive", False, "", "not_found"),
         ("heuristic", False, "time limit", "not_solved"),
     ],
 )

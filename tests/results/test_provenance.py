@@ -8,10 +8,12 @@ from typing import Any
 import pytest
 
 import synth
+from synth.kernels.loading import best_variant, native_code
+from synth.plugins import AROUND_THE_ENGINE
 from synth.question.catalogs import catalogs_for
 from synth.question.instance import Instance
 from synth.results import provenance as fingerprint
-from synth.results.provenance import code_digest, native_code, package_folder, processor
+from synth.results.provenance import code_digest, package_folder, processor
 from synth.robust.counterpart import robust_counterpart
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut
@@ -54,7 +56,8 @@ def test_whatever_is_asked_otherwise_is_another_question(more: Any) -> None:
 
 def test_whether_native_code_computes_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-    monkeypatch.setattr(fingerprint, "c_compiler", lambda: "/usr/bin/cc")
+    if best_variant("boxes") is None:
+        pytest.skip("no kernel was built")
     assert native_code() == "on"
     own = question().fingerprint()
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
@@ -62,9 +65,6 @@ def test_whether_native_code_computes_is_known(monkeypatch: pytest.MonkeyPatch) 
     switched_off = question().fingerprint()
     assert switched_off.question == own.question
     assert switched_off.computation != own.computation
-    monkeypatch.delenv("CLUTCHSYNTH_NATIVE")
-    monkeypatch.setattr(fingerprint, "c_compiler", lambda: None)
-    assert question().fingerprint() == switched_off
 
 
 @pytest.mark.parametrize("what", ["code_digest", "problem_digest", "processor"])
@@ -93,15 +93,18 @@ def test_the_code_is_that_of_the_whole_engine(monkeypatch: pytest.MonkeyPatch, t
     places = []
     add = fingerprint._add_sources
 
-    def noted(total: Any, place: Path) -> None:
+    def noted(total: Any, place: Path, *without: Any) -> None:
         places.append(place)
-        add(total, place)
+        add(total, place, *without)
 
     monkeypatch.setattr(fingerprint, "_add_sources", noted)
     code_digest.cache_clear()
     before = code_digest()
     assert places == [package_folder()]
-    for name, changed in (("a.py", True), ("templates/kernel.c", True), ("notes.txt", False)):
+    own = {"a.py": True, "templates/kernel.c": True, "notes.txt": False}
+    # A wheel holds families, tables and reports in the folder of the engine: they are not its code.
+    inside = dict.fromkeys((f"{name.rpartition('.')[2]}/a.py" for name in AROUND_THE_ENGINE), False)
+    for name, changed in {**own, **inside}.items():
         monkeypatch.setattr(fingerprint, "package_folder", lambda: tmp_path)
         code_digest.cache_clear()
         empty = code_digest()

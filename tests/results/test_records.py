@@ -55,7 +55,7 @@ def test_ratings_have_names_and_keys(rated: ParetoFront, tmp_path: object) -> No
     for front in (rated, again):
         told = front.designs[0].robust
         assert isinstance(told, DesignRating)
-        assert list(told)[:4] == ["holds", "proof", "yield", "yield_low"]
+        assert list(told)[:4] == ["holds", "verdict", "proof", "yield"]
         assert told.share_good == told["yield"]
         assert told.limits is not UNTOLD
         assert {type(x) for x in told.limits.values()} == {LimitRating}

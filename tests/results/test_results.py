@@ -5,6 +5,8 @@ import dataclasses
 import hashlib
 import json
 import math
+import re
+from itertools import product
 
 import pytest
 import yaml
@@ -13,6 +15,7 @@ import synth
 from synth.files import write_atomically
 from synth.results import Certificate
 from synth.results.front_record import FRONT_FORMAT
+from synth.tables.reading import OF_RECORD
 from synth.units import from_si
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 
@@ -170,7 +173,7 @@ def test_the_record_has_the_rows_used_with_their_hashes(front, content):
     assert set(content["parts"]) == used
     for key, row in content["parts"].items():
         assert key == f"{row['table']}/{row['designation']}"
-        cells = {k: v for k, v in row.items() if k not in ("table", "hash") and v is not None}
+        cells = {k: v for k, v in row.items() if k not in OF_RECORD and v is not None}
         canonical = json.dumps(cells, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
         assert row["hash"] == hashlib.sha256(canonical.encode()).hexdigest()
 
@@ -231,7 +234,7 @@ def test_a_design_file_says_the_same_design_in_few_digits(front, folder):
         assert list(spec["values"]) == list(whole["values"])
         assert isinstance(spec["values"]["plates"], int)
         assert all(len(str(text).split()[0]) <= 13 for text in spec["values"].values())
-        assert list(spec) == ["family", "options", "requirements", "values", "parts"]
+        assert list(spec) == ["family", "options", "requirements", "values", "parts", "rows"]
         problem = Strut(**spec["options"])
         rods = {"rods": RODS}
         again = synth.evaluate(problem, spec["requirements"], spec, catalogs=rods)
@@ -328,3 +331,19 @@ def test_certificates_in_words():
     assert "more than 0.1 % in every objective" in proven.sentence()
     assert "10 are excluded" in Certificate("exhaustive", None, 12, 10, 2, 3).sentence()
     assert "not proven" in Certificate("heuristic", None, 12, 10, 2, 3).sentence()
+
+
+WRONG_NUMBER = re.compile(
+    r"\b(?:only combination(?: of parts and counts)? (?:were|are)|(?<!\d)(?<!\d )1 (?:were|are|boxes|combinations)"
+    r"|(?:[02-9]|\d[\d ]*\d) (?:was|is|box|combination)\b|of the only combination|all [01] combinations)"
+)
+
+
+@pytest.mark.parametrize("kind", ["global", "exhaustive", "heuristic"])
+@pytest.mark.parametrize("combinations", [1, 2, 12000])
+def test_certificates_agree_in_number(kind, combinations):
+    for excluded, solved, unresolved in product({0, 1, combinations - 1}, {0, 1, combinations}, (0, 1, 2)):
+        for gap in (None, 0.01):
+            made = Certificate(kind, gap, combinations, excluded, solved, unresolved)
+            for sentence in (made.sentence(), made.of_no_design()):
+                assert not WRONG_NUMBER.search(sentence), sentence

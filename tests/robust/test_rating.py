@@ -8,8 +8,8 @@ import pytest
 import synth
 from synth.question.catalogs import as_catalogs
 from synth.question.uncertainty import Uncertainty, read_block
+from synth.results.rating_tables import yield_text
 from synth.robust.uncertainty import scattered
-from synth.terminal.robust_console import percent
 from tests.asking import rater_of
 from tests.sample_problems.shaft_brake import CATALOGS, NEEDED, PAIRS, ShaftBrake
 
@@ -151,6 +151,37 @@ def test_new_and_worn_cold_and_hot():
     assert told["limits"]["grip"]["at"] == pytest.approx({"wear": 0.005, "torque": 105})
 
 
+@pytest.mark.parametrize(
+    ("text", "low", "high"),
+    [
+        ("+10 %", 100, 110),
+        ("-10 %", 90, 100),
+        ("\u221210 %", 90, 100),
+        (" + 10% ", 100, 110),
+        ("+5 N*m", 100, 105),
+        ("- 5 N*m", 95, 100),
+        ("-5 .. +10 %", 95, 110),
+        ("-5 : 10 %", 95, 110),
+        ("+-10 %", 90, 110),
+        ("+/- 5 N*m", 95, 105),
+    ],
+)
+def test_deviations_to_one_side_and_to_both(text, low, high):
+    (thing,) = scattered(
+        read_block({"torque": text}), ShaftBrake().model(frozenset(NEEDED), as_catalogs(CATALOGS)).declaration
+    )
+    ends = [thing.moved(thing.members[0], lambda _: 100.0, end, None) for end in (0.0, 1.0)]
+    assert ends == pytest.approx([low, high])
+    assert rated({"torque": text})["limits"]["grip"]["at"] == pytest.approx({"torque": high})
+
+
+def test_friction_may_rise_alone_and_must_stay_above_zero():
+    assert rated({"friction": "+0.1"})["limits"]["grip"]["at"] == pytest.approx({"friction": 0.3})
+    assert rated({"friction": "-5 .. +10 %"})["limits"]["grip"]["at"] == pytest.approx({"friction": 0.285})
+    with pytest.raises(synth.InputError, match="above zero"):
+        rated({"friction": "-0.5"})
+
+
 def test_the_same_seed_gives_the_same_files_and_another_one_others():
     block = {"friction": "catalogue range", "torque": "+-10 %", "samples": 128}
     files = [
@@ -190,6 +221,12 @@ def test_rating_ends_where_time_is_over_and_keeps_what_is_done():
         ({"friction": "+-120 %"}, ["friction", "smaller to a larger"]),
         ({"friktion": "+-5 %"}, ["friktion", "did you mean friction"]),
         ({"torque": "+-5 mm"}, ["torque", "5 mm"]),
+        ({"torque": "+5 mm"}, ["torque", "5 mm"]),
+        ({"torque": "+0 %"}, ["torque", "smaller to a larger"]),
+        ({"torque": "-100 %"}, ["torque", "smaller to a larger"]),
+        ({"torque": "+ten %"}, ["torque", "a range"]),
+        ({"torque": "5 .. 10 %"}, ["torque", "holds the nominal 100 N*m"]),
+        ({"ambient_temperature": "+5 %"}, ["ambient_temperature", "in degrees"]),
         ({"torque": "110 .. 120 N*m"}, ["torque", "holds the nominal 100 N*m"]),
         ({"torque": "120 .. 90 N*m"}, ["torque", "smaller to a larger"]),
         ({"torque": "0.5 .. 120 N*m"}, ["torque", "within 1 N*m .. 1000 N*m"]),
@@ -218,6 +255,13 @@ def test_careless_blocks_are_refused_in_one_sentence(block, words):
     assert all(word in text for word in words), text
 
 
+def test_ranges_are_read_as_name_plates_have_them():
+    plain = rated({"torque": "90.5 .. 105.5 N*m", "force": "+-100 N", "tolerance": {"radius": "+-1 mm"}})
+    typed = rated({"torque": "90.5 .. 105 1/2 N-m", "force": "+-100 N.", "tolerance": {"radius": "+-1/1 mm"}})
+    assert typed["yield"] == plain["yield"]
+    assert typed["worst_utilisation"] == plain["worst_utilisation"]
+
+
 def test_a_column_scatters_by_its_name_and_a_block_reads_back():
     told = rated({"pair.pressure_allow": "+-10 %"})
     assert told["limits"]["pressure"]["limit"] == pytest.approx(0.9e6)
@@ -244,4 +288,45 @@ def declared(family):
 
 
 def test_what_is_not_all_is_not_shown_as_all():
-    assert (percent(0.99999), percent(1.0)) == ("99.99 %", "100 %")
+    assert (yield_text(0.99999), yield_text(1.0)) == ("99.99 %", "100 %")
+
+
+class Cancelling(synth.DesignProblem):
+    """Two limits of which one is a small difference of large terms, so that its residual is a share of these."""
+
+    name, title, sources = "cancelling", "Cancelling", ("made up",)
+
+    def __init__(self, gap, load):
+        super().__init__()
+        self.gap, self.load = gap, load
+
+    def declare(self, d):
+        swell = d.requirement("swell", "-", lower=0.5, upper=2)
+        length = d.variable("length", "mm", 900, 1100)
+        d.at_most("gap", length * swell - 1.0, self.gap, "mm")
+        d.at_most("load", 100 * swell, self.load, "N")
+        d.derive("inverse", "1/m", 1 / length)
+        d.objective("inverse")
+
+
+@pytest.mark.parametrize(
+    ("gap", "load", "worst"),
+    [
+        (0.05, 105.0, "gap"),  # both fail: 0.1 m where 0.05 is allowed, a tenth of its terms; 110 N where 105 are
+        (0.098, 109.0, "gap"),
+        (0.0999, 100.0, "load"),
+        (0.2, 200.0, "load"),  # both hold, 50 % and 55 % used
+        (0.11, 200.0, "gap"),
+        (0.099, 200.0, "gap"),  # the one that fails, whatever the other uses
+        (1.0, 109.0, "load"),
+    ],
+)
+def test_the_worst_limit_is_that_which_is_used_most(gap, load, worst):
+    problem = Cancelling(gap, load)
+    design = synth.evaluate(problem, {"swell": "1"}, values={"length": "1000 mm"})
+    told = synth.rate(design, {"swell": "+-10 %"}, problem=problem).designs[0].robust
+    assert told["worst_limit"] == worst
+    own = told["limits"][worst]
+    assert told["worst_utilisation"] == own["utilisation"]
+    rivals = [x for x in told["limits"].values() if x["holds"] is own["holds"]]
+    assert own["utilisation"] == max(x["utilisation"] for x in rivals)

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 
 import synth
-from synth.compiled.execution import EXECUTION
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Candidate
 from synth.search.formulation import Formulation
@@ -54,12 +53,12 @@ class Strut(synth.DesignProblem):
         d.advise("wide", width > 0.05, "a wide bar")
 
 
-def strut_form(grid=True, tuning=TUNING, execution=EXECUTION):
+def strut_form(grid=True, tuning=TUNING, workers=1):
     """Return the problem ready to be searched."""
     problem = Strut()
     instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
     return Formulation(
-        instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, execution=execution, tuning=tuning
+        instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, workers=workers, tuning=tuning
     )
 
 

@@ -1,14 +1,11 @@
 """Steps of trees that compiled code takes beside looks for designs: nothing of use is lost, however a tree ends."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from synth.bounds.boxes import Boxes
-from synth.compiled import compiler
-from synth.compiled.execution import Execution
 from synth.deadline import Stopped
+from synth.kernels.loading import best_variant
 from synth.search.archive import Archive
 from synth.search.box_steps import BoxStep
 from synth.search.branch_and_bound import branch_and_bound
@@ -19,23 +16,21 @@ from synth.tuning import TUNING
 from tests.sample_problems.strut import designs_of, lost, strut_form
 from tests.tuned import tuned
 
-pytestmark = pytest.mark.skipif(compiler.cache_folder() is None or compiler._compiler() is None, reason="no C compiler")
-# Many steps are under way in a small tree: code from the first box on, and few boxes in a batch.
+pytestmark = pytest.mark.skipif(best_variant("boxes") is None, reason="no kernel was built")
+# Many steps are under way in a small tree: few boxes in a batch.
 SMALL = {"batch": 48, "generation": 256, "small_batch": 16}
 SLACK = np.array([0.02, 0.05])
 
 
 @pytest.fixture(autouse=True)
 def compiled(monkeypatch):
-    """Let code be compiled."""
+    """Let kernels compute."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
 
 
-def posed(workers=2, boxes=-1):
-    """Return a form whose code is compiled from so many boxes on."""
-    return strut_form(
-        tuning=tuned(tree=SMALL, compiling={"boxes": boxes}), execution=replace(Execution(), workers=workers)
-    )
+def posed(workers=2):
+    """Return the form of a small tree."""
+    return strut_form(tuning=tuned(tree=SMALL), workers=workers)
 
 
 def cover(form, known=20):
@@ -132,9 +127,10 @@ def test_threads_change_nothing():
     assert outcome_of(1) == outcome_of(2) == outcome_of(3)
 
 
-@pytest.mark.parametrize("boxes", [-1, 700, np.inf])
-def test_code_that_comes_later_or_never_covers_as_much(boxes):
-    form = posed(boxes=boxes)
+@pytest.mark.parametrize("native", ["1", "0"])
+def test_arrays_cover_as_much(native, monkeypatch):
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", native)
+    form = posed()
     rule = cover(form)
     assert tree(form, rule).closed
     phi = designs_of(form, np.random.default_rng(9), 20_000)[2]

@@ -50,7 +50,7 @@ TWO, NARROW, THREE = ["mass", "flexibility"], ["mass", "width"], ["mass", "flexi
     [
         (TWO, 0.1, 5000, False),
         (TWO, 0.1, 10_000, True),
-        (TWO, 0.3, 4500, True),
+        (TWO, 0.3, 3500, True),
         (NARROW, 1e-6, 1000, True),
         (THREE, 0.8, 2000, False),
     ],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -12,33 +11,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth import load
-from synth.compiled import compiler
-from synth.compiled.compilation import switched_off
+from synth.kernels.loading import best_variant
 from synth.search import archive as archive_module
 from synth.search import pruning
 from synth.search.archive import Archive, Candidate, distinct
 from synth.search.dominance import CornerTable, CoverSets, sorted_points
-from synth.search.dominance_code import DominanceCode, dominance_code
+from synth.search.dominance_code import dominance_code
 from synth.search.pruning import NonImprovement
 from synth.tuning import TUNING, DominanceSettings, Tuning
 from tests.tuned import synthesize, tuned
 
-HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
-COMPILED = [False, pytest.param(True, marks=pytest.mark.skipif(not HERE, reason="no C compiler"))]
-AT_ONCE = DominanceSettings(compiled_from=0)
+BUILT = pytest.mark.skipif(best_variant("dominance") is None, reason="no kernel was built")
+COMPILED = [False, pytest.param(True, marks=BUILT)]
 
 
 def code(wanted: bool) -> Any:
-    """Return compiled code, once it is there."""
-    return compiled_code(AT_ONCE) if wanted else None
-
-
-def compiled_code(own: DominanceSettings) -> DominanceCode:
-    end = time.monotonic() + own.effort.most
-    while (found := dominance_code(own.compiled_from, own)) is None and time.monotonic() < end:
-        time.sleep(0.01)
-    assert found is not None
-    return found
+    """The kernel, if it is wanted."""
+    return dominance_code() if wanted else None
 
 
 def least_by_hand(points: np.ndarray, lower: np.ndarray, strict: bool) -> np.ndarray:
@@ -72,9 +61,8 @@ def test_every_form_tells_what_brute_force_tells(form, m, compiled, seed):
     points = some_numbers(rng, (count, m), -np.inf, np.inf)
     points = points[rng.integers(0, count, count)] if rng.random() < 0.3 else points  # some of them twice
     lower = some_numbers(rng, (boxes, m), -np.inf, np.inf, np.nan)
-    own = replace(
-        AT_ONCE, block=float(rng.uniform(0.1, 3)), rows=int(rng.integers(1, 300)), boxes=int(rng.integers(1, 100))
-    )
+    sizes = {"rows": int(rng.integers(1, 300)), "boxes": int(rng.integers(1, 100))}
+    own = replace(TUNING.dominance, block=float(rng.uniform(0.1, 3)), **sizes)
     found = form(points, own, strict).least(lower, code(compiled))
     np.testing.assert_array_equal(found, least_by_hand(points, lower, strict))
 
@@ -86,7 +74,7 @@ def test_many_points_in_general_position(m, compiled):
     points = rng.exponential(size=(2500, m))
     points /= np.linalg.norm(points, axis=1)[:, None]
     lower = np.array(points[:300]) + rng.normal(0, 0.05, (300, m))
-    found = sorted_points(points, AT_ONCE).least(lower, code(compiled))
+    found = sorted_points(points, TUNING.dominance).least(lower, code(compiled))
     np.testing.assert_array_equal(found, least_by_hand(points, lower, False))
     assert 0.3 < np.isfinite(found).mean() < 1.0
 
@@ -142,13 +130,9 @@ def test_distinct_designs_against_brute_force(m, seed):
     assert [c.combination for c in kept] == beaten_by_hand(phi, margin)
 
 
-@pytest.mark.skipif(not HERE, reason="no C compiler")
-def test_compiled_code_is_taken_for_many_boxes_alone_and_where_it_is_wanted():
-    own = TUNING.dominance
-    compiled_code(own)
-    assert dominance_code(own.compiled_from - 1, own) is None
-    with switched_off():
-        assert dominance_code(own.compiled_from, own) is None
+def test_arrays_tell_dominance_where_no_kernel_is_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
+    assert dominance_code() is None
 
 
 class ByHand:
@@ -181,13 +165,13 @@ def front_by(tuning: Tuning, m: int) -> tuple[list[list[float]], str, int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("m", [3, 4])
 def test_a_search_takes_the_same_way_whatever_tells_dominance(m, monkeypatch):
-    never, always = (tuned(dominance={"compiled_from": asked}) for asked in (10**12, 0))
-    if HERE:
-        compiled_code(always.dominance)
-    over_arrays = front_by(never, m)
-    assert len(over_arrays[0]) == 10
-    assert over_arrays[1] == "global"
-    assert front_by(always, m) == over_arrays
+    by_kernel = front_by(TUNING, m)
+    assert len(by_kernel[0]) == 10
+    assert by_kernel[1] == "global"
+    with monkeypatch.context() as patch:
+        for module in (archive_module, pruning):
+            patch.setattr(module, "dominance_code", lambda: None)
+        assert front_by(TUNING, m) == by_kernel
     monkeypatch.setattr(archive_module, "sorted_points", ByHand)
     monkeypatch.setattr(pruning, "sorted_points", ByHand)
-    assert front_by(never, m) == over_arrays
+    assert front_by(TUNING, m) == by_kernel

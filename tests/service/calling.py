@@ -15,8 +15,9 @@ from synth.jobs.accounts import Accounts
 from synth.jobs.database import file_url
 from synth.jobs.store import Store
 from synth.service.app import create_app
-from synth.service.context import EngineCalls, ServiceContext
+from synth.service.context import ServiceContext
 from synth.service.settings import ServiceSettings
+from synth.service.small_work import EngineCalls
 from tests.jobs.databases import empty_file
 
 HOME = "http://127.0.0.1:8350"
@@ -28,7 +29,7 @@ class Answering:
     def __init__(self, answer: Callable[[str, Any], Any] = lambda task, payload: payload) -> None:
         self.answer = answer
 
-    def call(self, task: str, payload: Any, deadline: float) -> Any:
+    def call(self, task: str, payload: Any, limit: float) -> Any:
         return self.answer(task, payload)
 
 

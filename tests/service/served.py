@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +13,9 @@ from typing import Any
 
 import httpx
 
-from tests.service.working import QUICK
+from tests.service.working import LIVE, PATIENT, QUICK
 from tests.terminal.entry import COMMAND
+from tests.waiting import PATIENCE, until
 
 # Python runs this at the start of every process that has its folder in PYTHONPATH: workers and engines, too.
 WATCH = """
@@ -52,20 +52,17 @@ class Served:
     def ask(self, method: str, path: str, **asked: Any) -> httpx.Response:
         """Ask something of the interface, or of what stands beside it."""
         where = path if path.startswith("/") else f"/api/v1/{path}"
-        return httpx.request(method, f"{self.address}{where}", timeout=60.0, **asked)
+        return httpx.request(method, f"{self.address}{where}", timeout=PATIENCE, **asked)
 
     def warm(self) -> None:
         """Wait until small questions and tables are answered: a process that begins may be asked too early."""
-        until(lambda: self.ask("POST", "check", json=QUICK).status_code == 200, 60.0)
-        until(lambda: self.ask("POST", "batches/check", json={"rows": []}).status_code == 422, 60.0)
+        until(lambda: self.ask("POST", "check", json=QUICK).status_code == 200)
+        until(lambda: self.ask("POST", "batches/check", json={"rows": []}).status_code == 422)
 
-    def ended(self, job: str, within: float = 90.0, **asked: Any) -> dict[str, Any]:
-        """Wait until a job has ended."""
-        end = time.monotonic() + within
-        while (told := self.ask("GET", f"jobs/{job}", **asked).json())["state"] in ("open", "running"):
-            assert time.monotonic() < end, told
-            time.sleep(0.05)
-        return dict(told)
+    def ended(self, job: str, **asked: Any) -> dict[str, Any]:
+        """State of a job that has ended."""
+        found = until(lambda: self.ask("GET", f"jobs/{job}", **asked).json(), lambda found: found["state"] not in LIVE)
+        return dict(found)
 
     def network(self) -> str:
         """Return what was asked of the network beyond this machine: all of it was refused."""
@@ -75,6 +72,10 @@ class Served:
     def processes(self) -> int:
         """Return how many processes were watched."""
         return len(set((self.folder / "watched.processes").read_text().split()))
+
+    def log(self) -> list[dict[str, Any]]:
+        """Return the lines of its log."""
+        return lines_of((self.folder / "err.txt").read_text())
 
     def said(self) -> str:
         """Return all that it has said."""
@@ -91,8 +92,9 @@ def watched(folder: Path) -> dict[str, str]:
 @contextmanager
 def served(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> Iterator[Served]:
     """Run the server with a worker; it ends with the block, whatever happens there."""
-    watch, more = watched(folder), dict(environment or {})
-    paths = [own["PYTHONPATH"] for own in (watch, more) if "PYTHONPATH" in own]
+    patient = {f"CLUTCHSYNTH_{key.upper()}": str(value) for key, value in PATIENT.items()}
+    watch, more = watched(folder), {**patient, **(environment or {})}
+    paths = [own["PYTHONPATH"] for own in (watch, more, os.environ) if "PYTHONPATH" in own]
     own = {**watch, **more, "PYTHONPATH": os.pathsep.join(paths)}
     place = () if "CLUTCHSYNTH_DATABASE" in own else ("--data", str(folder / "data"))
     with (folder / "out.txt").open("w") as out, (folder / "err.txt").open("w") as err:
@@ -114,21 +116,18 @@ def served(folder: Path, *words: str, environment: Mapping[str, str] | None = No
         process.wait()
 
 
-def until(found: Callable[[], Any], seconds: float = 30.0) -> Any:
-    """Return what is found, as soon as it is true."""
-    end = time.monotonic() + seconds
-    while not (value := found()):
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.02)
-    return value
-
-
 def most_memory(pid: int) -> int:
     """Return the most memory that a process has used at a time, in bytes."""
     (line,) = [line for line in Path(f"/proc/{pid}/status").read_text().splitlines() if line.startswith("VmHWM")]
     return int(line.split()[1]) * 1024
 
 
+def processor_time(pid: int) -> float:
+    """Return the time in s that processors have worked for a process: what it had to do, however busy they are."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def lines_of(text: str) -> list[dict[str, Any]]:
-    """Return the lines of a log."""
-    return [json.loads(line) for line in text.splitlines() if line.startswith("{")]
+    """Return the lines of a log, each of which must be JSON."""
+    return [json.loads(line) for line in text.splitlines()]

@@ -54,8 +54,8 @@ def test_what_is_copied_is_there_and_let_through() -> None:
     for source in sources:
         assert (ROOT / source).exists(), source
     assert named(final, "COPY") == ["--from=build /opt/clutchsynth /opt/clutchsynth"]
-    packages = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]["find"]["include"]
-    assert {package.rstrip("*") for package in packages} <= set(sources)
+    inside = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["package-dir"]
+    assert {"synth", *inside.values()} <= set(sources)
 
 
 def test_packages_are_those_that_are_locked() -> None:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 import sqlalchemy as sa
@@ -26,6 +27,51 @@ def reasons(service: Service) -> list[str]:
     assert (answer.status_code == 200) is (not told)
     assert ("retry-after" in answer.headers) is bool(told)
     return told
+
+
+FULL = "the database cannot be used"
+
+
+def test_a_server_without_room_is_not_ready_and_says_why(service: Service, tmp_path: Path) -> None:
+    service.store.sign("host/1/2/3", "host", "code", {"slots": 2, "busy": 0})
+    assert reasons(service) == []
+    with Service(tmp_path, ready_space=10**12) as small:
+        (reason,) = reasons(small)
+        assert re.fullmatch(r"[0-9 .]+ MB are free where the database is; 1 000 000 MB are needed", reason)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no limits of file sizes")
+def test_a_server_that_cannot_write_is_not_ready_as_long(tmp_path: Path) -> None:
+    import resource
+
+    with Service(tmp_path, ready_write=0.0) as service:
+        service.store.sign("host/1/2/3", "host", "code", {"slots": 2, "busy": 0})
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1, before[1]))
+        try:
+            (reason,) = reasons(service)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert reason == f"{FULL} (disk I/O error)"
+        assert reasons(service) == []
+
+
+def test_what_finds_no_room_is_507_with_the_reason(service: Service) -> None:
+    token = bearer(service.token("read", "admin"))
+    sa.event.listen(service.store.engine, "connect", _is_full)
+    service.store.engine.dispose()
+    answers = [
+        service("POST", "/api/v1/tokens", headers=token, json={"name": "x" * 50, "tenant": f"t{k}"}) for k in range(200)
+    ]
+    full = next(answer for answer in answers if answer.status_code != 201)
+    assert (full.status_code, code_of(full)) == (507, "no_room")
+    assert "no room on the disk" in full.json()["error"]["message"]
+
+
+def _is_full(connection: Any, _: Any) -> None:
+    """Let a file not grow any more."""
+    pages = connection.execute("PRAGMA page_count").fetchone()[0]
+    connection.execute(f"PRAGMA max_page_count={pages}")
 
 
 def test_a_server_is_ready_where_somebody_works(service: Service) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,6 @@ from tests.service.served import Served, most_memory, served
 from tests.service.working import FAMILY, QUICK
 
 pytestmark = pytest.mark.slow
-PATIENCE = 4.0  # s, for an answer that takes less than 2 where the machine is not shared
 MEMORY = 500_000_000  # bytes
 TRIED = ("check", "synthesis", "whatif", "explain", "compare", "rate", "batch")
 
@@ -89,9 +87,7 @@ def test_what_is_made_to_cost_much_is_refused_or_harmless(server: Served, name: 
     for kind in TRIED:
         path = "check" if kind == "check" else "jobs"
         asked = spec if kind == "check" else {"kind": kind, "request": spec}
-        begun = time.monotonic()
         answer = server.ask("POST", path, json=asked)
-        assert time.monotonic() - begun < PATIENCE, kind
         assert len(answer.content) < 50_000, kind
         if answer.status_code == 202:
             assert name in HARMLESS, (kind, answer.text)

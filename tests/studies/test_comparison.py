@@ -1,5 +1,6 @@
 """Several families asked the same: who serves, who loses and why, and one front against plain enumeration of all."""
 
+import dataclasses
 import io
 import json
 
@@ -18,11 +19,13 @@ from synth.question.settings import SearchSettings
 from synth.search.stages.challenge import Challenge
 from synth.studies.families.compare import compare
 from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
+from synth.study_limits import COMPARING
 from synth.tables.catalogs import Catalogs
-from synth.terminal.choice_console import print_comparison
+from synth.terminal.choice_console import how_long, print_comparison
 from synth.tuning import TUNING
-from synth.units import format_quantity
+from synth.units import typed_quantity
 from tests.sample_problems.shaft_brake import CATALOGS, NEEDED, ShaftBrake
+from tests.shipped import FAMILIES
 from tests.tuned import tuned
 
 METALS = pd.DataFrame(
@@ -170,7 +173,7 @@ def test_every_family_that_lost_is_told_why(found):
     assert f"by #{winner.rank} ({winner.frame.family})" in padded.sentence
     least = {n: min(d.objectives[n] for d in padded.front.designs) for n in ("mass", "sag")}
     mass, sag = (
-        f"least {n} {format_quantity(least[n], unit, 4)} against {format_quantity(winner.objectives[n], unit, 4)}"
+        f"least {n} {typed_quantity(least[n], unit, 4)} against {typed_quantity(winner.objectives[n], unit, 4)}"
         for n, unit in (("mass", "kg"), ("sag", "mm"))
     )
     assert padded.sentence.endswith(f": {mass}, {sag}")
@@ -323,7 +326,7 @@ def test_an_interruption_keeps_the_families_that_are_finished(tmp_path):
     kept = {}
 
     def stop(state):
-        if state["stage"].startswith("tube"):
+        if state["stage"].startswith("padded"):
             raise KeyboardInterrupt
 
     found = compare(
@@ -331,9 +334,9 @@ def test_an_interruption_keeps_the_families_that_are_finished(tmp_path):
     )
     assert found.interrupted == "interrupted"
     assert found.certificate.kind == "heuristic"
-    assert list(kept) == ["solid", "tube"]
+    assert list(kept) == ["solid", "padded"]
     assert len(kept["solid"].designs) == 4
-    assert outcome(found, "padded").outcome == "stopped"
+    assert outcome(found, "tube").outcome == "stopped"
     assert found.designs
     assert all(d.status is Status.FEASIBLE and d.gap is None for d in found.designs)
     late = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, time_limit=1e-9)
@@ -521,7 +524,7 @@ def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
 # ---- the families that there are ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("family", synth.families())
+@pytest.mark.parametrize("family", FAMILIES)
 def test_a_family_understands_only_what_it_uses(family):
     problem = synth.load(family)
     tables = Catalogs()
@@ -537,10 +540,92 @@ def test_a_family_understands_only_what_it_uses(family):
 
 def test_families_that_understand_the_same_measure_it_alike():
     units = {}
-    for family in synth.families():
+    for family in FAMILIES:
         problem = synth.load(family)
         declared = problem.model(frozenset(), Catalogs()).declaration.requirements
         for name in problem.understands:
             units.setdefault(name, set()).add(declared[name].unit)
     assert {name: kinds for name, kinds in units.items() if len(kinds) > 1} == {}
     assert "outer_diameter_limit" in units
+
+
+# ---- time that is shared --------------------------------------------------------------------------------------------
+
+
+def looked(families, progress=None, finished=None, told=None):
+    """Compare families none of which is finished at the first look."""
+    sheet, tables = sheet_of(requirements={"load": LOAD}), Catalogs(OWN)
+    found = applicants(families, sheet, tables)
+    ranked = {"objectives": common_objectives(found, None), "weights": None, "grid": True}
+    settings, limits = SearchSettings(points=4), dataclasses.replace(COMPARING, first_look=0.0)
+    comparing = synth.studies.families.compare._Comparing(
+        found, sheet, ranked, tables, settings, progress, False, limits=limits
+    )
+    return comparing.run(finished, told)
+
+
+def test_what_is_listed_does_not_depend_on_the_first_look():
+    kept, asked = [], [Solid, Tube, Padded]
+    late = looked(asked, finished=lambda label, front: kept.append((label, front.interrupted)))
+    once = compare(asked, {"load": LOAD}, catalogs=OWN, points=4)
+    assert kept == [(x, stop) for stop in ("time limit", "") for x in ("solid", "padded", "tube")]
+    assert [(d.rank, d.values) for d in late.designs] == [(d.rank, d.values) for d in once.designs]
+    assert late.families == once.families
+    assert late.certificate == once.certificate
+    assert late.certificate.kind == "global"
+    assert not late.interrupted
+
+
+def test_every_family_is_looked_at_before_any_is_searched_to_the_end():
+    """The simplest first: a count that takes much time comes after what has none."""
+
+    class Bundle(Solid):
+        name, title = "bundle", "Bundle of bars"
+
+        def declare(self, d):
+            super().declare(d)
+            d.count("pieces", 1, 50)
+
+    searched, told = [], []
+
+    def stop(state):
+        label = state["stage"].split(":")[0]
+        searched.extend([] if searched[-1:] == [label] else [label])
+        if len(searched) > 3:  # the second look begins
+            raise KeyboardInterrupt
+
+    late = looked([Bundle, Solid, Tube], progress=stop, told=told.extend)
+    assert told == ["solid", "bundle", "tube"]
+    assert searched == [*told, "solid"]
+    assert late.interrupted == "interrupted"
+    assert {x.family: x.front is not None for x in late.outcomes} == {"bundle": True, "solid": True, "tube": True}
+
+
+def test_who_is_stopped_keeps_what_the_first_look_brought(found):
+    member = synth.studies.families.competitor.Competitor
+    full = next(x.front for x in found.outcomes if x.family == "solid")
+    stopped = dataclasses.replace(full, interrupted="time limit")
+    empty = dataclasses.replace(full, designs=[], interrupted="time limit")
+    first, second, done = (member(None, None, f, list(f.designs), np.zeros(2)) for f in (stopped, empty, full))
+    assert second.with_what_it_had(first).front is stopped
+    assert len(second.with_what_it_had(first).designs) == len(full.designs)
+    assert done.with_what_it_had(first) is done
+    assert second.with_what_it_had(None) is second
+
+
+@pytest.mark.parametrize(
+    ("families", "time_limit", "words"),
+    [
+        (
+            3,
+            None,
+            "3 families serve this sheet: a, b, c. Each is searched for 10 s at first, 30 s for all; what is not ",
+        ),
+        (3, None, "searched to the end, which may take minutes each. Ctrl-C keeps what is found; --time-limit ends it"),
+        (3, 100.0, "searched to the end, within 100 s in all. Ctrl-C keeps what is found."),
+        (3, 20.0, "They share 20 s. Ctrl-C keeps what is found."),
+        (1, None, "1 family serves this sheet: a. Each is searched for 10 s at first; what"),
+    ],
+)
+def test_the_screen_says_how_long_it_may_take(families, time_limit, words):
+    assert words in how_long("abc"[:families], time_limit)

@@ -67,7 +67,7 @@ def lightest_bar(load, reach, flexibility):
         method="SLSQP",
         bounds=[(5, 150), (100, 300)],
         constraints=limits,
-        options={"ftol": 1e-14, "maxiter": 500},
+        options={"ftol": 1e-11, "maxiter": 500},
     )
     assert answer.success
     return answer.fun

@@ -86,6 +86,8 @@ def test_a_text_that_says_nothing_is_refused(text: str) -> None:
         (("5 kN", "11 kN", 4), "kN", (5, 7, 9, 11)),
         (("11 kN", "5 kN", 2), "kN", (11, 5)),
         (("5 kN", "11 kN", "4"), "kN", (5, 11, 4)),
+        (["7500 N.m/m", "5501 N*m/m"], "N*m/m", (7500, 5501)),
+        ("2 1/2 kN, 3 3/4 kN", "kN", (2.5, 3.75)),
     ],
 )
 def test_values_of_a_requirement(values: Any, unit: str, numbers: Sequence[float]) -> None:
@@ -111,6 +113,7 @@ def test_values_of_a_requirement(values: Any, unit: str, numbers: Sequence[float
         ("5, 6 kg", ["kg"]),
         ("5, many kN", ["numbers with one unit"]),
         ("5,, 6 kN", ["numbers with one unit"]),
+        ("13/2, 7 kN", ["a fraction of whole numbers with its unit"]),
         ("", ["numbers with one unit"]),
         ("5, 6, 5.0 kN", ["each value once"]),
         ("60,5 kN", ["a decimal point for one number (60.5 kN)", "a blank", "for two values (60, 5 kN)"]),

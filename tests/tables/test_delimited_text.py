@@ -128,3 +128,37 @@ def test_a_batch_in_german_runs_and_says_how_it_was_read(tmp_path: Path) -> None
     assert done.returncode == 0, done.stderr
     assert "semicolons between the columns, text in Windows-1252, decimal commas in load_torque [N*m]" in done.stderr
     assert "Rührer" in (tmp_path / "out" / "designs.csv").read_text(encoding="utf-8")
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.lists(st.sampled_from(["a,b", "Größe,1", "", "x" * 70_000, "x" * 65_535 + "ü,2", "€,3"]), min_size=1),
+    st.sampled_from(["utf-8", "cp1252", "utf-8-sig", "utf-16"]),
+    st.sampled_from(["\n", "\r\n"]),
+)
+def test_a_file_that_is_read_line_by_line_is_read_as_a_whole(lines: list[str], encoding: str, end: str) -> None:
+    text = end.join([*lines, "last"])
+    found = delimited_text(text.encode(encoding), "rows.csv")
+    assert "".join(found.written_lines()) == text
+    assert found.encoding == (encoding if not text.isascii() or encoding in ("utf-8-sig", "utf-16") else "utf-8")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("a,b\n1,2\n" + "x" * 1_000_001 + "\n", "line 3: got more than that in one row"),
+        ("a,b\n1," + "2," * 600_000 + "\n", "line 2: got more than that in one row"),
+        ("a,b\n" + '"x\ny",' * 300_000, "line 2: got more than that in one row"),
+        ('a,b\n1,"' + "x\n" * 100_000, "field larger than field limit"),
+    ],
+)
+def test_no_row_fills_the_memory(text: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        list(delimited_text(text.encode(), "rows.csv").lines())
+
+
+def test_what_is_no_text_any_more_is_told() -> None:
+    """The first million bytes that are not ASCII tell the encoding."""
+    raw = ("ü" * 1000 + "\n").encode() * 600 + b"\xfc\n"
+    with pytest.raises(InputError, match=r"rows\.csv: got 'a broken file'; expected text in UTF-8 throughout"):
+        list(delimited_text(raw, "rows.csv").lines())

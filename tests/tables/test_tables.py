@@ -301,6 +301,63 @@ def test_a_data_frame(shipped: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("cell", "says"),
+    [
+        ("2026-03-01", "has made a date of it"),
+        ("01.03.2026", "has made a date of it"),
+        ("Mar 26", "has made a date of it"),
+        ("1. Mai", "has made a date of it"),
+        ("1.1", "has made a number of it"),
+        ("1,1", "has made a number of it"),
+        ("1.00E+05", "has made a number of it"),
+        ("1E+05", "has made a number of it"),
+        ("#NAME?", "has made a fault of it"),
+        ("#DIV/0!", "has made a fault of it"),
+        ("####", "has made a fault of it"),
+    ],
+)
+@pytest.mark.parametrize("mark", [",", ";"])
+def test_designations_that_a_table_program_has_made_are_refused(
+    tmp_path: Path, cell: str, says: str, mark: str
+) -> None:
+    own = tmp_path / "own.csv"
+    shown = f'"{cell}"' if mark in cell else cell
+    own.write_text(f"designation{mark}mass [kg]\na{mark}1\n{shown}{mark}2\n", encoding="utf-8")
+    with pytest.raises(InputError, match=says) as caught:
+        load_table(own, shipped=False)
+    assert caught.value.field == "own.csv, line 3, column designation"
+    assert "set the cell to Text" in caught.value.expected
+    if "fault" not in says:
+        own.write_text(own.read_text().replace(cell, f"'{cell}"), encoding="utf-8")
+        assert load_table(own, shipped=False).designations == ("a", cell)
+
+
+@pytest.mark.parametrize("cell", ["6205", "1E5", "1.10", "0042", "core 1.1", "M8", "A-1", "'tis", "1.5 mm", "№ 3", "-"])
+def test_other_designations_stay_as_they_are(tmp_path: Path, cell: str) -> None:
+    own = tmp_path / "own.csv"
+    own.write_text(f"designation,mass [kg]\n{cell},2\n", encoding="utf-8")
+    assert load_table(own, shipped=False).designations == (cell,)
+
+
+def test_decimal_commas_in_designations_are_part_of_the_name(tmp_path: Path) -> None:
+    own = tmp_path / "own.csv"
+    own.write_text("designation;mass [kg]\n1,10;1,5\n1,20;2,5\n", encoding="utf-8")
+    table = load_table(own, shipped=False)
+    assert (table.designations, table.number("mass").tolist()) == (("1,10", "1,20"), [1.5, 2.5])
+
+
+@pytest.mark.parametrize("above", ["Plates of 2026\n", "\n", "Plates,,\n,,\n,mm,\n"])
+def test_titles_above_the_header_are_told(tmp_path: Path, above: str) -> None:
+    own = tmp_path / "own.csv"
+    own.write_text(f"{above}designation,mass [kg],x [-]\na,1,2\n", encoding="utf-8")
+    line = above.count("\n") + 1
+    with pytest.raises(
+        InputError, match=f"the header in the first line; it stands in line {line}: delete what is above"
+    ):
+        load_table(own, shipped=False)
+
+
+@pytest.mark.parametrize(
     ("frame", "expected"),
     [
         (pd.DataFrame({"designation": ["x"], "mass": [float("inf")]}), "a finite number"),
@@ -309,6 +366,9 @@ def test_a_data_frame(shipped: Path) -> None:
         (pd.DataFrame({"designation": ["x"], "mass": [[1.0]]}), "a number"),
         (pd.DataFrame({"designation": ["x"], "mass": [10**400]}), "a finite number"),
         (pd.DataFrame({"designation": ["x"], "note": [pd.Timestamp(0)]}), "text"),
+        (pd.DataFrame({"designation": ["x"], "note": [10**400]}), "text"),
+        (pd.DataFrame({"designation": [1.1]}), "has made a number of it"),
+        (pd.DataFrame({"designation": [pd.Timestamp(0)]}), "has made a date of it"),
         (pd.DataFrame({"designation": ["x"], 5: [1.0]}), "a name in every cell"),
         (pd.DataFrame({"designation": []}), "at least one row"),
         (pd.DataFrame(), "at least one row"),

@@ -12,11 +12,14 @@ from typing import Any
 
 import openpyxl
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from synth.errors import InputError
 from synth.jobs.row_table import read_table
-from synth.tables.catalogs import Catalogs
-from synth.tables.reading import load_table
+from synth.tables.catalogs import Catalogs, read_as_stated
+from synth.tables.reading import csv_of_file, load_table
+from synth.tables.table_text import TableText
 from synth.tables.workbook import is_workbook, sheet_of, split_sheet
 from tests.terminal.entry import in_process
 
@@ -183,3 +186,159 @@ def test_how_own_tables_were_read_is_told_once(tmp_path: Path) -> None:
     done = in_process("check", tmp_path / "out" / "design_01.yaml")
     assert done.stderr.count(told) == 1
     assert told not in in_process("run", spec, "-o", tmp_path / "out", "-q").stderr
+
+
+# ---- as Excel left them ---------------------------------------------------------------------------------------------
+
+PLATES = [["designation", "thickness [mm]"], ["a", 1.5], ["b", 2.0], ["c", 2.5], ["d", 3.0]]
+
+
+def changed(path: Path, rows: Sequence[Sequence[Any]], hidden: Sequence[int] = (), merged: str = "") -> Path:
+    """A workbook with hidden rows and merged cells, and a filter where rows are hidden."""
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append(list(row))
+    for row in hidden:
+        book.active.row_dimensions[row].hidden = True
+    if hidden:
+        book.active.auto_filter.ref = f"A1:B{len(rows)}"
+    if merged:
+        book.active.merge_cells(merged)
+    book.save(path)
+    return path
+
+
+def test_hidden_rows_are_told_and_left_out_where_it_is_asked(tmp_path: Path) -> None:
+    own = changed(tmp_path / "own.xlsx", PLATES, hidden=[3, 5, 9])
+    table = load_table(own, shipped=False)
+    assert table.designations == ("a", "b", "c", "d")
+    (told,) = table.readings
+    assert told.startswith("own.xlsx: sheet Sheet, with 2 hidden or filtered rows (3, 5; ")
+    assert "#rows=visible" in told
+    shown = load_table(Path(f"{own}#Sheet#rows=visible"), shipped=False)
+    assert shown.designations == ("a", "c")
+    assert shown.labels == ("own.xlsx, sheet Sheet, line 2", "own.xlsx, sheet Sheet, line 4")
+    assert shown.readings == ("own.xlsx: sheet Sheet, without 2 hidden or filtered rows (3, 5)",)
+    rows = read_table(f"{own}#rows=visible")
+    assert [(line, cells[0]) for line, cells in rows.lines()] == [(2, "a"), (4, "c")]
+    assert rows.sentence() == shown.readings[0]
+    assert rows.digest() != read_table(own).digest()
+    assert Catalogs({"plates": f"{own}#rows=visible"}).table("plates").designations == ("a", "c")
+
+
+@pytest.mark.parametrize("state", ["hidden", "veryHidden"])
+def test_a_hidden_sheet_is_read_last_and_told(tmp_path: Path, state: str) -> None:
+    others = [["designation", "thickness [mm]"], ["old", 9.0]]
+    own = written(tmp_path / "own.xlsx", Old=others, Plates=PLATES)
+    book = openpyxl.load_workbook(own)
+    book["Old"].sheet_state = state
+    book.active = 1
+    book.save(own)
+    table = load_table(own, shipped=False)
+    assert (table.designations[0], table.readings) == ("a", ("own.xlsx: sheet Plates",))
+    named = load_table(Path(f"{own}#Old"), shipped=False)
+    assert (named.designations, named.readings) == (("old",), ("own.xlsx: hidden sheet Old",))
+
+
+def test_numbers_of_hidden_rows_say_nothing_where_they_are_left_out(tmp_path: Path) -> None:
+    rows = [["designation", "mass [kg]"], ["a", "1,5"], ["b", "2.5"], ["c", "3,5"]]
+    own = changed(tmp_path / "own.xlsx", rows, hidden=[3])
+    assert load_table(Path(f"{own}#rows=visible"), shipped=False).number("mass").tolist() == [1.5, 3.5]
+    with pytest.raises(InputError):
+        load_table(own, shipped=False)
+
+
+@settings(deadline=None, derandomize=True, max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(hidden=st.sets(st.integers(2, 8)), empty=st.sets(st.integers(2, 8)))
+def test_all_rows_are_read_or_told(tmp_path: Path, hidden: set[int], empty: set[int]) -> None:
+    filled = set(range(2, 9)) - empty
+    rows = [["designation", "mass [kg]"], *([f"r{k}", k] if k in filled else [None, None] for k in range(2, 9))]
+    own = changed(tmp_path / "own.xlsx", rows, hidden=sorted(hidden))
+    every, shown = (read_table(f"{own}{how}") for how in ("", "#rows=visible"))
+    assert {line for line, _ in every.lines()} == filled
+    assert {line for line, _ in shown.lines()} == filled - hidden
+    for line, cells in (*every.lines(), *shown.lines()):
+        assert cells == (f"r{line}", str(line))
+    told = re.search(r"with(out)? (\d+) hidden", every.sentence() + shown.sentence())
+    assert (int(told[2]) if told else 0) == len(hidden & filled)
+
+
+@pytest.mark.parametrize("cells", ["B2:B3", "A1:B1", "A4:B4"])
+def test_merged_cells_are_refused(tmp_path: Path, cells: str) -> None:
+    own = changed(tmp_path / "own.xlsx", PLATES, merged=cells)
+    for read in (lambda: load_table(own, shipped=False), lambda: read_table(own).header()):
+        with pytest.raises(InputError, match=f"sheet Sheet: got merged cells, {cells}; expected one cell for each"):
+            read()
+
+
+@pytest.mark.parametrize(
+    ("cell", "made"),
+    [
+        (100000, "number"),
+        (6205, "number"),
+        (1.1, "number"),
+        (True, "number"),
+        (datetime.datetime(2026, 3, 1), "date"),
+        (datetime.date(2026, 3, 1), "date"),
+        (datetime.time(1, 30), "date"),
+        ("#NAME?", "fault"),
+    ],
+)
+def test_designations_that_are_numbers_or_dates_are_refused(tmp_path: Path, cell: Any, made: str) -> None:
+    own = written(tmp_path / "own.xlsx", Own=[["x [-]", "designation"], [1, "a"], [2, cell]])
+    with pytest.raises(InputError, match=rf"sheet Own, line 3, column designation: .* has made a {made} of it") as no:
+        load_table(own, shipped=False)
+    assert no.value.path == (3, "designation")
+    assert "set the cell to Text" in no.value.expected
+
+
+NAMES = ["1E5", "1.10", "1.1", "1,1", "2026-03-01", "100000", "Mar 26", "0042", "1.00E+05"]
+
+
+def test_designations_that_are_text_stay_as_they_were_typed(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    for k, name in enumerate(["designation", *NAMES], start=1):
+        book.active.cell(k, 1).value = name
+        book.active.cell(k, 1).data_type = "s"
+        book.active.cell(k, 2).value = "x [-]" if k == 1 else k
+    own = tmp_path / "own.xlsx"
+    book.save(own)
+    assert load_table(own, shipped=False).designations == tuple(NAMES)
+    text = TableText(reference="own@1", csv=csv_of_file(own))  # as the service keeps it
+    assert Catalogs({"plates": text}).table("plates").designations == tuple(NAMES)
+
+
+@pytest.mark.parametrize("above", [[["Plates of 2026"]], [[]], [["Plates", None, "x"], [], [None, "mm"]]])
+def test_titles_above_the_header_are_told(tmp_path: Path, above: list[list[Any]]) -> None:
+    own = written(tmp_path / "own.xlsx", Own=[*above, *PLATES])
+    with pytest.raises(InputError, match=rf"it stands in line {len(above) + 1}: delete what is above it"):
+        load_table(own, shipped=False)
+
+
+def test_sheets_without_a_table_are_told(tmp_path: Path) -> None:
+    own = written(tmp_path / "own.xlsx", Cover=[["ACME"]], Data=[["Stock"], *PLATES])
+    right = r"it stands in line 2 of sheet Data: name that sheet \(#Data behind the name\), and delete what is above it"
+    with pytest.raises(InputError, match=f"sheet Cover: got no header in the first row; .*{right}"):
+        load_table(own, shipped=False)
+    with pytest.raises(InputError, match="it stands in line 2: delete what is above it"):
+        load_table(Path(f"{own}#Data"), shipped=False)
+
+
+def test_flags_say_how_all_files_of_a_spec_are_read(tmp_path: Path) -> None:
+    changed(tmp_path / "plates.xlsx", PLATES, hidden=[3])
+    (tmp_path / "bolts.csv").write_bytes("designation\nčep\n".encode("cp1250"))
+    stated = {
+        "plates": "plates.xlsx",
+        "bolts": "bolts.csv",
+        "more": ["+", "plates.xlsx#Sheet", "bolts.csv#encoding=cp1252"],
+    }
+    assert read_as_stated(stated, tmp_path, "cp1250", True) == {
+        "plates": "plates.xlsx#rows=visible",
+        "bolts": "bolts.csv#encoding=cp1250",
+        "more": ["+", "plates.xlsx#Sheet#rows=visible", "bolts.csv#encoding=cp1252"],
+    }
+    for folder in (tmp_path, str(tmp_path)):
+        own = Catalogs(read_as_stated(folder, Path(), "cp1250", True))
+        assert own.table("plates").designations == ("a", "c", "d")
+        assert own.table("bolts").designations == ("čep",)
+    assert read_as_stated("nothing", tmp_path, "cp1250", True) == "nothing"

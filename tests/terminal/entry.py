@@ -17,11 +17,31 @@ from synth.terminal.cli import main
 ROOT = Path(__file__).parents[2]
 COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
 
+LACKING = """
+import os, sys
+
+class Lacking:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in os.environ["LACKING"].split():
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Lacking())
+"""
+
+
+def without(packages: str, *words: object) -> subprocess.CompletedProcess[str]:
+    """Run it in a process of its own in which packages, told apart by blanks, cannot be imported."""
+    return _run([sys.executable, "-c", f"{LACKING}{COMMAND[-1]}", *map(str, words)], ROOT, {"LACKING": packages})
+
 
 def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run it in a process of its own, as a person does."""
+    return _run([*COMMAND, *map(str, words)], folder, environment)
+
+
+def _run(command: list[str], folder: Path | None, environment: dict[str, str]) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [*COMMAND, *map(str, words)],
+        command,
         cwd=folder,
         env={**os.environ, **environment},
         capture_output=True,

@@ -88,11 +88,11 @@ def test_a_batch_says_what_it_reads_and_what_came_out(done: tuple[Path, Complete
     assert table[1:3] == ["line id state mass [kg] parts of #1, or why not", "─" * len(table[2])]
     assert table[3] == f"2 A1 proven {mass['A1']} as all"
     assert table[4] == f"3 A2 proven {mass['A2']} as all"
-    assert table[5] == "4 A3 bad input column load_torque [N*m]: got '6,5'"
-    assert re.match("5 A4 not feasible nearest design misses .*, ", table[6])
+    assert table[5] == "4 A3 bad input – column load_torque [N*m]: got '6,5'"
+    assert re.match("5 A4 not feasible – nearest design misses .*, ", table[6])
     assert [line.partition(":")[0] for line in table if line.startswith(("6 ", "7 "))] == [
-        "6 A5 bad input column family",
-        "7 A6 bad input column family",
+        "6 A5 bad input – column family",
+        "7 A6 bad input – column family",
     ]
     shared = "#1 of every row: friction pair seed_multiplate_ref, inner plate core 4, outer plate core 2"
     assert shared in table
@@ -201,8 +201,6 @@ def test_bad_input_is_one_sentence_and_nothing_written(tmp_path: Path, words: li
 @pytest.mark.slow
 def test_a_size_range_from_a_table_and_again_from_its_folder(tmp_path: Path) -> None:
     write(tmp_path, *({**GOOD, "load_torque [N*m]": torque} for torque in ("500", "550", "600")))
-    refused = clutchsynth("size-range", "rows.csv", folder=tmp_path)
-    assert (refused.returncode, "--output" in refused.stderr) == (2, True)
     found = clutchsynth("size-range", "rows.csv", "-o", "out", *FLAGS, folder=tmp_path)
     assert found.returncode == 0, found.stderr
     assert "1 variant for 3 rows" in found.stdout
@@ -223,7 +221,7 @@ def test_progress_is_told_in_words() -> None:
     assert figures(state) == "50 of 200 rows, 0.5 rows/s, 5 min left, 2 failed"
     assert figures({**state, "rate": 0.0, "left": None, "failed": 0}) == "50 of 200 rows"
     assert figures({**state, "left": 42.0}).split(", ")[2] == "42 s left"
-    assert figures({**state, "left": 36000.0}).split(", ")[2] == "10.0 h left"
+    assert figures({**state, "left": 36000.0}).split(", ")[2] == "10 h left"
 
 
 def test_the_database_may_be_named_by_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -153,11 +153,11 @@ def test_the_lecture_design_comes_out_as_printed_in_its_source(tmp_path: Path) -
     assert done.returncode == 0
     assert done.stderr == ""
     for name, (symbol, shown, printed) in {
-        "required_torque": ("M_req", "1 412 N m", 1411.76),
-        "torque": ("M_k", "1 412 N m", 1411.76),
+        "required_torque": ("M_req", "1412 N m", 1411.76),
+        "torque": ("M_k", "1412 N m", 1411.76),
         "ring_outer_diameter": ("d_out", "258.1 mm", 258.111),
         "ring_inner_diameter": ("d_in", "154.9 mm", 154.866),
-        "friction_area": ("A", "3 349 cm²", 3348.74),
+        "friction_area": ("A", "3349 cm²", 3348.74),
         "friction_work": ("W", "39 524 J", 39524.1),
         "hourly_heat": ("w", "5.901 J/(mm² h)", 5.90134),
         "slip_time": ("t_D", "3.218 s", 3.21806),
@@ -189,7 +189,7 @@ def test_check_lists_every_violated_limit(tmp_path: Path) -> None:
     assert done.returncode == 3
     assert "violated: torque capacity, startup torque available, jerk\n" in done.stdout
     limits = done.stdout[done.stdout.index("\nLimits") :]
-    assert quantity(limits, "torque capacity") == "torque capacity 948.557 N m >= 1 411.76 N m 149 % VIOLATED"
+    assert quantity(limits, "torque capacity") == "torque capacity 948.557 N m >= 1411.76 N m 149 % VIOLATED"
     assert quantity(limits, "jerk") == "jerk 18 rad/s³ <= 10 rad/s³ 180 % VIOLATED"
     assert quantity(limits, "slip time").endswith("ok")
     with (tmp_path / "out" / "check.csv").open() as file:
@@ -276,7 +276,7 @@ def test_flags_are_checked_like_the_spec(tmp_path: Path) -> None:
     assert not out.exists()
 
 
-@pytest.mark.parametrize("words", [["batch", str(HOIST)], ["run", "x.yaml", "-o", "o", "--points", "many"], ["runn"]])
+@pytest.mark.parametrize("words", [["batch"], ["run", "x.yaml", "-o", "o", "--points", "many"], ["runn"]])
 def test_wrong_usage_ends_with_two(words: list[str], tmp_path: Path) -> None:
     done = at_once(*words, folder=tmp_path)
     assert done.returncode == 2
@@ -335,6 +335,44 @@ def test_run_quietly_says_nothing(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "out" / "front.json").read_text())["objectives"] == {"mass": "min"}
 
 
+PLATE = SMALL.replace("600 N*m", "600 N-m").replace("26.6 rad/s", "254 U/min").replace("30 kg*m2", "30 kgm²")
+
+
+@pytest.mark.slow
+def test_units_of_name_plates_are_told_once_and_not_where_all_is_quiet(tmp_path: Path) -> None:
+    (tmp_path / "plate.yaml").write_text(PLATE, encoding="utf-8")
+    done = at_once("run", "plate.yaml", "--points", "1", "--objective", "mass", "-o", "out", folder=tmp_path)
+    assert done.returncode == 0
+    told = [line for line in done.stderr.splitlines() if line.startswith("clutchsynth: ")]
+    assert told == [f"clutchsynth: read as {read}" for read in ("N*m: N-m", "rev/min: U/min", "kg*m2: kgm²")]
+    done = at_once("run", "plate.yaml", "--points", "1", "--objective", "mass", "-o", "out", "-q", folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    for design in tmp_path.glob("out/design_*.yaml"):
+        assert at_once("check", design).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("torque", "says"),
+    [
+        ("power: 5.5 kW", "requirement power: got '5.5 kW'; expected TORQUE: T = P/omega"),
+        ("motor_power: 5.5", "requirement motor_power: got 5.5; expected TORQUE: T = P/omega"),
+        ("P_N: 7.5 HP", "requirement P_N: got '7.5 HP'; expected TORQUE: T = P/omega"),
+        ("load_torque: 5.5 kW", "kW measures a power (T = P/omega"),
+        ("load_torque: 0.6", "0.6 N*m or 0.6 kN*m"),
+        ("load_torque: '0.6'", "0.6 N*m or 0.6 kN*m"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("family", "torques"), [("multi_plate_clutch", "load_torque"), ("any", "required_torque or load_torque")]
+)
+def test_a_power_for_a_torque_and_a_torque_without_unit_are_asked_back(
+    tmp_path: Path, torque: str, says: str, family: str, torques: str
+) -> None:
+    needed = f"{{{torque}, driver_speed: 254 rpm, driven_inertia: 30 kg*m2}}"
+    (tmp_path / "hoist.yaml").write_text(f"family: {family}\nrequirements: {needed}\n")
+    assert says.replace("TORQUE", torques) in at_once("run", "hoist.yaml", folder=tmp_path).stderr
+
+
 def test_the_front_is_drawn_here_and_with_a_folder_as_a_file(tmp_path: Path) -> None:
     (tmp_path / "small.yaml").write_text(SMALL)
     done = at_once("run", "small.yaml", "--plot", "-o", "out", folder=tmp_path)
@@ -372,6 +410,29 @@ def test_without_reports_nothing_is_drawn_and_a_sentence_says_so(
     assert not (tmp_path / "out" / "front.svg").exists()
 
 
+def test_what_is_far_off_is_told_as_a_factor_and_without_exponents(tmp_path: Path) -> None:
+    limits = "limits: {mass: <= 0.00001 kg, length: <= 1 mm, "
+    (tmp_path / "too light.yaml").write_text(SMALL.replace("limits: {", limits))
+    done = at_once("run", "too light.yaml", folder=tmp_path)
+    assert done.returncode == 3
+    assert re.search(r"(?m)^length <= .* times the limit$", done.stdout)
+    assert re.search(r"(?m)^mass <= .* \d+(\.\d+)? kg$", done.stdout)
+    assert not re.search(r"\d[eE][-+]?\d", done.stdout)
+    assert not re.search(r"(?<![.\d])(\d{4,}|\d[\d ]* \d{3})(\.\d+)? %", done.stdout)
+    assert "clutchsynth explain 'too light.yaml'" in done.stdout
+
+
+def test_what_a_family_refuses_names_explain_as_well(tmp_path: Path) -> None:
+    (tmp_path / "room.yaml").write_text(
+        "family: disc_clutch\nrequirements: {load_torque: 60 N*m, driver_speed: 1500 1/min, "
+        "driven_inertia: 0.7 kg*m2, outer_diameter_limit: 60 mm}\n"
+    )
+    done = at_once("run", "room.yaml", folder=tmp_path)
+    assert "no_room_for_ring" in refused(done)
+    assert "(what would help: clutchsynth explain room.yaml)" in done.stderr
+    assert at_once("explain", "room.yaml", folder=tmp_path).returncode == 3
+
+
 def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
     # Around a ring of 262 mm the drum is 280 mm wide.
     (tmp_path / "tight.yaml").write_text(SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, "))
@@ -383,7 +444,12 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
     assert "outer_diameter" in text
     content = json.loads((tmp_path / "out" / "front.json").read_text())
     assert content["status"] == "infeasible"
-    assert content["explanation"]["conflicts"]
+    missed = [conflict["limit"] for conflict in content["explanation"]["conflicts"]]
+    assert missed
+    # Each is told once, and what tells more is named.
+    assert all(len(re.findall(rf"(?m)^{re.escape(name)} ", done.stdout)) == 1 for name in missed)
+    assert " where " not in done.stdout
+    assert "what would help: clutchsynth explain tight.yaml\n" in done.stdout
     # The next run into the same folder that finds something takes the explanation away.
     (tmp_path / "small.yaml").write_text(SMALL)
     assert at_once("run", "small.yaml", "-o", "out", "-q", folder=tmp_path).returncode == 0

@@ -13,8 +13,9 @@ import yaml
 
 from synth.analysis.describe import described
 from synth.analysis.spec_template import needed, spec_template
-from synth.model.registry import families, load
+from synth.model.registry import load
 from synth.question.spec import read_spec
+from tests.shipped import FAMILIES
 from tests.terminal.entry import COMMAND, at_once, clutchsynth
 
 DUTY = ("load_torque=600 N*m", "driver_speed=254 rpm", "driven_inertia=30 kg*m2")
@@ -25,7 +26,7 @@ def some_value(row: dict[str, object]) -> str:
     return f"{row['lower']!r} {row['unit']}" if row["unit"] not in ("", "-") else repr(row["lower"])
 
 
-@pytest.mark.parametrize("family", families())
+@pytest.mark.parametrize("family", FAMILIES)
 def test_the_spec_of_every_family_reads_back_and_asks_what_is_asked_without_it(family: str, tmp_path: Path) -> None:
     problem = load(family)
     stated = {row["name"]: some_value(row) for row in needed(row for row in described(problem))}
@@ -136,8 +137,7 @@ def test_run_without_a_folder_shows_and_writes_nothing(tmp_path: Path) -> None:
     assert at_once("run", several, folder=tmp_path).stdout.splitlines()[-1].startswith("nothing is written")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["several.yaml", "spec.yaml"]
     quiet = at_once("run", spec, "--quiet", folder=tmp_path)
-    assert quiet.returncode == 2
-    assert "--output" in quiet.stderr
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
 def test_shells_complete_commands_and_families() -> None:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from html.parser import HTMLParser
 
 import pytest
 
 import synth
+from synth.results.drawings import EXTRAS
 from tests.analysis.independent import recomputed
-from tests.terminal.entry import at_once
+from tests.terminal.entry import at_once, in_process, without
 
 pytestmark = pytest.mark.slow
 SPEC = """
@@ -258,6 +260,24 @@ points: 3
 """
 
 
+def test_the_knee_of_fronts_of_one_design_and_of_none(tmp_path):
+    duty = "{load_torque: 60 N*m, driver_speed: 1000 1/min, driven_inertia: 0.5 kg*m2}"
+    for name, family, more in [
+        ("one", "disc_clutch", ""),
+        ("both", "[disc_clutch, cone_clutch]", ""),
+        ("none", "disc_clutch", "limits: {mass: <= 1 g}\n"),
+    ]:
+        spec = f"family: {family}\nrequirements: {duty}\nobjectives: {{mass: min}}\npoints: 1\n{more}"
+        (tmp_path / f"{name}.yaml").write_text(spec)
+        at_once("run", tmp_path / f"{name}.yaml", "-o", tmp_path / name, "-q")
+        done = at_once("report", tmp_path / name, "-o", tmp_path / f"{name}_report", "--design", "knee,1")
+        knee = at_once("report", tmp_path / name, "-o", tmp_path / f"{name}_report", "--design", "knee")
+        assert (knee.returncode, knee.stderr) == (3 if name == "none" else 0, "")
+        assert done.returncode == (2 if name == "none" else 0)
+        sheets = list((tmp_path / f"{name}_report").rglob("design_*_sheet.html"))
+        assert len(sheets) == (0 if name == "none" else 1)
+
+
 def test_ranks_of_a_comparison_are_those_of_the_common_front(tmp_path):
     (tmp_path / "spec.yaml").write_text(SEVERAL)
     assert at_once("run", tmp_path / "spec.yaml", "-o", tmp_path / "any", "-q").returncode == 0
@@ -292,3 +312,79 @@ def test_formats_are_named_or_refused(front_folder, tmp_path, formats):
     with pytest.raises(synth.InputError, match="formats"):
         front.report(tmp_path, formats=formats)
     assert not list(tmp_path.iterdir())
+
+
+# ---- extras that are not installed ----------------------------------------------------------------------------------
+
+PACKAGES = {package: (option, extra) for package, option, extra in EXTRAS.values()}
+DISCS = "load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2]\n60,1000,0.5\n"
+
+
+def sentences(packages):
+    return [
+        f"clutchsynth: {o} needs the extra {e}: pip install 'clutchsynth[{e}]'" for o, e in map(PACKAGES.get, packages)
+    ]
+
+
+@pytest.fixture(scope="module")
+def sources(front_folder, tmp_path_factory):
+    """Return everything that can be reported, with the options of its formats and what needs no extra."""
+    place = tmp_path_factory.mktemp("sources")
+    duty = "{load_torque: 60 N*m, driver_speed: 1000 1/min, driven_inertia: 0.5 kg*m2}"
+    (place / "any.yaml").write_text(f"family: [disc_clutch, cone_clutch]\nrequirements: {duty}\npoints: 2\n")
+    assert at_once("run", place / "any.yaml", "-o", place / "any", "-q").returncode == 0
+    (place / "rows.csv").write_text(DISCS)
+    batch = ("batch", place / "rows.csv", "--family", "disc_clutch", "--points", "1", "-o", place / "batch", "-q")
+    assert in_process(*batch).returncode == 0
+    (place / "weak.yaml").write_text(DESIGN)
+    every = ("--pdf", "--xlsx", "--dxf", "--step", "--drawing", "--json")
+    return {
+        "front": (front_folder, (*every, "--explorer"), ("report.html", "explorer.html", "design_01_sheet.json")),
+        "comparison": (place / "any", every, ("report.html", "disc_clutch/report.html")),
+        "design": (place / "weak.yaml", every, ("weak_sheet.html", "weak_sheet.json", "weak_drawing.svg")),
+        "batch": (place / "batch", ("--pdf", "--xlsx"), ("report.html",)),
+    }
+
+
+@pytest.mark.parametrize("source", ["front", "comparison", "design", "batch"])
+def test_what_needs_no_extra_is_written_and_every_missing_one_named(sources, source, tmp_path):
+    folder, options, plain = sources[source]
+    done = without(" ".join(PACKAGES), "report", folder, "-o", tmp_path, *options)
+    assert done.returncode == 2, done.stderr
+    missing = [package for package, (option, _) in PACKAGES.items() if option in options]
+    assert sorted(done.stderr.splitlines()) == sorted(sentences(missing))
+    written = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
+    assert set(plain) <= written
+    assert not [name for name in written if name.endswith((".pdf", ".xlsx", ".dxf", ".step", ".glb"))]
+    shown = " ".join(done.stdout.split())
+    assert all(name in shown for name in written)
+    for page in tmp_path.rglob("*.html"):  # no page leads to a file that is not there
+        links = [link.split("#")[0] for link in re.findall(r'href="([^"#][^"]*)"', page.read_text())]
+        assert all((page.parent / link).is_file() for link in links if ":" not in link), page
+
+
+@pytest.mark.parametrize("package", list(PACKAGES))
+def test_one_missing_extra_keeps_nothing_else_from_being_written(sources, package, tmp_path):
+    folder, _, _ = sources["front"]
+    option, _ = PACKAGES[package]
+    others = [other for name, (other, _) in PACKAGES.items() if name not in (package, "build123d")]
+    done = without(package, "report", folder, "-o", tmp_path, *{*others, option}, "--full", "0")
+    assert (done.returncode, done.stderr.splitlines()) == (2, sentences([package]))
+    endings = {path.suffix for path in tmp_path.iterdir()}
+    made = {f".{word}" for word, (name, *_) in EXTRAS.items() if name not in (package, "build123d")}
+    assert endings == {".html", *made}
+
+
+def test_python_tells_of_extras_after_all_else_is_written(front_folder, tmp_path, monkeypatch):
+    for package in PACKAGES:
+        monkeypatch.setitem(sys.modules, package, None)
+    front = synth.load_front(front_folder)
+    with pytest.raises(synth.InputError) as caught:
+        front.report(tmp_path / "some", formats=["json", "pdf", "xlsx", "dxf", "step", "glb"])
+    told = [f"clutchsynth: {error}" for error in caught.value.every()]
+    assert sorted(told) == sorted(sentences(PACKAGES))
+    assert [str(error) for error in caught.value.every()[1:]] == caught.value.__notes__
+    assert [path.name for path in (tmp_path / "some").iterdir()] == ["design_01_sheet.json"]
+    with pytest.raises(synth.InputError, match="--pdf needs the extra pdf"):
+        front.report(tmp_path / "none", formats=["pdf"])
+    assert not (tmp_path / "none").exists()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.terminal.robust_console import percent
+from synth.results.rating_tables import yield_text
 from tests.terminal.entry import at_once
 
 SPEC = """
@@ -62,6 +62,15 @@ def test_a_given_design_is_rated_and_what_hardly_scatters_is_kept(saved: Path) -
     assert done.returncode == 0, done.stdout + done.stderr
     assert "1 of 1 design keeps all limits over the whole range (proven)" in done.stdout
     assert rows(saved / "one" / "rating.csv")[0]["yield low"] == "1.0"
+
+
+def test_a_load_that_only_rises_is_rated(saved: Path) -> None:
+    design = saved / "out" / "design_01.yaml"
+    done = at_once("rate", design, "-o", saved / "risen", "--over", "load_torque=+10 %", "--samples", 256)
+    assert done.returncode == 3, done.stderr
+    assert "load_torque +10 %" in done.stdout
+    worst = json.loads((saved / "risen" / "rating.json").read_text())["designs"][0]["worst_at"]
+    assert worst == {"load_torque": pytest.approx(660)}
 
 
 def test_out_of_time_ends_with_four(saved: Path) -> None:
@@ -204,7 +213,7 @@ def test_a_study_that_rates_shows_the_yield(saved: Path) -> None:
     leading = [row for row in rows(out / "whatif.csv") if row["rank"] == "1"]
     assert [row["robust.friction"] for row in leading] == ["'+-5 %", "'+-10 %"]
     for row in leading:
-        assert percent(float(row["yield"])) in done.stdout
+        assert yield_text(float(row["yield"])) in done.stdout
 
 
 FAMILIES = """

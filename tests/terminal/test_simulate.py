@@ -41,7 +41,7 @@ def test_simulating_the_lecture_draws_it_and_confirms_the_closed_forms(tmp_path:
     assert (done.returncode, done.stderr) == (0, "")
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == SIMULATED
     for line in (
-        "Multi-plate clutch, start-up: lock-up after 3.218 s, friction work 39524 J",
+        "Multi-plate clutch, start-up: lock-up after 3.218 s, friction work 39 524 J",
         "load starts 1.111 s, ramp ends 2 s, lock-up 3.218 s",
         f"written to {tmp_path / 'out'}: {', '.join(SIMULATED)}",
     ):

@@ -148,7 +148,7 @@ def test_a_study_without_any_feasible_step_ends_with_three(folder: Path) -> None
     assert [row["status"] for row in table] == ["infeasible", "infeasible"]
     assert all("misses" in row["reason"] or "no design" in row["reason"] for row in table)
     words = " ".join(done.stdout.split())
-    assert "no design at 0.01 kg: the nearest design misses mass <= 0.01 kg by" in words
+    assert "no design at 0.01 kg: the nearest design misses" in words
     assert rows(out / "breaks.csv") == []
     assert not (out / "whatif.svg").exists()
 

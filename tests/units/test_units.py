@@ -15,16 +15,18 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
+from synth.notices import listening
 from synth.units import (
     check_number,
-    format_quantity,
     from_si,
     header,
+    miss_text,
     number_to_si,
     parse_quantity,
     parse_unit,
     split_header,
     to_si,
+    typed_quantity,
 )
 
 CATALOGS = Path(__file__).parents[2] / "catalogs"
@@ -128,6 +130,10 @@ TYPED = {
     "1/K": "1/kelvin",
     "ohm": "ohm",
     "N/mm2 m/s": "N/mm^2*m/s",
+    "daN*m": "daN*m",
+    "cN": "cN",
+    "oz": "ounce",
+    "ozf": "force_ounce",
 } | {
     u: u
     for u in (
@@ -187,9 +193,10 @@ def test_factor_and_dimension_agree_with_an_independent_library(unit: str, regis
 
 
 def test_temperature_agrees_with_an_independent_library(registry: pint.UnitRegistry) -> None:
-    for celsius in (-273.15, -40.0, 0.0, 20.0, 37.5, 1500.0):
-        theirs = registry.Quantity(celsius, "degC").to("kelvin").magnitude
-        assert parse_quantity(celsius, "degC", "t") == pytest.approx(theirs, rel=1e-15)
+    for unit in ("degC", "degF"):
+        for degrees in (-273.15, -40.0, 0.0, 20.0, 37.5, 1500.0):
+            theirs = registry.Quantity(degrees, unit).to("kelvin").magnitude
+            assert parse_quantity(f"{degrees} {unit}", "degC", "t") == pytest.approx(theirs, rel=1e-15)
 
 
 # ---- the number gate ------------------------------------------------------------------------------------------------
@@ -243,6 +250,23 @@ def test_temperature_agrees_with_an_independent_library(registry: pint.UnitRegis
         ("10 mm3/(N m)", "mm3/MJ", 1e-8),
         ("2.5\u00a0mm", "mm", 0.0025),
         ("0.02 N*s/m2", "Pa*s", 0.02),
+        # a bare torque, where nobody would mean kN*m
+        (1, "N*m", 1.0),
+        (0, "N*m", 0.0),
+        (0.05, "N*m", 0.05),
+        (0.6, "kN*m", 600.0),
+        ("0.6 N*m", "N*m", 0.6),
+        # fractions
+        ("3/4 in", "mm", 0.01905),
+        ("1/4 in", "mm", 0.00635),
+        ("1 3/4 in", "mm", 0.04445),
+        ("1-3/4 in", "mm", 0.04445),
+        ("7/4 in", "mm", 0.04445),
+        ("-3/4 in", "mm", -0.01905),
+        ("¾ in", "mm", 0.01905),
+        ('1¾"', "mm", 0.04445),
+        ("1/3 hp", "W", 745.69987158227022 / 3),
+        ("1/2 lb-ft", "N*m", 0.6779089741657),
     ],
 )
 def test_quantities_that_are_right(value: object, unit: str, si: float) -> None:
@@ -316,10 +340,30 @@ def test_quantities_that_are_right(value: object, unit: str, si: float) -> None:
         ("3 KW", "kW", "kW instead of KW (capitals"),
         ("254 Rpm", "1/min", "rpm instead of Rpm (capitals"),
         ("5 mn", "N", "mN or MN instead of mn (capitals"),
-        ("5 sec", "s", "s instead of sec"),
+        ("5 lbs", "mm", "a length"),
+        ("5 lb", "N", "in lbf; lb measures a mass"),
         ("5 furlong", "mm", "a known unit instead of furlong"),
         ("5 /min", "1/min", "1/min"),
-        ("5 s^-1", "1/h", "1/min"),
+        ("1/min", "1/min", "a number before the unit, for example 1 1/min"),
+        ("5 kW", "N*m", "kW measures a power (T = P/omega"),
+        ("5 kgm2", "kg", "kg*m2 measures a moment of inertia"),
+        ("36 degF", "K", "typed as 20 K"),
+        ("5 s^-1", "s", "1/s measures a frequency"),
+        # bare torques that may be in kN*m as well
+        (0.6, "N*m", "0.6 N*m or 0.6 kN*m"),
+        ("0.6", "N*m", "0.6 N*m or 0.6 kN*m"),
+        ("-.25", "N*m", "-0.25 N*m or -0.25 kN*m"),
+        # fractions
+        ("3/4", "mm", "a fraction of whole numbers with its unit"),
+        ("2 1/2", "-", "a fraction of whole numbers with its unit"),
+        ("3/0 in", "mm", "a fraction of whole numbers"),
+        ("1.5/2 in", "mm", "a fraction of whole numbers"),
+        ("3 /4 in", "mm", "a fraction of whole numbers"),
+        ("1/2/3 in", "mm", "a fraction of whole numbers"),
+        ("1 500/3 mm", "mm", "separator between the thousands"),
+        ("1 5/3 mm", "mm", "a fraction of whole numbers"),
+        ("1 000/3 mm", "mm", "separator between the thousands"),
+        ("5' 3\"", "mm", "feet and inches as one number"),
         ("5 mm**2", "mm2", "mm2"),
         ("5 (N m)/s", "W", "brackets in a denominator only"),
         ("5 J/(mm2/h)", "W/mm2", "a product of tokens in the bracket"),
@@ -412,7 +456,7 @@ def test_from_si_and_back_is_within_two_units_in_the_last_place(si: float, unit:
 def test_full_text_reads_back_as_the_same_float(si: float, unit: str) -> None:
     if unit == "degC":
         si = max(abs(si), 1e-9)
-    text = format_quantity(si, unit, digits=None)
+    text = typed_quantity(si, unit, digits=None)
     assert parse_quantity(text, unit, "x") == si
 
 
@@ -423,10 +467,10 @@ def test_what_was_typed_is_shown_again(number: object, unit: str) -> None:
     if unit == "degC" and float(str(number)) < -273.15:
         return
     si = parse_quantity(typed, unit, "x")
-    shown = format_quantity(si, unit, digits=None)
+    shown = typed_quantity(si, unit, digits=None)
     assert float(shown.removesuffix(unit)) == float(str(number))
     assert from_si(si, unit) == float(str(number))
-    assert format_quantity(si, unit, digits=12) == shown
+    assert typed_quantity(si, unit, digits=12) == shown
 
 
 @QUICK
@@ -437,6 +481,105 @@ def test_scalars_and_arrays_are_converted_alike(value: float, unit: str) -> None
     assert from_si(cells, unit)[0, 0] == from_si(value, unit)
     assert np.isnan(from_si(cells, unit)[0, 1])
     assert np.isnan(to_si(cells, unit)[0, 1])
+
+
+# As name plates, data sheets and keyboards have them: declared unit, unit in our grammar, spellings.
+SPELLINGS = [
+    ("1/min", "rev/min", "U/min u/min r/min R/MIN tr/min U·min⁻¹ U*min^-1"),
+    ("1/min", "1/min", "min-1 min^-1 min⁻¹ min−1 1/MIN"),
+    ("1/min", "rpm", "RPM Upm upm"),
+    ("1/min", "rev/s", "U/s r/s U/sec"),
+    ("1/h", "1/h", "h-1 h^-1 h⁻¹ 1/hr"),
+    ("1/h", "1/s", "s-1 s^-1 s⁻¹"),
+    ("kg*m2", "kg*m2", "kgm2 kgm² kg-m2 kg.m2 kgm^2 kg⋅m² kg•m2 kg×m²"),
+    ("kg*m2", "kg*cm2", "kgcm2 kgcm² kg-cm2 kg.cm2"),
+    ("kg*m2", "kg*mm2", "kgmm2 kg-mm²"),
+    ("kg*m2", "g*cm2", "gcm2 g-cm2 g.cm²"),
+    ("kg*m2", "lb*ft2", "lb-ft2 lb-ft² lbs-ft2 LB-FT2 lb.ft2 lbft2"),
+    ("kg*m2", "lbf*in*s2", "lb-in-s2 lbf-in-s2 lb·in·s²"),
+    ("N*m", "N*m", "N-m N.m N⋅m N•m N×m N–m N‑m N-m."),
+    ("N*m", "Nm", "Nm."),
+    ("N*m", "N*cm", "Ncm N-cm N.cm"),
+    ("N*m", "daN*m", "daNm daN-m daN.m"),
+    ("N*m", "kgf*m", "kgf-m kgf.m kgfm"),
+    ("N*m", "kp*m", "kp-m kp.m"),
+    (
+        "N*m",
+        "lbf*ft",
+        "ft-lb lb-ft ft.lb ft·lb ftlb lbft ft-lbs ftlbs ft-lbf ft.lbf ftlbf ft.-lbs. FT-LB LB-FT foot-lbs lbf-ft",
+    ),
+    ("N*m", "lbf*in", "lbf-in in-lb lb-in in.-lb. inlb lbin IN-LB in-lbs inch-lbs lbfin lbf.in"),
+    ("N*m", "ozf*in", "oz-in in-oz oz.in ozin OZ-IN ozf-in"),
+    ("J", "lbf*ft", "ft-lb lb-ft"),
+    ("J", "W*s", "Ws W-s"),
+    ("N/mm", "lbf/in", "lb/in lb/inch LB/IN"),
+    ("N/mm2", "lbf/in2", "lb/in2 lb/in² lb/inch2"),
+    ("N/mm2", "psi", "PSI"),
+    ("W/(m2*K)", "W/(m2 K)", "W·m⁻²·K⁻¹ W*m-2*K-1 Wm^-2*K^-1"),
+    ("W", "hp", "HP"),
+    ("W", "PS", "CV cv"),
+    ("degC", "degF", "F f deg_F degrees_F fahrenheit Fahrenheit"),
+    ("degC", "degC", "C celsius Celsius deg_C °_C"),
+    ("mm", "in", '" ″ in. inch inches IN'),
+    ("mm", "ft", "foot feet FT"),
+    ("s", "s", "sec Sec SEC"),
+    ("s", "h", "hr hour hours"),
+    ("kg", "lb", "lbs lbm LB LBS"),
+    ("dm3", "dm3", "l L"),
+]
+
+
+@pytest.mark.parametrize(("declared", "ours", "spelled"), SPELLINGS)
+def test_spellings_are_read_as_our_unit_and_told(declared: str, ours: str, spelled: str) -> None:
+    right = parse_unit(ours, parse_unit(declared).kind)
+    for typed in (word.replace("_", " ") for word in spelled.split(" ")):
+        heard: list[str] = []
+        with listening(heard.append):
+            assert parse_quantity(f"3 {typed}", declared, "x") == parse_quantity(f"3 {ours}", declared, "x")
+            assert parse_unit(typed, right.kind) == right
+        assert heard == [f"read as {ours}: {typed}"], typed
+
+
+@pytest.mark.parametrize("unit", sorted({*header_units(), *DECLARED, *TYPED}))
+def test_what_is_in_the_grammar_is_read_in_silence(unit: str) -> None:
+    heard: list[str] = []
+    with listening(heard.append):
+        assert parse_unit(unit, parse_unit(unit).kind).text == unit
+    assert not heard
+
+
+def test_a_spelling_that_may_be_two_units_of_a_kind_is_asked_back() -> None:
+    with pytest.raises(InputError, match=re.escape("m*mm2 or mm*m2 instead of mmm2: it may be either")):
+        parse_unit("mmm2", "volume")
+
+
+@QUICK
+@given(
+    st.sampled_from(("kg", "m", "mm", "min", "rev", "N", "lb", "lbf", "ft", "in", "s", "h", "K", "daN", "oz")),
+    st.lists(
+        st.tuples(
+            st.sampled_from(" *·/-.⋅×"),
+            st.sampled_from(("kg", "m", "mm", "min", "rev", "U", "N", "lb", "lbs", "ft", "in", "s", "K", "daN", "oz")),
+            st.sampled_from(("", "2", "²", "^2", "-1", "^-1", "⁻²")),
+        ),
+        max_size=4,
+    ),
+    st.sampled_from(sorted({parse_unit(u).kind for u in DECLARED})),
+)
+def test_any_spelling_is_refused_or_of_the_kind_and_in_our_grammar(
+    first: str, more: list[tuple[str, str, str]], kind: str
+) -> None:
+    typed = first + "".join(map("".join, more))
+    heard: list[str] = []
+    try:
+        with listening(heard.append):
+            unit = parse_unit(typed, kind)
+    except InputError as error:
+        assert error.expected  # noqa: PT017
+    else:
+        assert heard == ([] if unit.text == typed else [f"read as {unit.text}: {typed}"])
+        assert unit.kind == kind
+        assert parse_unit(unit.text, kind) == unit
 
 
 def is_finite_or_refused(text: str, unit: str) -> bool:
@@ -493,7 +636,7 @@ def test_exact_conversion_is_rounded_once() -> None:
     ],
 )
 def test_format(si: float, unit: str, digits: int | None, text: str) -> None:
-    assert format_quantity(si, unit, digits) == text
+    assert typed_quantity(si, unit, digits) == text
 
 
 def test_headers() -> None:
@@ -512,3 +655,17 @@ def test_headers() -> None:
 @given(st.from_regex(r"[a-z][a-z_0-9 ]*[a-z]", fullmatch=True), st.sampled_from(UNITS))
 def test_a_header_splits_into_what_it_was_made_of(name: str, unit: str) -> None:
     assert split_header(header(name, unit)) == (name, unit)
+
+
+@QUICK
+@given(st.floats(-1e308, 1e308), st.floats(-1e308, 1e308), st.sampled_from(["N*m", "-", "mm", "degC"]))
+@example(0.29, 0.002, "-")
+@example(1e-7, 0.0, "mm")
+@example(2.5, -1e-300, "mm")
+@example(1.0 + 1e-9, 1.0, "-")
+def test_a_miss_is_told_without_exponents_and_never_in_thousands_of_per_cent(value, limit, unit):
+    text = miss_text(value, limit, unit)
+    assert not re.search(r"[eE][-+]?\d", text)
+    assert not re.search(r"(?<![.\d])(\d{4,}|\d[\d ]* \d{3})(\.\d+)? %", text)
+    if limit and abs(value - limit) < 9.9 * abs(limit):
+        assert text.endswith(" %")

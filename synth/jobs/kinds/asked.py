@@ -14,10 +14,13 @@ from typing import Any
 from synth.errors import Described, InputError, SeveralErrors, at
 from synth.jobs.kinds.contract import QUESTION, TABLE, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.jobs.kinds.request_schemas import REFERENCE
+from synth.model.problem import DesignProblem
+from synth.model.registry import load
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, SEARCHED, refuse_several, refuse_values, shown_kind
+from synth.question.spec_keys import FIELDS, OF_A_DESIGN, SEARCHED, no_family, refuse_several, refuse_values, shown_kind
 from synth.question.spec_patch import patched
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
@@ -25,19 +28,20 @@ from synth.results.loading import COMPARISON, front_of_record
 from synth.results.plain import plain
 from synth.tables.catalogs import Catalogs
 from synth.tables.table_text import TableText
-from synth.units import format_quantity
+from synth.text.numbers import RAISED, typed_number
+from synth.units import typed_quantity
 
 WHERE = "request"
 OF = "of"
 FAMILY = "family"
 WORKERS = "workers"
-REFERENCE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*@[1-9][0-9]*")
+CATALOGS = "catalogs"
+MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "robust")  # keys with entries of their own
 STATED = re.compile(
     r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
 )  # a number with a unit
 POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
-RAISED = str.maketrans("234", "²³⁴")
-SPEC = tuple(key for key in FIELDS if key != "values")
+SPEC = tuple(key for key in FIELDS if key not in OF_A_DESIGN)
 TABLE_EXPECTED = (
     "a table of your own by name and version, 'my_linings@3', or ['+', 'my_linings@3'] to extend the shipped one"
 )
@@ -48,7 +52,26 @@ Check = Callable[[str, Any], Any]
 
 
 def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
-    """Return the entries of a request; None counts as not stated.
+    """Entries of a request, those of a spec each of its kind; None counts as not stated.
+
+    Whatever reads a request, or writes a message about it, begins with these.
+
+    Raises
+    ------
+    InputError
+        It is no mapping, has a key that is none of these or a value that is not of its kind, or holds what no file can.
+    """
+    given = known_keys(request, keys)
+    faults: list[InputError] = []
+    for key, value in given.items():
+        with noted(faults):
+            check_entry(key, value)
+    refuse_noted(faults)
+    return given
+
+
+def known_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
+    """Entries of a request, whatever their kind; None counts as not stated.
 
     Raises
     ------
@@ -72,6 +95,29 @@ def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
     return {str(key): value for key, value in request.items() if value is not None and key in keys}
 
 
+def check_entry(key: str, value: Any) -> None:
+    """Refuse an entry of a spec that is not of its kind; other entries are for the kind of job to check.
+
+    Which tables there are is known to ``catalogs_of`` alone.
+
+    Raises
+    ------
+    InputError
+    """
+    if key == WORKERS:
+        one_thread(value)
+    elif key in FIELDS and key != CATALOGS:
+        with at(key):
+            FIELDS[key](f"{WHERE}: {key}", stated_entries(key, value))
+
+
+def stated_entries(key: str, value: Any) -> Any:
+    """Value of an entry of a spec, without entries of its own that are None: those are not stated, or taken back."""
+    if key not in MAPPINGS or not isinstance(value, Mapping):
+        return value
+    return {name: entry for name, entry in value.items() if entry is not None}
+
+
 @contextmanager
 def noted(faults: list[InputError]) -> Iterator[None]:
     """Note what is refused inside, and go on."""
@@ -93,26 +139,58 @@ def refuse_noted(faults: Sequence[InputError]) -> None:
         raise SeveralErrors(faults) if len(faults) > 1 else faults[0]
 
 
-def spec_of(request: Any, sources: Sources, more: Collection[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the spec of a request, and its entries under some more keys.
+def spec_of(
+    request: Any, sources: Sources, more: Collection[str] = (), several: bool = False
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Spec of a request, every entry of its kind, and the entries under some more keys as they stand.
 
     Under ``of`` an earlier job may stand: then its spec is meant, with the entries of this request in place of its own.
+
+    Parameters
+    ----------
+    request : mapping
+    sources : Sources
+    more : collection of str
+        Keys beside those of a spec.
+    several : bool
+        Whether several families may be asked. Of another family all else would be another fault: it is told alone.
 
     Raises
     ------
     InputError
-        A key is unknown, or there is no such job.
+        A key is unknown, a value is not of its kind, or there is no such job.
     """
+    if not several and isinstance(request, Mapping) and request.get(FAMILY) is not None:
+        check_entry(FAMILY, request[FAMILY])
+        refuse_several(request[FAMILY], WHERE)
     given = checked_keys(request, (*SPEC, *more, OF))
     own = {key: given.pop(key) for key in more if key in given}
     if OF not in given:
-        return given, own
+        return _without_none(given), own
     with at(OF):
         records = records_of(sources, given.pop(OF))
         before = _json_of(records, QUESTION).get("request") if QUESTION in records else None
         if not isinstance(before, Mapping) or FAMILY not in before:
             raise InputError(f"{WHERE}: {OF}", shown_job(records), "a job that asks a question of a family")
-    return patched({key: value for key, value in before.items() if key in SPEC}, given), own
+    return _without_none(patched({key: value for key, value in before.items() if key in SPEC}, given)), own
+
+
+def _without_none(spec: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: stated_entries(key, value) for key, value in spec.items()}
+
+
+def problem_of(spec: Mapping[str, Any]) -> DesignProblem:
+    """Family of a spec with its options.
+
+    Raises
+    ------
+    InputError
+        None is named, or several are, or there is none such.
+    """
+    if spec.get(FAMILY) is None:
+        raise no_family(WHERE)
+    refuse_several(spec[FAMILY], WHERE)
+    return load(spec[FAMILY], **FIELDS["options"](WHERE, spec.get("options")))
 
 
 def flag(name: str, value: Any) -> bool:
@@ -203,7 +281,7 @@ def _texts(table: str, source: Any, sources: Sources) -> tuple[bool, tuple[Table
     texts = []
     for entry in entries:
         field = f"{WHERE}: catalogs: {table}"
-        if not isinstance(entry, str) or not REFERENCE.fullmatch(entry):
+        if not isinstance(entry, str) or not re.fullmatch(REFERENCE, entry):
             raise InputError(field, shown_kind(entry), TABLE_EXPECTED)
         if entry not in sources.tables:
             raise InputError(field, entry, "a table that there is, with its version")
@@ -289,10 +367,10 @@ def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = Tru
     if not names:
         raise InputError(f"{WHERE}: {OF}", shown_job(records), "a job that has found a front", (OF,))
     if "" in names and family is not None:
-        raise InputError(f"{WHERE}: {FAMILY}", family, "no family: the job asks one alone", (FAMILY,))
-    if "" not in names and family not in names:
+        raise InputError(f"{WHERE}: {FAMILY}", shown_kind(family), "no family: the job asks one alone", (FAMILY,))
+    if "" not in names and not (isinstance(family, str) and family in names):
         right = f"one of those that the job compares: {', '.join(names)}"
-        raise InputError(f"{WHERE}: {FAMILY}", family, right, (FAMILY,))
+        raise InputError(f"{WHERE}: {FAMILY}", None if family is None else shown_kind(family), right, (FAMILY,))
     name = names["" if family is None else family]
     with at(OF):
         content = _json_of(records, name)
@@ -411,7 +489,7 @@ def _raised(found: re.Match[str]) -> str:
 
 
 def _shown(value: Any, unit: str) -> str:
-    return words(value if isinstance(value, str) else f"{value:g} {unit}".removesuffix(" -"))
+    return words(value if isinstance(value, str) else f"{typed_number(value)} {unit}".removesuffix(" -"))
 
 
 # ---- what comes out -------------------------------------------------------------------------------------------------
@@ -476,4 +554,4 @@ def front_summary(content: Mapping[str, Any]) -> dict[str, Any]:
 def best_of(designs: Sequence[Mapping[str, Any]], units: Mapping[str, str]) -> dict[str, str]:
     """Return the objectives of the first of some designs of a record with their units; nothing where there is none."""
     best = designs[0]["objectives"] if designs else {}
-    return {name: format_quantity(float(x), units[name], KIND_SETTINGS.digits) for name, x in best.items()}
+    return {name: typed_quantity(float(x), units[name], KIND_SETTINGS.digits) for name, x in best.items()}

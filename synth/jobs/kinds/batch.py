@@ -11,20 +11,20 @@ import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from synth.errors import Described, InputError, at
+from synth.errors import Described, InputError, at, first_with_others
 from synth.jobs.batch import BatchJob
 from synth.jobs.batch_report import BatchReportOptions, batch_report_files
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.asked import (
     WHERE,
     catalogs_of,
-    checked_keys,
+    check_entry,
     digests,
     flag,
+    known_keys,
     noted,
     refuse_noted,
     seconds,
@@ -34,7 +34,7 @@ from synth.jobs.kinds.asked import (
 from synth.jobs.kinds.contract import TABLE, Posed, Record, Sources
 from synth.jobs.kinds.files import UnknownFileError
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
-from synth.jobs.kinds.report import NEEDED
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_questions import Fault
 from synth.jobs.row_table import RowTable, read_table
@@ -42,12 +42,13 @@ from synth.jobs.store import Store
 from synth.model.registry import load
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import shown_kind
-from synth.tables.workbook import EXCEL
+from synth.results.drawings import can_make
+from synth.tables.table_file import EXCEL
 
 UPLOAD, ROWS = "upload", "rows"
 COMMON = ("parts", "limits", "fix")
-KEPT = ("family", "mapping", "objectives", "points", "gap", "grid", "seed", "time_limit", *COMMON, "catalogs")
-KEYS = (UPLOAD, ROWS, *KEPT)
+KEYS = keys_of("batch")
+KEPT = tuple(key for key in KEYS if key not in (UPLOAD, ROWS))
 SUMMARY = "batch.json"
 FILES = ("designs.csv", "rows.csv", SUMMARY)
 REPORTS = {"report.html": "html", "report.pdf": "pdf", "batch.xlsx": "xlsx"}  # by the format that they are of
@@ -65,12 +66,12 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    stated = checked_keys(request, KEYS)
+    stated = known_keys(request, KEYS)
     table = table_of(stated, sources)
     kept = {key: value for key, value in stated.items() if key in KEPT}
     with _job(kept, table, sources) as job:
         job.refuse_hopeless(KIND_SETTINGS.checked_seconds)
-        count = counted_lines(job.table)
+        count = job.table.count()
         counted = f"{count} row{'' if count == 1 else 's'}"
         asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
         return Posed(
@@ -94,7 +95,7 @@ def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         The table as a whole is wrong.
     """
     sources: Sources = payload["sources"]
-    stated = checked_keys(payload["request"], KEYS)
+    stated = known_keys(payload["request"], KEYS)
     table = table_of(stated, sources)
     kept = {key: value for key, value in stated.items() if key in KEPT}
     end = time.monotonic() + KIND_SETTINGS.checked_seconds
@@ -111,7 +112,7 @@ def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
             if time.monotonic() > end:
                 break
         return {
-            "rows": counted_lines(job.table),
+            "rows": job.table.count(),
             "checked": checked,
             "bad": bad,
             "faults": [_told(fault) for fault in faults[: KIND_SETTINGS.told_faults]],
@@ -147,8 +148,7 @@ def plan(payload: Mapping[str, Any], tell: Tell) -> bool:
 
 def files_to_have() -> tuple[str, ...]:
     """Return the names of the files of a batch for which no extra is lacking here."""
-    lacking = [word for word, (package, _) in NEEDED.items() if find_spec(package) is None]
-    return (*FILES, *(name for name, word in REPORTS.items() if word not in lacking))
+    return (*FILES, *(name for name, word in REPORTS.items() if can_make(word)))
 
 
 def files(payload: Mapping[str, Any], tell: Tell) -> Record:
@@ -187,7 +187,9 @@ def _report(name: str, file: str, sources: Sources) -> bytes | str:
         job = store.job(name)
         if job is None:
             raise UnknownFileError(file)
-        made, _, _ = batch_report_files(store, job, how, catalogs_of(job.content.get("catalogs"), sources))
+        made, *_, lacking = batch_report_files(store, job, how, catalogs_of(job.content.get("catalogs"), sources))
+        if file not in made:
+            raise first_with_others(lacking)
         return made[file]
 
 
@@ -248,6 +250,9 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
     common: dict[str, Any] = {name: stated.get(name) for name in COMMON}
     common |= {"objectives": stated.get("objectives")}
     how, usual, faults = dict[str, Any](), SearchSettings(), list[InputError]()
+    for key in (*COMMON, "objectives"):
+        with noted(faults):
+            check_entry(key, stated.get(key))
     with noted(faults):
         common["grid"] = flag("grid", stated.get("grid", True))
     with noted(faults):
@@ -305,11 +310,6 @@ def _rows(table: Record, folder: Path) -> RowTable:
     file = folder / f"table{_ending(table.name)}"
     file.write_bytes(table.content)
     return RowTable(table.name, file)
-
-
-def counted_lines(table: RowTable) -> int:
-    """Return the number of rows of a table that are not blank."""
-    return sum(1 for _ in table.lines())
 
 
 def _told(fault: Fault) -> dict[str, Any]:

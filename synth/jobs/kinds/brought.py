@@ -10,15 +10,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from synth.errors import InputError, shortened
+from synth.errors import Described, InputError, shortened
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.jobs.row_table import RowTable
-from synth.model.registry import families, load
+from synth.model.registry import every_declaration
 from synth.plain_text import printable
 from synth.question.catalogs import as_catalogs, meant_by, needed_columns
-from synth.tables.catalogs import Catalogs
-from synth.tables.delimited_text import DelimitedText, delimited_text
+from synth.tables.catalogs import Catalogs, must_have_designation
+from synth.tables.delimited_text import DelimitedText, delimited_text, first_lines
 from synth.tables.reading import csv_of_file
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, schema_of_text
 from synth.tables.table_text import TableText
@@ -28,7 +28,7 @@ OF_ROWS = ("source", "confidence")  # that every row has, in any table
 
 
 def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return the header and the first rows of a file with rows for a batch.
+    """Return how a file is read, the header and the first rows of a file with rows for a batch.
 
     Raises
     ------
@@ -36,9 +36,10 @@ def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         It cannot be read.
     """
     with _as_file(payload) as file:
-        table = RowTable(payload["name"], file)
+        table = RowTable(payload["name"], file, KIND_SETTINGS.head)
         first = list(itertools.islice(table.lines(), payload["most"]))
         return {
+            "reading": printable(table.sentence()),
             "header": list(table.header()),
             "rows": [{"line": line, "cells": list(cells)} for line, cells in first],
         }
@@ -86,6 +87,7 @@ def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         right = f"a table that families use ({', '.join(shipped.names())}), or a schema for one of your own"
         raise InputError("table", name, right, ("table",))
     try:
+        _look_at_head(text, shipped.schema(name))
         table = Catalogs({name: text}).table(name)
     except InputError as fault:
         in_schema = fault.field.startswith(f"{text.reference}{SCHEMA_SUFFIX}")
@@ -118,6 +120,24 @@ def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     }
 
 
+def _look_at_head(text: TableText, known: Schema | None) -> None:
+    """Refuse a table that is too long, or whose rows have no names, before its cells are read.
+
+    Raises
+    ------
+    InputError
+    """
+    lines = text.csv.count("\n")
+    if lines > KIND_SETTINGS.part_rows:
+        got = Described(f"{lines} lines")
+        raise InputError(text.reference, got, f"a part table of at most {KIND_SETTINGS.part_rows}", ("csv",))
+    if text.schema:
+        return  # which may do without
+    head = delimited_text(first_lines(text.csv.encode(), text.reference, KIND_SETTINGS.head), text.reference)
+    _, titles = next(head.lines(), (1, []))
+    must_have_designation([split_header(title)[0] for title in titles if title.strip()], known, text.reference)
+
+
 def _columns(written: DelimitedText, text: TableText, known: Schema | None) -> list[dict[str, Any]]:
     """Return the columns of a table as they stand there, and which of them are known."""
     _, head = next(written.lines())
@@ -141,9 +161,9 @@ def _columns(written: DelimitedText, text: TableText, known: Schema | None) -> l
 def _needed() -> Mapping[str, tuple[tuple[str, str, tuple[str, ...]], ...]]:
     """Return by table what families cannot do without: family, slot, and the names of which one is enough."""
     found: dict[str, dict[tuple[str, str, tuple[str, ...]], None]] = {}
-    for family in families():
-        for part, names in needed_columns(load(family).declaration(frozenset(), as_catalogs(None))):
-            found.setdefault(part.table, {})[family, part.slot, names] = None
+    for problem, declared in every_declaration(as_catalogs(None)):
+        for part, names in needed_columns(declared):
+            found.setdefault(part.table, {})[problem.name, part.slot, names] = None
     return {table: tuple(needed) for table, needed in found.items()}
 
 

@@ -52,7 +52,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong for every family.
     """
-    spec, _ = spec_of(request, sources)
+    spec, _ = spec_of(request, sources, several=True)
     content, settings = _read(spec)
     tables = catalogs_of(spec.get("catalogs"), sources)
     sheet = sheet_of(**{key: content[key] or None for key in KEYS})

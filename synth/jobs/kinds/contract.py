@@ -10,6 +10,7 @@ from typing import Any
 
 from synth.errors import shortened
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.plain_text import one_line
 from synth.tables.table_text import TableText
 
 Tell = Callable[[Mapping[str, Any]], None]  # told how far the work is, in mappings that JSON can hold
@@ -107,8 +108,8 @@ class Posed:
     rows: int = 0
 
     def __post_init__(self) -> None:
-        """Cut a title that repeats long words of the request."""
-        object.__setattr__(self, "title", shortened(self.title, KIND_SETTINGS.title))
+        """Cut a title that repeats long words of the request, and write out what acts on a screen."""
+        object.__setattr__(self, "title", shortened(one_line(self.title), KIND_SETTINGS.title))
 
     @property
     def text(self) -> str:

@@ -8,7 +8,6 @@ import re
 import tempfile
 import zipfile
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +17,10 @@ from synth.errors import ExtraNeededError
 from synth.jobs.kinds import kind as kind_named
 from synth.jobs.kinds.asked import checked_keys, front_in, is_comparison
 from synth.jobs.kinds.contract import NOTHING, Record, Sources
-from synth.jobs.kinds.report import NEEDED, ReportAsked, reported
+from synth.jobs.kinds.report import ReportAsked, reported
 from synth.jobs.kinds.verify import unpack
 from synth.results import ParetoFront
-from synth.results.drawings import PLOT, report
+from synth.results.drawings import PLOT, can_make, report
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import load_front
 
@@ -62,8 +61,7 @@ def files_of(kind: str, records: Mapping[str, bytes]) -> dict[str, int | None]:
 
 def files_to_have(kind: str, records: Mapping[str, bytes]) -> dict[str, int | None]:
     """Return the files of a job that can be had here: those of :func:`files_of` for which no extra is lacking."""
-    lacking = tuple(f".{ending}" for ending, (package, _) in NEEDED.items() if find_spec(package) is None)
-    return {n: size for n, size in files_of(kind, records).items() if n in records or not n.endswith(lacking)}
+    return {n: size for n, size in files_of(kind, records).items() if n in records or can_make(n.rpartition(".")[2])}
 
 
 def render(

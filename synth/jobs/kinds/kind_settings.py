@@ -32,6 +32,10 @@ class KindSettings:
         For looking for further faults after the first: a form must answer while somebody types.
     checked_seconds : float
         For checking the rows of a table before a batch is started.
+    head : int
+        Lines of a file that are looked at when it is brought; what the others hold is read when it is checked.
+    part_rows : int
+        Lines of a part table that is brought: each question that names it reads them.
     told_faults : int
         Of a table that are told one by one.
     verify_seconds : float
@@ -48,6 +52,8 @@ class KindSettings:
     rounds: int = 12
     seconds: float = 2.0
     checked_seconds: float = 10.0
+    head: int = 200
+    part_rows: int = 20_000
     told_faults: int = 200
     verify_seconds: float = 120.0
 

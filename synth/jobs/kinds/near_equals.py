@@ -22,10 +22,11 @@ from synth.jobs.kinds.asked import (
     told,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
 
 MAIN = "near_equals.json"
-KEYS = (OF, FAMILY, "design", "within", "count", "seed", "time_limit")
+KEYS = keys_of("near_equals")
 USUAL: Mapping[str, Any] = {"design": 1, "within": "2 %", "count": 5}
 
 

@@ -19,10 +19,11 @@ from synth.jobs.kinds.asked import (
     told,
 )
 from synth.jobs.kinds.contract import QUESTION, Posed, Record, Sources, Tell
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.studies.prices.run import chosen_designs, prices, read_step
 
 MAIN = "prices.json"
-KEYS = (OF, FAMILY, "design", "step", "time_limit")
+KEYS = keys_of("prices")
 STEP = "1 %"
 
 

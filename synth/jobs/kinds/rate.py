@@ -26,20 +26,20 @@ from synth.jobs.kinds.asked import (
     words,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+from synth.jobs.kinds.request_schemas import DESIGN, RATED
 from synth.model.problem import DesignProblem
 from synth.question.spec import spec_from_mapping
-from synth.question.spec_keys import FIELDS
 from synth.question.uncertainty import read_block
 from synth.results import Design, Frame
 from synth.results.plain import plain
+from synth.results.ratings import NOT_SHOWN, YES
 from synth.robust.rate import rate, rater_for
 from synth.studies.prices.run import chosen_designs
 from synth.tables.catalogs import Catalogs
 
 MAIN = "rating.json"
 ROBUST = "robust"
-OF_JOB = (OF, FAMILY, "design", ROBUST, "time_limit")
-OF_DESIGN = (*FIELDS,)
+OF_JOB, OF_DESIGN = (tuple(schema["properties"]) for schema in (RATED, DESIGN))
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -80,13 +80,15 @@ def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     """Return the facts of a rating."""
     content = read_json(records, MAIN)
-    holding = sum(bool(one["holds"]) for one in content["designs"])
-    none = Status.NOT_SOLVED if content["missing"] else Status.INFEASIBLE
+    verdicts = [one["verdict"] for one in content["designs"]]
+    holding, unknown = verdicts.count(YES), verdicts.count(NOT_SHOWN)
+    none = Status.NOT_SOLVED if content["missing"] or unknown else Status.INFEASIBLE
     return {
         "outcome": Status.FEASIBLE.value if holding else none.value,
         "family": content["family"],
         "rated": content["rated"],
         "holding": holding,
+        "not_shown": unknown,
         "missing": content["missing"],
         "sentence": content["sentence"],
         "interrupted": content["interrupted"],

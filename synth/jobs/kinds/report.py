@@ -5,7 +5,6 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -29,16 +28,17 @@ from synth.jobs.kinds.asked import (
     records_of,
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
+from synth.jobs.kinds.request_schemas import REPORT_FORMATS as FORMATS
+from synth.jobs.kinds.request_schemas import REPORT_LENGTHS as LENGTHS
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.jobs.kinds.verify import unpack
 from synth.question.spec_keys import shown_kind
+from synth.results import named_designs
+from synth.results.drawings import EXTRAS, can_make
 from synth.results.loading import load_front
 
 MAIN = "report.json"  # which files there are, and what else is to be told
-KEYS = (OF, FAMILY, "design", "full", "formats", "length", "about")
-FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf")
-# What makes a format: a package, and its extra.
-NEEDED = {"pdf": ("typst", "pdf"), "xlsx": ("xlsxwriter", "excel"), "dxf": ("ezdxf", "dxf")}
-LENGTHS = ("summary", "normal", "full")
+KEYS = keys_of("report")
 FULL = 5
 LOGO = "logo"  # of ``about`` names a file: no request does
 
@@ -124,8 +124,8 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     given = checked_keys(request, KEYS)
     asked = ReportAsked.read(given)
     for word in asked.formats:
-        if word in NEEDED and find_spec(NEEDED[word][0]) is None:
-            raise ExtraNeededError(word, NEEDED[word][1])
+        if not can_make(word):
+            raise ExtraNeededError(word, EXTRAS[word][2])
     with at(OF):
         records = records_of(sources, given.get(OF))
     if is_comparison(records) and FAMILY not in given:
@@ -133,11 +133,10 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     else:
         front = front_in(records, given.get(FAMILY))
         families, title = (front.frame.family,), front.frame.title
-        known = {str(d.rank) for d in front.designs} | {"knee" for d in front.designs if "knee" in d.note}
-        for word in asked.design if front.designs or asked.design != ("1",) else ():
-            if word not in known:
-                right = f"a rank from 1 to {len(front.designs)}" + (" or knee" if "knee" in known else "")
-                raise InputError(f"{WHERE}: design", word, right if known else "a front with designs", ("design",))
+        try:
+            named_designs(front, asked.design)
+        except InputError as error:
+            raise InputError(f"{WHERE}: design", error.value, error.expected, error.path) from error
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
     return Posed(request={**stated, **asked.stated()}, title=f"Report: {title}", families=families)
 
@@ -175,17 +174,18 @@ def reported(
     Raises
     ------
     InputError
-        A design is not on the front, or an extra is not installed.
+        A design is not on the front, or no format can be made without an extra that is not installed.
     """
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
         source, target = Path(place, "source"), Path(place, "target")
         unpack(records, source)
         target.mkdir()
         if is_comparison(records) and family is None:
-            _, names, notes, _ = report_comparison(source, target, **asked.arguments())
+            written = report_comparison(source, target, **asked.arguments())
         else:
             folder = source if family is None else source / family
             stated = front_in(records, family).frame.restated.get("catalogs")
             tables = catalogs_of(stated, sources) if "xlsx" in asked.formats else None
-            _, names, notes = write_report(load_front(folder), target, catalogs=tables, **asked.arguments())
-        return {name: (target / name).read_bytes() for name in names}, notes
+            written = write_report(load_front(folder), target, catalogs=tables, **asked.arguments())
+        files = {name: (target / name).read_bytes() for name in written.files}
+        return files, [*written.notes, *map(str, written.lacking)]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from synth.jobs.engine_tasks import Tell
-from synth.model.registry import families, load
+from synth.model.registry import every_declaration
 from synth.question.catalogs import as_catalogs
 from synth.tables.catalogs import Catalogs
 from synth.tables.schema import Column
@@ -15,24 +15,24 @@ from synth.units import finite_from_si
 
 
 def tables(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return all tables: name, number of rows, and the families whose parts are rows of it; and their digest."""
-    shipped = Catalogs()
-    users = _users()
-    found = [
-        {"name": name, "rows": len(shipped.table(name)), "families": users.get(name, [])} for name in shipped.names()
-    ]
-    return {"tables": found, "code": shipped.digest()}
+    """All tables, as a list and with their rows, and the digest of their files.
+
+    ``tables``: name, number of rows, and the families whose parts are rows of it; ``contents``: by name, with what the
+    columns are, each cell as it stands in the file.
+    """
+    shipped, users = Catalogs(), _users()
+    found = [shipped.table(name) for name in shipped.names()]
+    return {
+        "tables": [{"name": one.name, "rows": len(one), "families": users.get(one.name, [])} for one in found],
+        "contents": {one.name: _content(one, users.get(one.name, [])) for one in found},
+        "code": shipped.digest(),
+    }
 
 
-def table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return a table with what its columns are, each cell as it stands in the file; None where there is none."""
-    shipped = Catalogs()
-    if payload["table"] not in shipped.names():
-        return {"table": None, "code": shipped.digest()}
-    found = shipped.table(payload["table"])
-    told = {
-        "name": found.name,
-        "families": _users().get(found.name, []),
+def _content(table: Table, users: Sequence[str]) -> dict[str, Any]:
+    return {
+        "name": table.name,
+        "families": list(users),
         "columns": [
             {
                 "name": column.name,
@@ -42,11 +42,10 @@ def table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
                 "lower": column.minimum,
                 "upper": column.maximum,
             }
-            for column in found.columns.values()
+            for column in table.columns.values()
         ],
-        "rows": [_cells(found, index) for index in range(len(found))],
+        "rows": [_cells(table, index) for index in range(len(table))],
     }
-    return {"table": told, "code": shipped.digest()}
 
 
 def _cells(found: Table, index: int) -> list[float | str | None]:
@@ -64,8 +63,7 @@ def _cell(value: float | str | None, column: Column) -> float | str | None:
 def _users() -> dict[str, list[str]]:
     """Return the families that take parts from a table, by table."""
     users: dict[str, list[str]] = {}
-    for name in families():
-        declared = load(name).declaration(frozenset(), as_catalogs(None))
+    for problem, declared in every_declaration(as_catalogs(None)):
         for one in sorted({slot.table for slot in declared.slots.values()}):
-            users.setdefault(one, []).append(name)
+            users.setdefault(one, []).append(problem.name)
     return users

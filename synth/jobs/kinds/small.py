@@ -14,18 +14,22 @@ from typing import Any, TypeVar
 
 from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
+from synth.declaration import Declaration
 from synth.errors import InputError, SeveralErrors, at
 from synth.jobs.kinds import comparison, synthesis
 from synth.jobs.kinds.asked import (
+    CATALOGS,
     FAMILY,
+    MAPPINGS,
     OF,
     SPEC,
     WHERE,
-    WORKERS,
     catalogs_of,
+    check_entry,
     checked_keys,
     digests,
-    one_thread,
+    known_keys,
+    noted,
     settings_of,
     spec_of,
 )
@@ -33,8 +37,7 @@ from synth.jobs.kinds.contract import NOTHING, Sources
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS, KindSettings
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
-from synth.model.registry import families as registered
-from synth.model.registry import load
+from synth.model.registry import every_declaration, load
 from synth.question.catalogs import as_catalogs, lacking_columns, misspelt_columns, refuse_unused
 from synth.question.examples import Example, examples_of
 from synth.question.examples import examples as all_examples
@@ -48,16 +51,14 @@ from synth.question.uncertainty import read_remaining
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
 from synth.results.front_record import design_record
-from synth.results.plain import finite, plain
+from synth.results.plain import plain
 from synth.search.question import pose
 from synth.tables.catalogs import Catalogs
-from synth.units import format_quantity
+from synth.units import typed_quantity
 
 T = TypeVar("T")
 SECTIONS = {"option": "option", "slot": "part", "objective": "objective"}  # of a form, by kind of row
-CATALOGS = "catalogs"
 NEEDED, LIMIT, ASSUMPTION = "needed", "limit", "assumption"
-MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "robust")  # keys with entries of their own
 
 
 # ---- what there is --------------------------------------------------------------------------------------------------
@@ -65,11 +66,10 @@ MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "rob
 
 def families() -> list[dict[str, Any]]:
     """Return all registered families: name, title, one line, options with their choices, and the names of examples."""
-    return [_family(load(name)) for name in registered()]
+    return [_family(problem, declared) for problem, declared in every_declaration(as_catalogs(None))]
 
 
-def _family(problem: DesignProblem) -> dict[str, Any]:
-    declared = problem.declaration(frozenset(), as_catalogs(None))
+def _family(problem: DesignProblem, declared: Declaration) -> dict[str, Any]:
     return {
         "name": problem.name,
         "title": problem.title or problem.name,
@@ -187,7 +187,7 @@ def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
         "limit_units": dict(frame.limit_units),
         "limit_senses": dict(frame.limit_senses),
         "tables": digests(given.get("catalogs"), sources),
-        "parts": {f"{row['table']}/{row}": {k: finite(v) for k, v in row.items()} for row in found.parts.values()},
+        "parts": {row.key: row.record() for row in (*found.parts.values(), *found.rows)},
         "design": plain(design_record(found)),
         "spec": plain(found.to_spec()),
     }
@@ -300,28 +300,25 @@ class _Check:
         """Return what stands under the keys of a spec and is of its kind."""
         if isinstance(request, Mapping):
             for key in [key for key in request if key not in self.keys]:
-                self._caught(checked_keys, {key: 0}, self.keys)
-            request = {key: value for key, value in request.items() if key in (*SPEC, OF)}
-        found = self._caught(spec_of, request, self.sources)
-        spec = found[0] if found is not None else {}
-        return {key: kept for key, value in spec.items() if (kept := self._entry(key, value)) is not None}
+                self._caught(known_keys, {key: 0}, self.keys)
+            request = {key: self._entry(key, value) for key, value in request.items() if key in (*SPEC, OF)}
+        found = self._caught(spec_of, request, self.sources, (), True)
+        return {} if found is None else found[0]
 
     def _entry(self, key: str, value: Any) -> Any:
-        """Return what stands under one key, without what is not of its kind."""
-        if key == "catalogs":
-            return value  # read where it is known which tables there are
-
-        def kept(entries: Any) -> Any:
-            if key == WORKERS:
-                one_thread(entries)
-            with at(key):
-                FIELDS[key](f"{WHERE}: {key}", entries)
-            return entries
-
+        """Return what stands under one key, without what is not of its kind; None where nothing is left."""
         if key not in MAPPINGS or not isinstance(value, Mapping):
-            return self._caught(kept, value)
-        one_by_one = {name: {name: entry} for name, entry in value.items() if entry is not None}
-        return {name: value[name] for name, one in one_by_one.items() if self._caught(kept, one) is not None}
+            return value if self._fits(key, value) else None
+        return {name: entry for name, entry in value.items() if self._fits(key, {name: entry})}
+
+    def _fits(self, key: str, value: Any) -> bool:
+        """Tell whether an entry is of its kind; note where it is not."""
+        faults: list[InputError] = []
+        if value is not None:
+            with noted(faults):
+                check_entry(key, value)
+        self.faults += faults
+        return not faults
 
     # -- one family ----------------------------------------------------------------------------
 
@@ -401,7 +398,7 @@ class _Check:
             value = self._caught(value_of, record, typed)
             if value is not None:
                 stated[name] = value
-                self.read[name] = format_quantity(value, record.unit)
+                self.read[name] = typed_quantity(value, record.unit)
         for record in model.declaration.requirements.values():
             if record.default is None and not record.optional and record.name not in named:
                 self.faults.append(missing(record))

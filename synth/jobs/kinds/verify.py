@@ -26,6 +26,7 @@ from synth.jobs.kinds.asked import (
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.jobs.kinds.request_schemas import keys_of
 from synth.results.calculation import CALCULATION, Calculation
 from synth.results.front_record import FRONT_FILE
 from synth.results.verification import Verification
@@ -33,7 +34,7 @@ from synth.verification.verify import verify
 from synth.verification.verify_comparison import verify_comparison
 
 MAIN = "verification.json"
-KEYS = (OF, FAMILY, "time_limit")
+KEYS = keys_of("verify")
 WHOLE = "all of the comparison"
 
 

@@ -13,7 +13,6 @@ from typing import Any
 from synth.errors import InputError, at
 from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
-    FAMILY,
     OF,
     SPEC,
     WHERE,
@@ -24,6 +23,7 @@ from synth.jobs.kinds.asked import (
     json_record,
     noted,
     of_files,
+    problem_of,
     question_of,
     question_record,
     read_json,
@@ -36,12 +36,12 @@ from synth.jobs.kinds.asked import (
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
+from synth.jobs.kinds.request_schemas import VARIED_ENDS as ENDS
 from synth.model.model import Model
-from synth.model.registry import load
 from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, shown_kind
+from synth.question.spec_keys import shown_kind
 from synth.results.plain import plain
 from synth.studies.whatif.run import POINTS, study_of
 from synth.studies.whatif.steps import check_steps
@@ -51,7 +51,6 @@ from synth.studies.whatif.vary import Varied, read_vary
 MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
 VARIES = "names with values, {'load_torque': '500:700:50 N*m'}"
-ENDS = ("from", "to", "count")
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -102,7 +101,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
         known = {key: value for key, value in spec.items() if key in (*SPEC, OF)}
         whole, _ = spec_of(known, sources)
         tables = catalogs_of(whole.get("catalogs"), sources)
-        problem = load(whole[FAMILY], **FIELDS["options"](WHERE, whole.get("options")))
+        problem = problem_of(whole)
         declared = problem.model(frozenset(), tables).declaration
         names, given = declared.names(), dict(whole.get("requirements") or {})
         there = {names.get(str(word)) for word in given}
@@ -135,7 +134,8 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     states = [step["status"] for step in content["steps"]]
     feasible = sum(bool(step["front"] and step["front"]["designs"]) for step in content["steps"])
     stopped = Status.NOT_SOLVED.value in states
-    outcome = Status.FEASIBLE.value if feasible else Status.NOT_SOLVED.value if stopped else Status.INFEASIBLE.value
+    unproven = Status.NOT_FOUND if Status.NOT_FOUND.value in states else Status.INFEASIBLE
+    outcome = (Status.FEASIBLE if feasible else Status.NOT_SOLVED if stopped else unproven).value
     if feasible and all(state in (Status.OPTIMAL.value, Status.INFEASIBLE.value) for state in states):
         outcome = Status.OPTIMAL.value  # every step is proven
     return {

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.compiled.execution import Execution
+from synth.feasibility import SLACK
 from synth.question.instance import Instance
-from synth.question.objectives import with_ties
 from synth.question.settings import SearchSettings
 from synth.search.archive import Candidate, rows_of
 from synth.search.best_first import best_first
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
+from synth.search.goals import goals_of
 from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
 from synth.search.log_objectives import LogObjectives
@@ -56,14 +57,26 @@ class SharedBounds:
         As for :class:`JointInstance`.
     first : str, optional
         Of several chosen objectives that which comes first; the others settle ties.
+    slack : float
+        By which limits are loosened that something continuous moves.
+    sizes : mapping
+        Objective -> its size in SI near the front, where that is known.
     """
 
-    def __init__(self, questions: Sequence[PosedQuestion], moving: Collection[str], first: str | None = None) -> None:
+    def __init__(
+        self,
+        questions: Sequence[PosedQuestion],
+        moving: Collection[str],
+        first: str | None = None,
+        slack: float = SLACK,
+        sizes: Mapping[str, float] = MappingProxyType({}),
+    ) -> None:
+        self.slack, self.sizes = slack, sizes
         self.moving, self._tuning = moving, questions[0].tuning
         self._instance = JointInstance([q.instance for q in questions], moving)
         chosen = dict(questions[0].chosen)
         in_order = {first: chosen[first], **chosen} if first is not None else chosen
-        self.goals = with_ties(self._instance.model, in_order)
+        self.goals = goals_of(self._instance, in_order)
         self._forms: dict[bool, Formulation] = {}
 
     def among(self, instance: JointInstance, infeasibility: bool, workers: int = 1) -> Formulation | None:
@@ -77,7 +90,9 @@ class SharedBounds:
 
     def _form(self, infeasibility: bool) -> Formulation:
         if infeasibility not in self._forms:
-            self._forms[infeasibility] = Formulation(self._instance, self.goals, 1, infeasibility, tuning=self._tuning)
+            self._forms[infeasibility] = Formulation(
+                self._instance, self.goals, 1, infeasibility, tuning=self._tuning, slack=self.slack, sizes=self.sizes
+            )
         return self._forms[infeasibility]
 
 
@@ -185,7 +200,7 @@ class JointOptima:
         moving = () if shared is None else shared.moving
         self.instance = JointInstance([q.instance for q in questions], moving, cutoffs, floors)
         self.gap, self.needs = first.settings.gap, needs
-        self.goals = with_ties(first.instance.model, dict(first.chosen)) if shared is None else shared.goals
+        self.goals = goals_of(self.instance, dict(first.chosen)) if shared is None else shared.goals
         self.form = self._prepared()
         self.fixed_cutoffs = np.full((len(self.questions), len(self.form.goals)), np.inf)
         for k, values in (cutoffs or {}).items():
@@ -342,7 +357,6 @@ class JointOptima:
     def in_infeasibility_mode(self) -> JointTree:
         """Return what tries with boxes that carry what limits share, which helps where limits leave little room."""
         form = self._prepared(infeasibility=True)
-        form.counters.work = self.form.counters.work
         form.counters.solved_combinations = self.form.counters.solved_combinations
         form.bounding.branching.adopt(self.form.bounding.branching.statistics())
         form.archive = known = self.none_known()
@@ -361,9 +375,10 @@ class JointOptima:
     def _prepared(self, infeasibility: bool = False) -> Formulation:
         form = None if self.shared is None else self.shared.among(self.instance, infeasibility, self.workers)
         if form is None:
-            many = len(self.questions) >= self.tuning.compiling.together
-            execution = Execution(similar_questions=len(self.questions) if many else 1, workers=self.workers)
-            form = Formulation(self.instance, self.goals, 1, infeasibility, execution, self.tuning)
+            shared: dict[str, Any] = (
+                {} if self.shared is None else dict(slack=self.shared.slack, sizes=self.shared.sizes)
+            )
+            form = Formulation(self.instance, self.goals, 1, infeasibility, self.workers, self.tuning, **shared)
         return form
 
     def told_apart(self) -> np.ndarray:

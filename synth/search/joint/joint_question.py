@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.bounds.compiled_subtrees import CutoffTables
+from synth.bounds.kernel_subtrees import CutoffTables
 from synth.model.model import DataInput
 from synth.model.program import InputValue
 from synth.question.combinations import JointCombinations

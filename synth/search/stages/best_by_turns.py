@@ -110,7 +110,7 @@ def prove_end(state: FrontState, k: int, look_harder: Callable[[], None]) -> Bes
         return trees[-1]
 
     def other() -> BestTree:
-        form = state.task.formulation(not state.infeasibility_mode, state.form.counters)
+        form = state.formulation(not state.infeasibility_mode, state.form)
         form.bounding.branching.adopt(state.form.bounding.branching.statistics())
         trees.append(BestTree(state, form, form.boxes.root(), k, finer))
         return trees[-1]

@@ -16,21 +16,36 @@ from synth.search.pruning import EpsilonCover
 from synth.search.relaxed_boxes import RelaxedBoxes
 from synth.search.resolution import ranges
 from synth.search.stages.best_by_turns import BestByTurns
-from synth.search.stages.trees import close_open_boxes
+from synth.search.stages.trees import close_open_boxes, note_left_open
+
+MOST_MEASURES = (
+    4  # of the size of an objective near its best value; each is at least 1e5 times finer for a gap of 0.1 %
+)
 
 
 def find_extremes(state: FrontState) -> None:
-    """Find the design that is best in each objective, before the front: its ranges are needed, or it is all."""
-    m = state.task.m
-    found = [best_in(state, k) for k in range(m)]
-    known = [c for c in found if c is not None]
+    """Find the design that is best in each objective, before the front: its ranges are needed, or it is all.
+
+    Where what is best turns out to be so small that the resolution is coarser than the gap, it is sought once more with
+    objectives measured by their size there. An objective that can vanish would go on like that for ever: from the third
+    time on a tree that does not close soon ends it, and what is proven by then is told.
+    """
+    m, times = state.task.m, 0
+    while True:
+        found = [best_in(state, k, brief=times > 1) for k in range(m)]
+        known = [c for c in found if c is not None]
+        times += 1
+        values = np.array([state.form.objectives.values_of(c.phi[:m]) for c in known]).reshape(len(known), m)
+        if times > MOST_MEASURES or not known or not state.measure_near(values):
+            break
     if m == 1:
         state.front, state.proof.complete = known, state.proof.closed
     elif known:
-        state.rule = state.cover_at_gap(ranges(np.array([c.phi for c in known])))
+        sizes = ranges(np.array([c.phi for c in known]))
+        state.rule, state.spans = state.cover_at_gap(sizes), sizes[:m]
 
 
-def best_in(state: FrontState, k: int) -> Candidate | None:
+def best_in(state: FrontState, k: int, brief: bool = False) -> Candidate | None:
     """Return the design that is best in one objective, proven within the gap, or as far as can be proven.
 
     Parameters
@@ -38,12 +53,18 @@ def best_in(state: FrontState, k: int) -> Candidate | None:
     state : FrontState
     k : int
         The number of the objective.
+    brief : bool
+        Give up where a first tree leaves boxes open.
     """
     no_cutoffs = np.full(len(state.form.goals), np.inf)
     before, limits = len(state.form.archive), state.task.limits
     soon = state.node_limit if state.infeasibility_mode else min(limits.first_try, state.node_limit)
     state.counters.scalar_problems += 1
     found, outcome, tolerance = _best_within(state, k, no_cutoffs, None, soon)
+    if brief and not outcome.closed:
+        note_left_open(state, outcome.open, _rule_for_best(state, k, no_cutoffs, tolerance, found))
+        state.proof.exhausted = False
+        return found
     if not outcome.closed and not state.infeasibility_mode:
         # What is feasible may be so narrow that it costs most to tell which limits leave nothing.
         plain, open_plain, coarse = state.form, outcome.open, tolerance

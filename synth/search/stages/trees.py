@@ -84,15 +84,21 @@ def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) ->
         left = _go_on(state, left, rule)
     if not len(left):
         return left
-    proof.closed = False
-    proof.unresolved += len(left)
+    note_left_open(state, left, rule)
     if thorough and not solved and not _solve_few(state, left, rule):
         _sample_parts(state, left, rule)
         proof.exhausted = False
     proof.exhausted = proof.exhausted and thorough
+    return left
+
+
+def note_left_open(state: FrontState, left: Boxes, rule: TabledPruningRule) -> None:
+    """Note that boxes stay open, and what is proven then."""
+    proof = state.proof
+    proof.closed = False
+    proof.unresolved += len(left)
     if len(rule.columns) == state.task.m:
         proof.bounds.append(Bound(rule.tolerance, state.form.objectives.phi_of(left.bounds)[:, : state.task.m]))
-    return left
 
 
 class LeftOpen(Protocol):

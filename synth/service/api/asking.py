@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+import time
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
@@ -13,13 +14,15 @@ from fastapi import Depends, Path, Query, Request, Response
 from fastapi import params as fastapi_params
 from fastapi.dependencies.models import Dependant
 from fastapi.dependencies.utils import get_flat_params
+from sqlalchemy.exc import DBAPIError
 
 from synth.errors import InputError
 from synth.jobs.job_table import LIVE
 from synth.jobs.models import Job
 from synth.service.auth import Anybody, principal_of
-from synth.service.context import Context
+from synth.service.context import Context, ServiceContext, in_thread
 from synth.service.errors import JSON, ServiceError, not_found
+from synth.service.recording import log
 from synth.service.security import header
 from synth.service.wording import WORD
 
@@ -50,7 +53,20 @@ async def own_job(job: JobId, principal: Anybody, context: Context) -> Job:
     found = await context.read(context.store.job, job, principal.tenant) if ID.fullmatch(job) else None
     if found is None:
         raise not_found()
+    await note_use(context, found)
     return found
+
+
+async def note_use(context: ServiceContext, job: Job) -> None:
+    """Note that a job is used, which keeps it; not each time."""
+    settings = context.settings
+    keep = settings.keep_seconds
+    if job.expires is None or keep is None or job.expires > time.time() + keep - min(settings.use_note, keep / 2):
+        return
+    try:
+        await in_thread(context.store.note_use, [job.id], keep)
+    except (DBAPIError, OSError):  # busy, or without room: nobody is kept from reading by that
+        log("not_noted", job=job.id)
 
 
 OwnJob = Annotated[Job, Depends(own_job)]

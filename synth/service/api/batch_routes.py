@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, File, Request, Response, UploadFile
+from fastapi import APIRouter, Body, File, Query, Request, Response, UploadFile
 
 from synth.errors import InputError
 from synth.jobs.engine_tasks import CHECK_ROWS_TASK, UPLOAD_TASK
@@ -14,11 +14,12 @@ from synth.jobs.views import uploads_kept
 from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted
 from synth.service.api.schemas import EXAMPLES, BatchCheck, FirstRow, JobAnswer, UploadAnswer
 from synth.service.api.submission import Wish
-from synth.service.api.uploads import FIELD, kind_of, plain_name
+from synth.service.api.uploads import FIELD, plain_name, taken
 from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, in_thread
 from synth.service.errors import ServiceError, again, not_found
 from synth.service.security import FILE_BODY
+from synth.service.small_work import asker_of
 
 router = APIRouter(prefix=API, tags=["batches"])
 HOUR = 3600.0  # s
@@ -37,6 +38,8 @@ async def bring_file(
     principal: Submitter,
     context: Context,
     file: Annotated[UploadFile, File(description="CSV as spreadsheets write it, or an .xlsx workbook.")],
+    encoding: Annotated[str, Query(max_length=40, description="Of a CSV file, where it is not recognised.")] = "",
+    visible: Annotated[bool, Query(description="Leave out hidden and filtered rows of a workbook.")] = False,
 ) -> UploadAnswer:
     """Keep a file for a day, to be asked as a batch; its content says what it is, not its name."""
     settings, shelf = context.settings, Shelf(context.store)
@@ -44,10 +47,11 @@ async def bring_file(
         message = f"{settings.tenant_uploads} files are kept, as many as you may have; they go by themselves"
         raise ServiceError(429, message, headers=again(HOUR))
     content = await file.read()
-    name = plain_name(file.filename, await in_thread(kind_of, content, settings))
+    ending, content = await in_thread(taken, content, settings, encoding, visible)
+    name = plain_name(file.filename, ending)
     payload = {"name": name, "content": content, "most": settings.upload_shown}
     try:
-        told = await context.files.ask(UPLOAD_TASK, payload)
+        told = await context.files.ask(asker_of(principal), UPLOAD_TASK, payload)
     except InputError as fault:
         fault.path = (FIELD,)
         raise
@@ -61,6 +65,7 @@ async def bring_file(
         size=kept.size,
         digest=kept.digest,
         expires=kept.expires,
+        reading=told["reading"],
         header=told["header"],
         rows=[FirstRow(**row) for row in told["rows"]],
     )
@@ -71,7 +76,7 @@ async def check_batch(asked: BatchBody, principal: Reader, context: Context) -> 
     """Tell how a table is understood, and which of its rows cannot be asked; of a long one the first rows."""
     sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
     payload = {"request": asked, "sources": sources}
-    told = await context.files.ask(CHECK_ROWS_TASK, payload)
+    told = await context.files.ask(asker_of(principal), CHECK_ROWS_TASK, payload)
     return BatchCheck.model_validate(told)
 
 

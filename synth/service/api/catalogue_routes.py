@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.errors import InputError
+from synth.jobs.accounts import Principal
 from synth.jobs.engine_tasks import PART_TABLE_TASK, TABLE_TEXT_TASK
 from synth.jobs.models import Catalogue
 from synth.jobs.shelf import NAME, Shelf, text_of
@@ -22,6 +23,7 @@ from synth.service.api.schemas import (
 from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, not_found
+from synth.service.small_work import asker_of
 from synth.tables.delimited_text import delimited_text
 
 router = APIRouter(prefix=API, tags=["catalogues"])
@@ -53,9 +55,9 @@ async def add_catalogue(
         right = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
         raise InputError("name", asked.name, right, ("name",))
     table = asked.table or asked.name
-    csv = await _text(asked, principal.tenant, context)
+    csv = await _text(asked, principal, context)
     payload = {"name": asked.name, "table": table, "csv": csv, "schema": asked.schema_}
-    told = await context.files.ask(PART_TABLE_TASK, payload)
+    told = await context.files.ask(asker_of(principal), PART_TABLE_TASK, payload)
     shelf = Shelf(context.store)
     added, is_new = await in_thread(
         shelf.add_catalogue, principal.tenant, asked.name, table, csv, asked.schema_, told["rows"], asked.note
@@ -69,7 +71,7 @@ async def add_catalogue(
     return BroughtCatalogue(**_entry(added).model_dump(), **understood)
 
 
-async def _text(asked: CatalogueRequest, tenant: int, context: ServiceContext) -> str:
+async def _text(asked: CatalogueRequest, principal: Principal, context: ServiceContext) -> str:
     """Return the rows that are brought, as text.
 
     Raises
@@ -82,12 +84,12 @@ async def _text(asked: CatalogueRequest, tenant: int, context: ServiceContext) -
         raise InputError("csv", got, "the rows as text, or upload with the id of a file that was brought", ("csv",))
     if not asked.upload:
         return asked.csv
-    kept = await in_thread(Shelf(context.store).upload, tenant, asked.upload)
+    kept = await in_thread(Shelf(context.store).upload, principal.tenant, asked.upload)
     if kept is None:
         raise InputError("upload", asked.upload, "the id of a file that was brought and is still kept", ("upload",))
     payload = {"name": kept.name, "content": kept.content, "sheet": asked.sheet}
     try:
-        return str(await context.files.ask(TABLE_TEXT_TASK, payload))
+        return str(await context.files.ask(asker_of(principal), TABLE_TEXT_TASK, payload))
     except InputError as fault:
         fault.path = ("upload",)
         raise

@@ -67,6 +67,8 @@ async def tail(context: ServiceContext) -> None:
 
 
 async def _round(context: ServiceContext, hub: EventHub) -> None:
+    if principals := hub.principals():
+        hub.shut_out(await context.read(context.accounts.lapsed, principals))
     jobs = hub.listened()
     hub.tell(jobs, *await context.read(hub.read, jobs))
 
@@ -92,7 +94,7 @@ class EventStream(StreamingResponse):
 async def job_events(
     request: Request, found: OwnJob, principal: Reader, context: Context, last_event_id: LastEventId = None
 ) -> EventStream:
-    """Tell how a job stands and what happens to it, until it has ended."""
+    """Tell how a job stands and what happens to it, until it has ended or the token has."""
     return _stream(request, context, principal, [found.id], last_event_id)
 
 
@@ -121,7 +123,7 @@ def _stream(
 ) -> EventStream:
     if context.ending.is_set():
         raise ServiceError(503, "the server is ending; please come again", headers=again(context.settings.retry_after))
-    listener = context.hub.listen(jobs, (principal.tenant, principal.token))
+    listener = context.hub.listen(jobs, (principal.tenant, principal.token), principal)
     if listener is None:
         most = context.settings.streams
         raise ServiceError(

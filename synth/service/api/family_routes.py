@@ -7,8 +7,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Path, Query, Request, Response
 
 from synth.errors import InputError
+from synth.jobs.accounts import Principal
 from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
 from synth.jobs.shelf import Shelf
+from synth.plugins import family_names
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.schemas import (
     EXAMPLES,
@@ -18,47 +20,38 @@ from synth.service.api.schemas import (
     FamilyList,
 )
 from synth.service.auth import Reader
+from synth.service.code_facts import declaration_asked
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import not_found
+from synth.service.small_work import asker_of
 from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["families"])
 OPTIONS = "such as lubrication:dry,guide_model:cz"
 
 
-async def remembered(context: ServiceContext, key: tuple[Any, ...], task: str, payload: dict[str, Any]) -> Any:
-    """Return what depends on the code alone; of what was asked last."""
-    found = context.declared.get(key)
-    if found is None:
-        found = await context.small.ask(task, payload)
-        while len(context.declared) >= context.settings.remembered:
-            context.declared.pop(next(iter(context.declared)))
-        context.declared[key] = found
-    return found
-
-
-async def must_be_family(context: ServiceContext, name: str) -> None:
+def must_be_family(name: str) -> None:
     """Refuse the name of a family that there is not.
 
     Raises
     ------
     InputError
     """
-    known = [family["name"] for family in (await remembered(context, (FAMILIES_TASK,), FAMILIES_TASK, {}))["families"]]
+    known = family_names()
     if name not in known:
         raise InputError("family", name, f"one of {', '.join(known)}", ("family",))
 
 
-async def listed(request: Request, context: ServiceContext, task: str, name: str) -> Response:
+async def listed(request: Request, context: ServiceContext, principal: Principal, task: str, name: str) -> Response:
     """Answer with a list that depends on the code alone: what a task tells under a name."""
-    found = await remembered(context, (task,), task, {})
+    found = await context.facts.get(asker_of(principal), task)
     return tagged_json(request, {name: found[name]}, found["code"])
 
 
 @router.get("/families", response_model=FamilyList, responses=NOT_MODIFIED, summary="The families")
 async def list_families(request: Request, principal: Reader, context: Context) -> Response:
     """Tell which families there are, with their options and the names of their examples."""
-    return await listed(request, context, FAMILIES_TASK, "families")
+    return await listed(request, context, principal, FAMILIES_TASK, "families")
 
 
 @router.get(
@@ -76,10 +69,9 @@ async def read_family(
 ) -> Response:
     """Tell what a form has to show: requirements, options, parts and objectives, with units, ranges and sources."""
     chosen = read_options(options)
-    key = (DECLARATION_TASK, name, *sorted(chosen.items()))
-    found = await remembered(context, key, DECLARATION_TASK, {"family": name, "options": chosen})
-    if found["declaration"] is None:
+    if name not in family_names():
         raise not_found()
+    found = await context.facts.get(asker_of(principal), DECLARATION_TASK, declaration_asked(name, chosen))
     return tagged_json(request, found["declaration"], found["code"])
 
 
@@ -110,7 +102,7 @@ def read_options(stated: str | None) -> dict[str, str]:
 @router.get("/examples", response_model=ExampleList, responses=NOT_MODIFIED, summary="The examples")
 async def list_examples(request: Request, principal: Reader, context: Context) -> Response:
     """Give the examples of all families: specs to begin with."""
-    return await listed(request, context, EXAMPLES_TASK, "examples")
+    return await listed(request, context, principal, EXAMPLES_TASK, "examples")
 
 
 @router.post("/check", summary="Check a spec")
@@ -123,7 +115,7 @@ async def check(
 
     What is wrong in it is the answer, not a refusal.
     """
-    return CheckAnswer.model_validate(await _asked(context, principal.tenant, CHECK_TASK, spec))
+    return CheckAnswer.model_validate(await _asked(context, principal, CHECK_TASK, spec))
 
 
 @router.post("/evaluate", summary="Evaluate a design", response_model=dict[str, Any])
@@ -133,10 +125,10 @@ async def evaluate(
     context: Context,
 ) -> dict[str, Any]:
     """Compute one design that is stated with its sizes and parts: a spec with `values`."""
-    found: dict[str, Any] = await _asked(context, principal.tenant, EVALUATE_TASK, design)
+    found: dict[str, Any] = await _asked(context, principal, EVALUATE_TASK, design)
     return found
 
 
-async def _asked(context: ServiceContext, tenant: int, task: str, asked: dict[str, Any]) -> Any:
-    sources = await in_thread(Shelf(context.store).sources, tenant, asked)
-    return await context.small.ask(task, {"request": asked, "sources": sources})
+async def _asked(context: ServiceContext, principal: Principal, task: str, asked: dict[str, Any]) -> Any:
+    sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
+    return await context.small.ask(asker_of(principal), task, {"request": asked, "sources": sources})

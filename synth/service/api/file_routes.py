@@ -13,6 +13,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.csv_style import csv_style
+from synth.jobs.accounts import Principal
 from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
 from synth.jobs.job_table import BATCH, LIVE
 from synth.jobs.kinds.contract import MEDIA, Record
@@ -25,6 +26,7 @@ from synth.service.api.schemas import FileAnswer, FileList
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import not_found
+from synth.service.small_work import asker_of
 
 router = APIRouter(prefix=API, tags=["results"])
 CSV = ".csv"
@@ -46,17 +48,20 @@ async def list_files(request: Request, found: OwnJob, principal: Reader, context
     place = job_place(request, found.id)
     sizes: dict[str, int | None] = {}
     if found.kind == BATCH:
-        sizes = await _files(context, found, {}) if found.rows else {}
+        sizes = await _files(context, principal, found, {}) if found.rows else {}
     elif found.state not in LIVE:
         kept = await in_thread(context.store.records, found.id)
-        sizes = await _files(context, found, {name: record.content for name, record in kept.items()})
+        sizes = await _files(context, principal, found, {name: record.content for name, record in kept.items()})
     return FileList(
         files=[FileAnswer(name=name, size=size, href=f"{place}/files/{quote(name)}") for name, size in sizes.items()]
     )
 
 
-async def _files(context: ServiceContext, job: Job, records: dict[str, bytes]) -> dict[str, int | None]:
-    found: dict[str, int | None] = await context.small.ask(FILES_TASK, {"kind": job.kind, "records": records})
+async def _files(
+    context: ServiceContext, principal: Principal, job: Job, records: dict[str, bytes]
+) -> dict[str, int | None]:
+    payload = {"kind": job.kind, "records": records}
+    found: dict[str, int | None] = await context.small.ask(asker_of(principal), FILES_TASK, payload)
     return found
 
 
@@ -87,9 +92,9 @@ async def read_file(
     options: dict[str, Any] = {key: value for key, value in (("length", length), ("full", full)) if value is not None}
     etag = _tag(found, name, {**options, "raw": raw, "csv": style})
     kept = {} if found.kind == BATCH else await in_thread(context.store.records, found.id)
-    if found.state not in LIVE and name in await _known(context, found, kept) and knows(request, etag):
+    if found.state not in LIVE and name in await _known(context, principal, found, kept) and knows(request, etag):
         return Response(status_code=304, headers={"ETag": etag})
-    record = await _rendered(context, found, kept, name, options)
+    record = await _rendered(context, principal, found, kept, name, options)
     content = as_brought(record.content) if raw and name.endswith(CSV) else record.content
     if name.endswith(CSV) and style != "en":
         content = csv_style(style).text(content.decode()).encode()
@@ -100,23 +105,26 @@ async def read_file(
     return Response(content, media_type=record.media, headers=headers)
 
 
-async def _known(context: ServiceContext, job: Job, kept: dict[str, Record]) -> dict[str, int | None]:
-    return await _files(context, job, {name: record.content for name, record in kept.items()})
+async def _known(
+    context: ServiceContext, principal: Principal, job: Job, kept: dict[str, Record]
+) -> dict[str, int | None]:
+    return await _files(context, principal, job, {name: record.content for name, record in kept.items()})
 
 
 async def _rendered(
-    context: ServiceContext, job: Job, kept: dict[str, Record], name: str, options: dict[str, Any]
+    context: ServiceContext, principal: Principal, job: Job, kept: dict[str, Record], name: str, options: dict[str, Any]
 ) -> Record:
     sources = await in_thread(Shelf(context.store).sources, job.tenant, job.request)
     payload = {
         "job": job.id,
         "kind": job.kind,
+        "updated": job.updated,  # a late answer is none to what is asked after the job went on
         "records": {own: record.content for own, record in kept.items()},
         "name": name,
         "options": options,
         "sources": sources,
     }
-    found: Record | None = await context.files.ask(RENDER_TASK, payload)
+    found: Record | None = await context.files.ask(asker_of(principal), RENDER_TASK, payload)
     if found is None:
         raise not_found()
     return found

@@ -24,6 +24,7 @@ from synth.service.api.asking import (
     Word,
     cursor_of,
     entries,
+    note_use,
     place_of,
     tag_of,
     tagged,
@@ -36,12 +37,14 @@ from synth.service.auth import Reader, Submitter
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
+from synth.service.small_work import asker_of
 from synth.service.wording import PRINTED, WORD
 
 router = APIRouter(prefix=API, tags=["jobs"])
 YAML = "application/yaml"
 RESUMABLE = "cancelled, failed or stopped"
 PLACE = {"Location": {"description": "Where the job is.", "schema": {"type": "string"}}}
+NEEDED: dict[int | str, dict[str, Any]] = {409: {"description": "It is kept for good, or an open job refers to it."}}
 SUBMITTED: dict[int | str, dict[str, Any]] = {
     200: {
         "model": JobAnswer,
@@ -70,6 +73,7 @@ async def submitted(
     job = await in_thread(context.store.job, name, principal.tenant)
     if job is None:  # it was removed at the same time
         raise not_found()
+    await note_use(context, job)
     return Response(job_bytes(request, job), 202 if made else 200, {"Location": job_place(request, name)}, JSON)
 
 
@@ -109,7 +113,7 @@ async def list_jobs(
     if kind is not None:
         kind_named(kind)
     if family is not None:
-        await must_be_family(context, family)
+        must_be_family(family)
     states = tuple(state or ())
     most = entries(context, limit)
     scope = [principal.tenant, list(states), kind, family, q, parent, follows, pinned]
@@ -174,7 +178,7 @@ async def resume_job(request: Request, found: OwnJob, principal: Submitter, cont
             409, "only the command line, or the script, that has made this job can go on with it", "not_here"
         )
     sources = await in_thread(Shelf(context.store).sources, principal.tenant, found.request)
-    told = await context.small.ask(CHANGED_TASK, {"content": found.content, "sources": sources})
+    told = await context.small.ask(asker_of(principal), CHANGED_TASK, {"content": found.content, "sources": sources})
     if told["changed"]:
         changed = " and ".join(told["changed"])
         raise ServiceError(409, f"not what it was when the job was begun: {changed}; please ask it anew", "changed")
@@ -183,11 +187,21 @@ async def resume_job(request: Request, found: OwnJob, principal: Submitter, cont
     return await _again(request, context, found.id, principal)
 
 
-@router.delete("/jobs/{job}", status_code=204, summary="Remove a job")
+@router.delete("/jobs/{job}", status_code=204, responses=NEEDED, summary="Remove a job")
 async def remove_job(found: OwnJob, principal: Submitter, context: Context) -> None:
-    """Remove a job with everything that belongs to it; one that runs is cancelled first."""
-    await in_thread(context.store.cancel, found.id)
-    await in_thread(context.store.delete, found.id)
+    """Remove a job with everything that belongs to it; one that runs is cancelled first.
+
+    One that is kept for good, or that an open job refers to, stays.
+    """
+    store = context.store
+    if found.pinned:
+        raise ServiceError(409, "the job is kept for good; take that back first: PATCH it with pinned false", "pinned")
+    waiting = await in_thread(store.waits_for, found.id)
+    if waiting is not None:
+        raise ServiceError(409, f"the job {waiting} needs it; wait for that to end, or cancel it", "in_use")
+    await in_thread(store.cancel, found.id)
+    if not await in_thread(store.delete, found.id) and await in_thread(store.job, found.id) is not None:
+        raise ServiceError(409, "the job was pinned just now", "pinned")
 
 
 @router.get(

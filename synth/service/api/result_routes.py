@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from synth.jobs.accounts import Principal
 from synth.jobs.engine_tasks import DESIGNS_TASK, RENDER_TASK
 from synth.jobs.job_table import BATCH
 from synth.jobs.kinds import kind
@@ -33,12 +34,13 @@ from synth.service.api.schemas import ColumnAnswer, DesignPage, RowAnswer, RowPa
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, not_found
+from synth.service.small_work import asker_of
 from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["results"])
 LARGEST_LINE = 2**53
 NO_RESULT = "the job has ended without a result"
-RowStatus = Literal["optimal", "feasible", "infeasible", "not_solved", "refused", "failed", "bad_input"]
+RowStatus = Literal["optimal", "feasible", "infeasible", "not_found", "not_solved", "refused", "failed", "bad_input"]
 
 
 @router.get(
@@ -52,7 +54,7 @@ async def read_result(request: Request, found: OwnJob, principal: Reader, contex
     refuse_live(found)
     name = kind(found.kind).record
     if found.kind == BATCH:
-        record = await _summary_of_batch(context, found, name)
+        record = await _summary_of_batch(context, principal, found, name)
         return tagged(request, record.content, JSON, f'"{record.digest}"')
     packed = await in_thread(packed_record, context.store, found.id, name)
     if packed is None:
@@ -64,12 +66,18 @@ async def read_result(request: Request, found: OwnJob, principal: Reader, contex
     return tagged(request, gzip.decompress(packed.packed), packed.media, f'"{packed.digest}"', vary)
 
 
-async def _summary_of_batch(context: ServiceContext, job: Job, name: str) -> Record:
+async def _summary_of_batch(context: ServiceContext, principal: Principal, job: Job, name: str) -> Record:
     if not job.rows:
         raise not_found(NO_RESULT)
     url = context.store.engine.url.render_as_string(hide_password=False)
-    payload = {"job": job.id, "kind": job.kind, "name": name, "sources": Sources(database=url)}
-    found: Record = await context.files.ask(RENDER_TASK, payload)
+    payload = {
+        "job": job.id,
+        "kind": job.kind,
+        "updated": job.updated,
+        "name": name,
+        "sources": Sources(database=url),
+    }
+    found: Record = await context.files.ask(asker_of(principal), RENDER_TASK, payload)
     return found
 
 
@@ -122,7 +130,7 @@ async def list_designs(
         "offset": offset,
         "most": most,
     }
-    page = await context.small.ask(DESIGNS_TASK, payload)
+    page = await context.small.ask(asker_of(principal), DESIGNS_TASK, payload)
     names = [column["name"] for column in page["columns"]]
     more = offset + most < page["total"]
     return DesignPage(

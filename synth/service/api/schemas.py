@@ -11,12 +11,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from synth.jobs.kinds import KINDS
 from synth.service.api.asking import LONGEST
 from synth.service.errors import Problem
-from synth.service.wording import TITLE, WORD
+from synth.service.wording import LINE, TITLE, WORD
 
 # Bodies to begin with. They name families, which the programs do not.
 EXAMPLES: dict[str, Any] = json.loads((files("synth.service.api") / "examples.json").read_text(encoding="utf-8"))
 
 Words = Annotated[str, Field(max_length=LONGEST, pattern=WORD)]
+Line = Annotated[str, Field(max_length=LONGEST, pattern=LINE)]
 Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=TITLE)]
 
 
@@ -153,7 +154,9 @@ class JobAnswer(BaseModel):
     kind: str
     title: str
     state: str = Field(json_schema_extra={"enum": ["open", "running", "done", "cancelled", "failed", "stopped"]})
-    outcome: str | None = Field(description="How its question stands: optimal, feasible, infeasible, not_solved.")
+    outcome: str | None = Field(
+        description="How its question stands: optimal, feasible, infeasible, not_found, not_solved."
+    )
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None
     error: JobFault | None
@@ -282,6 +285,7 @@ class UploadAnswer(BaseModel):
     size: int
     digest: str
     expires: float
+    reading: str = Field(description="How it is read, if not as is expected: encoding, sheet, hidden rows, ...")
     header: list[str]
     rows: list[FirstRow]
 
@@ -328,7 +332,7 @@ class CatalogueRequest(BaseModel):
     upload: str = Field("", description="Instead of text: the id of a file, CSV in any encoding or an .xlsx workbook.")
     sheet: Words = Field("", description="Which sheet of a workbook; by default the first with designations.")
     schema_: str = Field("", alias="schema", description="What its columns are, where the table is none of ours.")
-    note: Words = ""
+    note: Line = ""
 
 
 class CatalogueEntry(BaseModel):

@@ -15,8 +15,9 @@ from synth.jobs.shelf import Shelf
 from synth.service.api.presenting import FAMILIES, STATED_ROWS
 from synth.service.context import ServiceContext, in_thread
 from synth.service.settings import ServiceSettings
+from synth.service.small_work import asker_of
+from synth.text.numbers import typed_number
 
-DAY = 86400.0  # s
 TIME_LIMIT, POINTS = "time_limit", "points"
 
 
@@ -62,7 +63,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
     sources = await in_thread(Shelf(store).sources, principal.tenant, asked)
     payload = {"kind": chosen.name, "request": asked, "sources": sources}
     pool = context.files if sources.files or chosen.name == BATCH else context.small
-    read = await pool.ask(READ_TASK, payload)
+    read = await pool.ask(asker_of(principal), READ_TASK, payload)
     refuse_large(read, settings, principal.limits.rows)
     own = 0 if read["bulk"] else 1
     new = NewJob(
@@ -79,7 +80,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
         body=body,
         parent=wish.parent,
         seconds_limit=limit,
-        keep=DAY * settings.keep_days if settings.keep_days else None,
+        keep=settings.keep_seconds,
         kept=read["kept"],
     )
     return await in_thread(store.submit, new)
@@ -94,7 +95,7 @@ def seconds_limit(asked: float | None, most: float | None) -> float | None:
         More is asked for than the tenant may have.
     """
     if asked is not None and most is not None and asked > most:
-        raise InputError("seconds_limit", asked, f"at most {most:g} s", ("seconds_limit",))
+        raise InputError("seconds_limit", asked, f"at most {typed_number(most)} s", ("seconds_limit",))
     return most if asked is None else asked
 
 
@@ -110,7 +111,7 @@ def in_time(chosen: Kind, read: Mapping[str, Any], stated: Mapping[str, Any], li
         return dict(read)
     own = read.get(TIME_LIMIT)
     if own is not None and own > limit and stated.get(TIME_LIMIT) is not None:
-        raise InputError(f"request: {TIME_LIMIT}", own, f"at most {limit:g} s", (TIME_LIMIT,))
+        raise InputError(f"request: {TIME_LIMIT}", own, f"at most {typed_number(limit)} s", (TIME_LIMIT,))
     return {**read, TIME_LIMIT: limit if own is None else min(own, limit)}
 
 

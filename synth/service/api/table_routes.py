@@ -7,12 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel
 
-from synth.jobs.engine_tasks import TABLE_TASK, TABLES_TASK
+from synth.jobs.engine_tasks import TABLES_TASK
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
-from synth.service.api.family_routes import listed, remembered
+from synth.service.api.family_routes import listed
 from synth.service.auth import Reader
 from synth.service.context import API, Context
 from synth.service.errors import not_found
+from synth.service.small_work import asker_of
 from synth.service.wording import WORD
 
 router = APIRouter(prefix=API, tags=["catalogues"])
@@ -55,7 +56,7 @@ class TableAnswer(BaseModel):
 @router.get("/tables", response_model=TableList, responses=NOT_MODIFIED, summary="Tables of the families")
 async def list_tables(request: Request, principal: Reader, context: Context) -> Response:
     """Tell which part tables there are before anybody brings one, and which families take parts from them."""
-    return await listed(request, context, TABLES_TASK, "tables")
+    return await listed(request, context, principal, TABLES_TASK, "tables")
 
 
 @router.get("/tables/{name}", response_model=TableAnswer, responses=NOT_MODIFIED, summary="One of these tables")
@@ -66,8 +67,7 @@ async def read_table(
     context: Context,
 ) -> Response:
     """Give a part table with its units, and with source and confidence of each row."""
-    known = await remembered(context, (TABLES_TASK,), TABLES_TASK, {})
-    if name not in {one["name"] for one in known["tables"]}:
+    found = await context.facts.get(asker_of(principal), TABLES_TASK)
+    if name not in found["contents"]:
         raise not_found()
-    found = await remembered(context, (TABLE_TASK, name), TABLE_TASK, {"table": name})
-    return tagged_json(request, found["table"], found["code"])
+    return tagged_json(request, found["contents"][name], found["code"])

@@ -10,7 +10,8 @@ from pathlib import PurePosixPath
 from synth.errors import InputError
 from synth.service.errors import ServiceError
 from synth.service.settings import ServiceSettings
-from synth.tables.delimited_text import decoded
+from synth.tables.encodings import decoded, known_encoding
+from synth.tables.workbook import without_hidden_rows
 
 ZIP = b"PK"
 WORKBOOK = "xl/workbook.xml"  # in every file of Excel
@@ -18,6 +19,32 @@ MACROS = "vbaproject.bin"
 LONGEST_NAME = 100  # of a file, without its ending
 FIELD = "file"
 CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x1f]")  # in no text, whatever its encoding
+
+
+def taken(content: bytes, settings: ServiceSettings, encoding: str = "", visible: bool = False) -> tuple[str, bytes]:
+    """Return the ending that a file should have by its content, ``.csv`` or ``.xlsx``, and what is kept of it.
+
+    Parameters
+    ----------
+    content : bytes
+    settings : ServiceSettings
+    encoding : str
+        Of a CSV file, where it is stated: it is kept in UTF-8.
+    visible : bool
+        Whether hidden and filtered rows of a workbook are left out.
+
+    Raises
+    ------
+    ServiceError
+        415: it is neither.
+    InputError
+        It is a workbook that would be too large when it is unpacked, or cannot be read; or the encoding is none.
+    """
+    if encoding and not content.startswith(ZIP):
+        content = decoded(content, FIELD, known_encoding(encoding, "encoding"))[0].encode()
+    ending = kind_of(content, settings)
+    hidden = visible and ending == ".xlsx"
+    return ending, without_hidden_rows(content, FIELD, FIELD) if hidden else content
 
 
 def kind_of(content: bytes, settings: ServiceSettings) -> str:

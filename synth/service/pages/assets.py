@@ -14,6 +14,7 @@ from fastapi import APIRouter, Request, Response
 
 from synth.service.api.asking import tag_of, tagged
 from synth.service.errors import not_found
+from synth.ui import ui_files
 
 router = APIRouter()
 MEDIA = MappingProxyType(
@@ -38,6 +39,7 @@ class Asset:
 def assets() -> Mapping[str, Asset]:
     """Return all files that pages load, by their names below :func:`static_place`."""
     texts = {path.name: path.read_bytes() for path in (files("synth.service.pages") / "static").iterdir()}
+    texts |= {name: text.encode() for name, text in ui_files().items()}
     texts |= {f"{EXPLORER}/{name}": text.encode() for name, text in _explorer().items()}
     return MappingProxyType(
         {

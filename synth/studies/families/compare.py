@@ -40,11 +40,12 @@ from synth.studies.families.requirement_sheet import (
     refuse_all,
     sheet_of,
 )
-from synth.study_limits import COMPARING
+from synth.study_limits import COMPARING, ComparisonLimits
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING, Tuning
 
 KINDS = ("heuristic", "exhaustive", "global")
+LOOKS = 2  # at a family: the first, and the one to the end
 
 
 def compare(
@@ -66,8 +67,12 @@ def compare(
     options: Mapping[str, str] | None = None,
     finished: Callable[[str, ParetoFront], object] | None = None,
     robust: Mapping[str, Any] | None = None,
+    serving: Callable[[Sequence[str]], object] | None = None,
 ) -> Comparison:
     """Search all families that can serve one requirement sheet, and rank their designs on one front.
+
+    Each is searched for a few seconds first, the simplest before the others; those that are not finished by then are
+    searched to the end afterwards. What is listed does not depend on which they are.
 
     Parameters
     ----------
@@ -87,10 +92,13 @@ def compare(
     options : mapping, optional
         Options of every family.
     finished : callable, optional
-        Called with the label and the front of each family as soon as it is searched.
+        Called with the label and the front of each family as soon as it is searched; again where it is searched to the
+        end after a first look.
     robust : mapping, optional
         What scatters, as for ``synthesize``: designs of all families stand it, or are rated. Under a family "none" in
         place of a range tells that it does not scatter there.
+    serving : callable, optional
+        Called with the labels of the families that can serve, in the order of the search, before it begins.
 
     Returns
     -------
@@ -110,7 +118,7 @@ def compare(
     chosen = common_objectives(found, objectives)
     refuse_all(found, sheet)
     ranked = {"objectives": chosen, "weights": weights, "grid": grid}
-    return _Comparing(found, sheet, ranked, tables, settings, progress, objectives is not None).run(finished)
+    return _Comparing(found, sheet, ranked, tables, settings, progress, objectives is not None).run(finished, serving)
 
 
 class _Comparing:
@@ -126,9 +134,10 @@ class _Comparing:
         progress: Progress | None,
         chosen: bool,
         tuning: Tuning = TUNING,
+        limits: ComparisonLimits = COMPARING,
     ) -> None:
         self.chosen = chosen  # whether objectives were asked for by name
-        self.started, self.tuning = time.monotonic(), tuning
+        self.started, self.tuning, self.limits = time.monotonic(), tuning, limits
         self.found, self.sheet, self.ranked, self.tables = found, sheet, ranked, tables
         self.settings, self.progress = settings, progress
         limit = settings.time_limit
@@ -138,8 +147,14 @@ class _Comparing:
         self.interrupted = ""
         self.proven = True
 
-    def run(self, finished: Callable[[str, ParetoFront], object] | None) -> Comparison:
-        serving = [one for one in self.found if not one.misfits]
+    def run(
+        self,
+        finished: Callable[[str, ParetoFront], object] | None,
+        told: Callable[[Sequence[str]], object] | None = None,
+    ) -> Comparison:
+        serving = sorted((one for one in self.found if not one.misfits), key=Applicant.effort)
+        if told is not None:
+            told([one.label for one in serving])
         self._search_all(serving, finished)
         if len(self.faults) == len(serving):
             raise next(iter(self.faults.values()))
@@ -158,29 +173,36 @@ class _Comparing:
     # -- every family by itself ----------------------------------------------------------------
 
     def _search_all(self, serving: Sequence[Applicant], finished: Callable[[str, ParetoFront], object] | None) -> None:
-        for number, one in enumerate(serving):
-            if self.interrupted == "interrupted" or (self.interrupted and time.monotonic() > self.deadline):
-                break
-            try:
-                member = self._searched(one, number, len(serving))
-            except InputError as error:
-                self.faults[one.label] = error
-                continue
-            except KeyboardInterrupt:
-                self._stop("interrupted")
-                break
-            self.front.members.append(member)
-            if finished is not None:
-                finished(one.label, member.front)
-            if member.front.interrupted:
-                self._stop(member.front.interrupted)
+        """Look at every family for a while, then search those that are not finished to the end."""
+        members: dict[str, Competitor] = {}
+        for look, most in enumerate((self.limits.first_look, math.inf)):
+            open_still = [one for one in serving if one.label not in self.faults and not _done(members.get(one.label))]
+            for number, one in enumerate(open_still):
+                left = (self.deadline - time.monotonic()) / (len(open_still) - number)
+                if self.interrupted or (left <= 0 and (look or number)):
+                    break
+                done = (look + number / len(open_still)) / LOOKS
+                try:
+                    member = self._searched(one, min(most, left), done, 1 / len(open_still) / LOOKS)
+                except InputError as error:
+                    self.faults[one.label] = error
+                    continue
+                except KeyboardInterrupt:
+                    self._stop("interrupted")
+                    break
+                members[one.label] = member.with_what_it_had(members.get(one.label))
+                if finished is not None:
+                    finished(one.label, members[one.label].front)
+                if member.front.interrupted == "interrupted":
+                    self._stop("interrupted")
+        self.front.members += [members[one.label] for one in self.found if one.label in members]
+        if not self.interrupted and not all(map(_done, self.front.members)):
+            self._stop("time limit")
 
-    def _searched(self, one: Applicant, number: int, count: int) -> Competitor:
-        """Search one family, in its share of the time that is left."""
-        limit = None
-        if math.isfinite(self.deadline):
-            limit = max((self.deadline - time.monotonic()) / (count - number), LEAST_SECONDS)
-        shown, kept = self._shown(one.label, number, count), list[KeptQuestion]()
+    def _searched(self, one: Applicant, seconds: float, done: float, share: float) -> Competitor:
+        """Search one family for some seconds, or to the end; ``done`` and ``share`` are of all that is to be done."""
+        limit = max(seconds, LEAST_SECONDS) if math.isfinite(seconds) else None
+        shown, kept = self._shown(one.label, done, share), list[KeptQuestion]()
 
         request, rater = one.request(self.sheet, self.tables, **self.ranked), None
 
@@ -196,14 +218,14 @@ class _Comparing:
         state = next(k.state for k in reversed(kept) if k.state is not None)
         return Competitor(one, state, front, list(front.designs), np.zeros(len(self.front.objectives)), rater)
 
-    def _shown(self, label: str, number: int, count: int) -> Progress | None:
+    def _shown(self, label: str, done: float, share: float) -> Progress | None:
         progress = self.progress
         if progress is None:
             return None
 
         def show(state: Mapping[str, Any]) -> None:
-            done = (number + float(state.get("done") or 0.0)) / count
-            progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done})
+            own = float(state.get("done") or 0.0)
+            progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done + share * own})
 
         return show
 
@@ -214,7 +236,7 @@ class _Comparing:
         able = [m for m in self.front.members if m.designs or m.front.status is Status.FEASIBLE]
         if len(able) < 2 or len(self.front.objectives) < 2 or self.interrupted:
             return
-        for _ in range(COMPARING.rounds):
+        for _ in range(self.limits.rounds):
             quiet = closed = True
             for member in able:
                 listed, _ = self.front.listed()
@@ -302,6 +324,11 @@ class _Comparing:
                 least = max(*own, *(float(m.amounts[k]) for m in self.front.members))
                 result[name] = rounded_up(least, unit)
         return result
+
+
+def _done(member: Competitor | None) -> bool:
+    """Tell whether a family has been searched to the end."""
+    return member is not None and not member.front.interrupted
 
 
 def _plain(value: Any) -> Any:

@@ -12,13 +12,14 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
-from synth.plain_text import percent
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
+from synth.results.assembly import without_design
 from synth.results.certificate import all_of, none_of
 from synth.results.drawings import front_picture
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
-from synth.units import format_quantity
+from synth.text.numbers import gap_text
+from synth.units import typed_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,9 +31,10 @@ COMPARISON_FORMAT = 1  # of comparison.json
 class FamilyOutcome:
     """How one family came out.
 
-    ``outcome`` is listed (it has designs on the common front), beaten, infeasible, refused (it does not understand the
-    sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why. ``front`` is its own front, where it
-    was searched, ``listed`` how many of its designs are on the common one, ``meanings`` what the objectives mean in it,
+    ``outcome`` is listed (it has designs on the common front), beaten, infeasible (proven), not_found (not proven),
+    refused (it does not understand the sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why.
+    ``front`` is its own front, where it was searched, ``listed`` how many of its designs are on the common one,
+    ``meanings`` what the objectives mean in it,
     ``offers`` its own objectives, and whether they count where none is named; nothing where some were named.
     """
 
@@ -68,7 +70,7 @@ class Comparison:
         """Return how the comparison stands, as a front does."""
         if self.designs:
             return Status.OPTIMAL if self.certificate.kind == "global" else Status.FEASIBLE
-        return Status.NOT_SOLVED if self.interrupted else Status.INFEASIBLE
+        return without_design(self.certificate, self.interrupted)
 
     @property
     def not_compared(self) -> list[str]:
@@ -91,7 +93,7 @@ class Comparison:
         if self.certificate.kind == "global" and self.designs:
             return (
                 f"proven: over {all_of(count)} of parts and counts of {those} searched no design improves one "
-                f"listed here by more than {percent(self.certificate.gap or 0)} in every objective"
+                f"listed here by more than {gap_text(self.certificate.gap or 0)} in every objective"
                 f"{self.certificate.amounts()}"
             )
         if self.certificate.kind == "global":
@@ -114,8 +116,8 @@ class Comparison:
         columns, rows = self._family_table()
         return pd.DataFrame(rows, columns=columns)
 
-    def files(self) -> dict[str, str]:
-        """Return what ``save`` writes into its folder: file name -> text."""
+    def files(self, folder: Path | None = None) -> dict[str, str]:
+        """Return what ``save`` writes into its folder: file name -> text; ``folder``: where that will stand."""
         width = max(2, len(str(len(self.designs))))
         found = {
             "designs.csv": csv_text(*self._table()),
@@ -125,16 +127,17 @@ class Comparison:
         if any(d.robust for d in self.designs):
             found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
-            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
+            own = design if folder is None else design.placed(folder)
+            found[f"design_{design.rank:0{width}d}.yaml"] = own.yaml()
         return found
 
-    def family_files(self) -> dict[str, str]:
-        """Return the files of each family's own front, in a folder of its name."""
+    def family_files(self, folder: Path | None = None) -> dict[str, str]:
+        """Return the files of each family's own front, in a folder of its name; ``folder``: where that will stand."""
         return {
             f"{outcome.family}/{name}": text
             for outcome in self.outcomes
             if outcome.front is not None
-            for name, text in outcome.front.files().items()
+            for name, text in outcome.front.files(None if folder is None else folder / outcome.family).items()
         }
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
@@ -142,7 +145,11 @@ class Comparison:
 
         What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_result(folder, csv.files({**self.files(), **self.family_files()}), FRONT, bool(self.interrupted))
+
+        def files(place: Path) -> dict[str, str]:
+            return csv.files({**self.files(place), **self.family_files(place)})
+
+        return save_result(folder, files, FRONT, bool(self.interrupted))
 
     def svg(self) -> str:
         """Return the common front drawn as an SVG file; nothing where it has no two designs or objectives."""
@@ -229,4 +236,4 @@ def best_value(front: ParetoFront | None, name: str, sense: str) -> str | None:
     if front is None or not front.designs:
         return None
     values = [d.values[name] for d in front.designs]
-    return format_quantity(min(values) if sense == "min" else max(values), front.frame.units[name])
+    return typed_quantity(min(values) if sense == "min" else max(values), front.frame.units[name])

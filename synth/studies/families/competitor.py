@@ -51,8 +51,15 @@ class Competitor:
         """Tell whether designs are missing that did not stand the range: others may have been left out for them."""
         return bool(self.front.statistics.get("robust", {}).get("taken_off"))
 
+    def with_what_it_had(self, before: Competitor | None) -> Competitor:
+        """Itself; where it was stopped, with the designs of an earlier search of the same question."""
+        if before is None or not self.front.interrupted:
+            return self
+        front = self.front if len(self.front.designs) >= len(before.front.designs) else before.front
+        return replace(self, front=front, designs=[*self.designs, *before.designs])
+
     def standing(self, designs: Sequence[Design], deadline: float) -> list[Design]:
-        """Return those of its designs that stand the range, if they must; rated, if anything scatters.
+        """Return its designs without those that fail within the range, if they must not; rated, if anything scatters.
 
         Raises
         ------
@@ -65,7 +72,7 @@ class Competitor:
         if stopped:
             raise Stopped(stopped)
         rated = [replace(d, frame=self.front.frame, robust=r) for d, r in zip(designs, ratings, strict=True)]
-        return [d for d in rated if d.robust["holds"] or self.rater.asked.mode == RATE]
+        return [d for d in rated if d.robust["holds"] is not False or self.rater.asked.mode == RATE]
 
 
 class KeptQuestion:

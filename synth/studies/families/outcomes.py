@@ -15,7 +15,7 @@ from synth.studies.families.common_front import CommonFront, beaten
 from synth.studies.families.comparison import FamilyOutcome
 from synth.studies.families.competitor import Competitor
 from synth.studies.families.requirement_sheet import Applicant
-from synth.units import format_quantity
+from synth.units import typed_quantity
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Outcomes:
         words = []
         for k, (name, sense) in enumerate(self.front.objectives.items()):
             mine, theirs = (
-                format_quantity(float(rows[:, k].min() * self.front.senses[k]), member.front.frame.units[name], 4)
+                typed_quantity(float(rows[:, k].min() * self.front.senses[k]), member.front.frame.units[name], 4)
                 for rows in (own, others)
             )
             words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {theirs}")
@@ -113,4 +113,4 @@ def _without_design(member: Competitor, told: FamilyOutcome) -> FamilyOutcome:
     nothing = NOTHING_STANDS if member.incomplete else "No design is feasible."
     explanation = member.front.explanation
     message = nothing if explanation is None else explanation.get("message", nothing)
-    return replace(told, outcome="infeasible", sentence=str(message))
+    return replace(told, outcome=member.front.status.value, sentence=str(message))

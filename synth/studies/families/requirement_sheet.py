@@ -7,7 +7,9 @@ that it does not understand makes it step back; nothing that was asked is overlo
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,10 +17,10 @@ from synth.declaration import Declaration
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
 from synth.model.problem import DesignProblem
-from synth.model.registry import families, load
+from synth.model.registry import every_declaration, every_family, load, skipping_faulty_families
 from synth.question import request, uncertainty
 from synth.question.catalogs import as_catalogs
-from synth.question.names import as_mapping
+from synth.question.names import as_mapping, refuse_power
 from synth.question.request import Request
 from synth.tables.catalogs import Catalogs
 from synth.units import parse_unit
@@ -50,6 +52,12 @@ class Applicant:
         """Return what scatters: by the sheet of all, and its own."""
         return {**sheet["robust"], **self.own["robust"]}
 
+    def effort(self) -> tuple[int, int]:
+        """Sizes and combinations of counts and choices that a search decides: the fewer, the sooner it is done."""
+        d = self.declaration
+        kinds = [*(len(c.values) for c in d.counts.values()), *(len(c.labels) for c in d.choices.values())]
+        return len(d.variables) + len(d.slots), math.prod(kinds)
+
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
         """Return what it is asked: the sheet of all and its own, and by what designs are ranked."""
         asked: dict[str, Any] = {key: {**sheet[key], **self.own[key]} for key in ("limits", "fix", "parts")}
@@ -72,11 +80,9 @@ def sheet_of(**given: Any) -> Sheet:
 def understood() -> dict[str, tuple[str, list[str]]]:
     """Return, per requirement that families understand in common, its unit and the registered families that do."""
     result: dict[str, tuple[str, list[str]]] = {}
-    for family in families():
-        problem = load(family)
-        declared = problem.model(frozenset(), as_catalogs(None)).declaration.requirements
+    for problem, declared in every_declaration(as_catalogs(None)):
         for name in problem.understands:
-            result.setdefault(name, (declared[name].unit, []))[1].append(family)
+            result.setdefault(name, (declared.requirements[name].unit, []))[1].append(problem.name)
     return dict(sorted(result.items(), key=lambda item: (-len(item[1][1]), item[0])))
 
 
@@ -95,14 +101,15 @@ def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
     InputError
         When a name means nothing to any family, or none can serve.
     """
-    entries: Sequence[Any] = families() if isinstance(asked, str) and asked == ANY else asked
+    every = isinstance(asked, str) and asked == ANY
+    entries: Sequence[Any] = [*every_family().values()] if every else asked
     if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence) or not entries:
         raise InputError("family", asked, f"'{ANY}', or a list of families", ("family",))
     if len(entries) > INPUT_LIMITS.families:
         raise InputError("family", f"{len(entries)} entries", f"at most {INPUT_LIMITS.families}", ("family",))
     found = []
     for k, entry in enumerate(entries):
-        with at("family", k):
+        with at("family", k), skipping_faulty_families() if every else nullcontext():
             found.append(_applicant(entry, sheet, catalogs))
     _tell_apart(found)
     _check_names(found, sheet)
@@ -163,6 +170,9 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
         for name in sheet[key]:
             if name in known:
                 continue
+            if key == "requirements":
+                common = (r for one in found for r in one.declaration.requirements.values() if r.name in known)
+                refuse_power(name, sheet[key][name], list(common))
             expected = f"a name that one of the families knows{_hint(name, known)}"
             if key in ("requirements", "robust") and any(name in one.declaration.names() for one in found):
                 expected = (
@@ -209,8 +219,7 @@ def _known(one: Applicant, key: str) -> Iterable[str]:
 
 
 def _check_tables(found: Sequence[Applicant], catalogs: Catalogs) -> None:
-    parts = [part for one in found for d in [one.declaration] for part in [*d.slots.values(), *d.rows.values()]]
-    used = {part.table for part in parts}
+    used = {table for one in found for table in one.declaration.tables()}
     for name in catalogs.added:
         if name not in used:
             right = f"a table that one of the families uses ({', '.join(sorted(used))})"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+from synth.feasibility import most_used
 from synth.results import Design
 from synth.studies.infeasibility.least_amount import Giving, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches
@@ -21,7 +24,7 @@ def irreducible_subset(search: RelaxedSearch, patches: Patches, nearest: Design 
         That keeps all limits if they are widened by least.
     """
     limits, first = search.question.limits, search.ways.first
-    near = [] if nearest is None else _tightest(patches.as_asked(nearest))
+    near = [] if nearest is None else most_used(patches.as_asked(nearest).utilisation)
     kept = [x for x in near if x in limits][:first]
     while True:
         found = search.least(Giving(give={}, kept=kept))
@@ -41,13 +44,7 @@ def irreducible_subset(search: RelaxedSearch, patches: Patches, nearest: Design 
     return tuple(x for x in limits if x in kept), proven
 
 
-def _tightest(design: Design) -> list[str]:
-    """Return the limits of a design, those that it uses most first."""
-    used = {name: x for name, x in design.utilisation.items() if x is not None}
-    return sorted(used, key=lambda name: -used[name])
-
-
 def _broken(design: Design) -> list[str]:
     """Return the limits that a design breaks, the worst first."""
-    missed = {name: r for name, r in design.residuals.items() if name in design.violated}
-    return sorted(missed, key=lambda name: -missed[name])
+    used = {name: design.utilisation[name] for name in design.violated}
+    return most_used({name: math.inf if x is None else x for name, x in used.items()})

@@ -18,7 +18,7 @@ from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.results.notebook import notebook_html
 from synth.study_limits import WAYS_OUT
-from synth.units import format_quantity, from_si, outward, parse_unit
+from synth.units import from_si, outward, parse_unit, written_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -248,4 +248,4 @@ def roundings(value: float, unit: str, up: bool) -> tuple[str, ...]:
 def as_given(si: float, unit: str) -> str:
     """Return what stands in a question, beside what is needed: with as many digits, whole parts in full."""
     whole = math.floor(math.log10(abs(shown))) + 1 if (shown := float(from_si(si, unit))) else 0
-    return format_quantity(si, unit, max(WAYS_OUT.digits, whole))
+    return written_quantity(si, unit, max(WAYS_OUT.digits, whole))

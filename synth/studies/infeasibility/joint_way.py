@@ -9,7 +9,6 @@ from typing import Any
 
 from synth.bounds.structure import classify
 from synth.model.constraint import SIGNS
-from synth.plain_text import percent
 from synth.question.ranges import declared_ranges
 from synth.question.spec_patch import patched
 from synth.results import Design
@@ -19,7 +18,8 @@ from synth.studies.infeasibility.least_amount import Giving, LeastAmount, Relaxe
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import LIMIT, REQUIREMENT
 from synth.studies.infeasibility.single_ways import PIN
-from synth.units import format_quantity
+from synth.text.numbers import percent
+from synth.units import typed_quantity
 
 
 def widened(patches: Patches, found: LeastAmount, design: Design) -> Relaxation:
@@ -135,7 +135,7 @@ class JointWay:
             value = design.values[pin.name]
             if not pin.low <= value <= pin.high:
                 end = pin.high if value > pin.high else pin.low
-                texts = (format_quantity(value, pin.unit, None),) * self.search.ways.further
+                texts = (typed_quantity(value, pin.unit, None),) * self.search.ways.further
                 shown, given = as_given(value, pin.unit), as_given(end, pin.unit)
                 changes.append(_Change(PIN, pin.name, pin.name, texts, given, shown))
         return changes

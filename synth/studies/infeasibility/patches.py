@@ -21,7 +21,7 @@ from synth.robust.counterpart import nominal, robust_counterpart
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
 from synth.studies.infeasibility.explanation import roundings
 from synth.studies.infeasibility.relaxation import AMOUNT
-from synth.units import format_quantity
+from synth.units import typed_quantity
 
 
 def chosen_in(design: Design, name: str) -> str:
@@ -54,7 +54,7 @@ class Patches:
         entries: dict[str, Any] = {}
         for quantity in sorted({x.quantity for x in own if x.name in texts}):
             whole = [x for x in own if x.quantity == quantity and x.origin is Origin.USER]
-            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or format_quantity(x.bound, x.unit, None)}" for x in whole]
+            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or typed_quantity(x.bound, x.unit, None)}" for x in whole]
             entries[self._word("limits", quantity)] = stated[0] if len(stated) == 1 else stated
         return {"limits": entries} if entries else {}
 

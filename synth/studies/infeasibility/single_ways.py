@@ -9,14 +9,14 @@ from typing import Any
 
 from synth.analysis.fired_guards import FiredGuard, columns_of, requirements_of
 from synth.model.constraint import SIGNS, Constraint
-from synth.plain_text import percent
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
 from synth.studies.infeasibility.explanation import Relaxation, as_given, rounded
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT, REQUIREMENT
-from synth.units import format_quantity
+from synth.text.numbers import more_or_less
+from synth.units import typed_quantity
 
 PIN, CHOICE = "pin", "choice"
 
@@ -146,7 +146,7 @@ class SingleWays:
             # So it is of a limit of the family, too.
             design=design if value.patch is None else self.patches.as_asked(design, value.patch),
             proven=found.closed,
-            sentence=f"{value.words} ({percent(amount)} {'more' if up else 'less'})",
+            sentence=f"{value.words} ({more_or_less(amount, up)})",
             patch=value.patch,
         )
 
@@ -190,7 +190,7 @@ class SingleWays:
         """Return the way out by another value of what is pinned."""
         value = design.values[pin.name]
         given = pin.high if value > pin.high else pin.low
-        patch = self.patches.pin(pin, format_quantity(value, pin.unit, None))
+        patch = self.patches.pin(pin, typed_quantity(value, pin.unit, None))
         if not self.patches.works(patch, design):
             return None
         amount, more = abs(value / given - 1.0), value > given
@@ -205,7 +205,7 @@ class SingleWays:
             amount=amount,
             design=self.patches.as_asked(design, patch),
             proven=found.closed,
-            sentence=f"{shown} ({percent(amount)} {'more' if more else 'less'})",
+            sentence=f"{shown} ({more_or_less(amount, more)})",
             patch=patch,
         )
 

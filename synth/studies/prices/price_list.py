@@ -13,9 +13,9 @@ from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
 from synth.files import csv_text, read_json, write_atomically
 from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
-from synth.plain_text import percent
 from synth.results import Frame
 from synth.study_limits import PRICES as LIMITS
+from synth.text.numbers import percent
 
 if TYPE_CHECKING:
     import pandas as pd

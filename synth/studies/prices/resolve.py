@@ -13,14 +13,15 @@ from synth.model.constraint import Constraint
 from synth.model.program import InputValue
 from synth.nlp.batch import Solutions
 from synth.question.instance import Instance
-from synth.question.objectives import with_ties
 from synth.question.refusals import allowed_rows, refuse_requirements
 from synth.question.requirement_values import RequirementValues
 from synth.results import ParetoFront
 from synth.search.formulation import Formulation
+from synth.search.goals import goals_of
 from synth.search.refused_cells import not_refused
 from synth.search.sensitivity import held, requirement_positions, sides
 from synth.study_limits import PRICES, PriceLimits
+from synth.text.numbers import typed_number
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Resolver:
         self.instance, self.step, self.limits = instance, step, limits
         chosen = dict(front.frame.objectives)
         self.m = len(chosen)
-        self.form = Formulation(instance, with_ties(instance.model, chosen), self.m)
+        self.form = Formulation(instance, goals_of(instance, chosen), self.m)
         self.logs = np.array(self.form.continuous.rows.log_constraints, dtype=bool)
         self.fixed = self.form.unmoved(gridded=True)
         self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.node_constraints])
@@ -204,7 +205,10 @@ class Resolver:
             value, limit = result.limits[x.name]
             factor = np.where((moves >= 0) & (self.limit_of[moves] == j), self.factors[moves], 1.0)
             with np.errstate(all="ignore"):
-                kept = holds(residual(value, limit * factor, x.sense, x.scale), x.guard) | result.void[x.name]
+                kept = (
+                    holds(residual(value, limit * factor, x.sense, result.scales[x.name]), x.guard)
+                    | result.void[x.name]
+                )
             broken[~kept & (broken < 0)] = j
         return broken
 
@@ -228,6 +232,6 @@ class Resolver:
             for slot, (table, row) in its[0].items()
             if mine[0][slot][1] != row
         ]
-        words += [f"{n} {mine[1][n]:g} -> {v:g}" for n, v in its[1].items() if mine[1][n] != v]
+        words += [f"{n} {typed_number(mine[1][n])} -> {typed_number(v)}" for n, v in its[1].items() if mine[1][n] != v]
         words += [f"{n} {mine[2][n]} -> {v}" for n, v in its[2].items() if mine[2][n] != v]
         return ", ".join(words)

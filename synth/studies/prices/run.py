@@ -7,7 +7,6 @@ All problems of a design and objective that differ in one of these are solved at
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +23,6 @@ from synth.errors import InputError, at
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
 from synth.output_folder import claimed
-from synth.plain_text import percent, plain_number
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront
@@ -45,6 +43,7 @@ from synth.studies.prices.price_list import (
 )
 from synth.studies.prices.resolve import Move, Resolver
 from synth.study_limits import PRICES, PriceLimits
+from synth.text.numbers import more_or_less, number_text, percent
 from synth.units import parse_quantity
 
 LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
@@ -94,7 +93,7 @@ def prices(
     chosen = chosen_designs(front, design)
     share = read_step(step)
     instance = question_of(front, problem, catalogs)
-    digest = (front.record or json.loads(front.files()["front.json"])).get("digest")
+    digest = front.result_digest
     own = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().whole])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
@@ -460,11 +459,11 @@ class _Case:
                 f"holds for {percent(self.again.limits.fine * self.again.step)}; {why}",
                 share=self.again.limits.fine,
             )
-        told = f"the multipliers say {plain_number(slope, 3)}, but " if own[1][number] else ""
+        told = f"the multipliers say {number_text(slope, 3)}, but " if own[1][number] else ""
         return _Side(None, f"{told}{why}" if again == why else f"{told}{why}, {again}")
 
     def _way(self, move: Move) -> str:
-        return f"{percent(abs(move.factor - 1.0))} {'more' if move.factor > 1 else 'less'}"
+        return more_or_less(abs(move.factor - 1.0), move.factor > 1)
 
     def _trouble(self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray]) -> str:
         """Return why solving again with the parts of the design does not confirm a price; nothing where it does."""
@@ -480,7 +479,7 @@ class _Case:
         again = self._price(float(found.phi[number, self.k]), number)
         if self._agree(again, slope):
             return ""
-        return f"solving again with {way} gives {plain_number(again, 3)}{self._what_binds(found, number)}"
+        return f"solving again with {way} gives {number_text(again, 3)}{self._what_binds(found, number)}"
 
     def _agree(self, again: float, slope: float) -> bool:
         limits = self.again.limits

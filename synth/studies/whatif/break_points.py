@@ -25,9 +25,10 @@ from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.studies.whatif.vary import Value
 from synth.study_limits import BREAKS, BreakLimits
+from synth.text.numbers import typed_number
 
 UNPROVEN = "the search on one side did not finish"
-NOT_ROBUST = "the design on one side does not keep all limits over the whole range"
+NOT_ROBUST = "the design on one side is not shown to keep all limits over the whole range"
 INTERRUPTED = "interrupted"
 
 Left = Callable[[], float | None]
@@ -270,7 +271,7 @@ class _Between:
         place, holder, count = self.low, self._best(self.low).design, 0
         while not (yield from self._holds(holder, self.high)):
             if count == self.oracle.limits.most:
-                found[-1] = replace(found[-1], remark=f"more changes follow up to {self.high:g}")
+                found[-1] = replace(found[-1], remark=f"more changes follow up to {typed_number(self.high)}")
                 return
             low, high = yield from self._break(holder, place)
             before, after = yield from self._sides(holder, low, high)

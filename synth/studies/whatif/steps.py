@@ -208,15 +208,12 @@ class Steps:
             asked = replace(asked, parts={**_without(asked, asked.parts, slot), slot: rows})
         for name, value in pins.items():
             asked = replace(asked, fix={**_without(asked, asked.fix, name), name: value})
-        question = self._pose(self._with_learned(asked), replace(self.settings, points=1, gap=gap))
-        # The same code as for the whole question, however few combinations are left.
-        whole = len(self) * self.combinations
-        return replace(question, similar_questions=-(-whole // max(question.instance.combinations.count, 1)))
+        return self._pose(self._with_learned(asked), replace(self.settings, points=1, gap=gap))
 
     def question(self, position: int, robust: Uncertainty) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""
         asked = replace(self._at(self.values[position]), robust=robust)
-        return replace(self._pose(asked, self.settings), similar_questions=len(self))
+        return self._pose(asked, self.settings)
 
     def learn(self, robust: Uncertainty) -> None:
         """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
@@ -224,7 +221,7 @@ class Steps:
         self._learned[robust.names] = robust if known is None else known.with_scenarios(robust.scenarios)
 
     def stands(self, values: Sequence[Value], design: Design) -> bool:
-        """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
+        """Tell whether a design is shown to keep its limits over the whole range, if that is asked at some values."""
         rater = _rater_of(self._at(values))
         return rater is None or rater.asked.mode == RATE or bool(rater.one(design)["holds"])
 
@@ -265,7 +262,7 @@ class Steps:
                 rater, question = _rater_of(asked), self._pose(asked, self.settings)
                 if rater is not None:
                     check_rows(rater.things, question.instance.selection.slots)
-                questions.append(replace(question, similar_questions=len(self)))
+                questions.append(question)
                 self.raters.append(rater)
             except InputError as error:
                 faults[k] = error

@@ -11,7 +11,7 @@ from synth.results import Design, ParetoFront
 from synth.robust.robust_front import NOTHING_STANDS
 from synth.studies.whatif.vary import Value, Varied
 from synth.study_limits import STUDY_TEXTS
-from synth.units import format_quantity, header
+from synth.units import header, miss_text
 
 NOT_REACHED = "not reached"
 
@@ -41,7 +41,9 @@ class StudyStep:
         if self.front.status is Status.NOT_SOLVED:
             return NOTHING_STANDS
         missed = [_missed(c) for c in self._conflicts()]
-        return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
+        return (
+            f"the nearest design misses {', '.join(missed)}" if missed else "no design was found that keeps all limits"
+        )
 
     @property
     def brief_reason(self) -> str:
@@ -169,7 +171,7 @@ class StudyAnswers:
 
 
 def _missed(conflict: Mapping[str, Any]) -> str:
-    return f"{conflict['limit']} by {format_quantity(conflict['missed_by'], '%', 3)}"
+    return f"{conflict['limit']} by {miss_text(conflict['value'], conflict['limit_value'], conflict['unit'])}"
 
 
 def best_design(front: ParetoFront | None, objective: str) -> Design | None:

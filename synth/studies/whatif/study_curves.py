@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import plain_number, words
+from synth.plain_text import words
 from synth.results import Design
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep, best_design
 from synth.studies.whatif.vary import Value, Varied
@@ -120,7 +120,7 @@ def _same(a: Break, b: Break) -> bool:
 def _note(study: StudyAnswers, k: int, group: Sequence[Break]) -> str:
     """Return what happens at a break point: where, for what, and from which parts and counts to which."""
     first = group[0]
-    place = f"{plain_number(first.value)} {study.varied[k].unit.replace('*', ' ')}".removesuffix(" -").rstrip()
+    place = study.varied[k].measured(first.value)
     beside = f" ({_words(study, k, first.others)})" if first.others else ""
     if first.before is None or first.after is None:
         return f"{place}{beside}: {first.change}"

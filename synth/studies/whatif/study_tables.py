@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth.results import Design, Frame
+from synth.results.design import reached_limits
 from synth.results.rating_tables import COLUMNS, rating_row
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep
 from synth.studies.whatif.vary import Value
-from synth.study_limits import STUDY_TEXTS
 from synth.units import finite_from_si, header
 
 Rows = list[list[Any]]
@@ -64,7 +64,7 @@ class _Columns:
         return [
             *(d.status.value, d.rank, d.note),
             *(finite_from_si(d.values.get(n), unit, None) for n, unit in self.objectives.items()),
-            "; ".join(binding(d)),
+            "; ".join(reached_limits(d)),
             *(str(d.parts[s]) if s in d.parts else None for s in self.slots),
             *(d.choices.get(c) for c in self.choices),
             *(finite_from_si(d.values.get(n), unit, None) for n, unit in self.searched.items()),
@@ -118,15 +118,6 @@ def _sides(b: Break, units: dict[str, str]) -> list[Any]:
     reached = [None if side is None or unit is None else finite_from_si(side.value, unit, None) for side in sides]
     parts = ["" if side is None else ", ".join(f"{n} {w}" for n, w in side.named.items()) for side in sides]
     return [*reached, *parts]
-
-
-def binding(design: Design) -> list[str]:
-    """Return the limits that a design has reached; an equality is one always and says nothing."""
-    return [
-        name
-        for name, used in design.utilisation.items()
-        if used is not None and used >= STUDY_TEXTS.binding and design.frame.limit_senses[name] != "equal"
-    ]
 
 
 def _union(groups: Iterable[Iterable[str]]) -> list[str]:

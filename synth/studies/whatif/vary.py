@@ -15,7 +15,8 @@ from synth.model.model import Model
 from synth.plain_text import listed, words
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
-from synth.units import parse_quantity
+from synth.text.numbers import number_text, typed_number
+from synth.units import as_decimal, parse_quantity, parse_unit
 
 DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options|robust)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
@@ -72,6 +73,10 @@ class Varied:
         """Return a value as people write it: designations as they are, units without signs."""
         return self.shown(value).replace("*", " ") if isinstance(value, float) else self.shown(value)
 
+    def measured(self, value: float) -> str:
+        """Number in the unit of what is varied, with its unit, for people."""
+        return f"{number_text(value)} {self.unit.replace('*', ' ')}".removesuffix(" -").rstrip()
+
     def asked(self, value: Value) -> Any:
         """Return a value as it stands in a spec."""
         if not isinstance(value, float):
@@ -82,7 +87,7 @@ class Varied:
         """Return a value for people."""
         if isinstance(value, tuple):
             return ", ".join(value)
-        return f"{value:.{DIGITS}g}" if self.kind == "weight" else str(self.asked(value))
+        return typed_number(float(value), DIGITS) if self.kind == "weight" else str(self.asked(value))
 
     def stated(self, value: Value) -> str:
         """Return name and value for people: ``mass <= 40 kg``."""
@@ -252,7 +257,7 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
     if not isinstance(value, str):
         parse_quantity(value, declared, field)
         return float(value)
-    match, said = NUMBER.match(value), whole if isinstance(whole, str) else value
+    match, said = NUMBER.match(as_decimal(value)), whole if isinstance(whole, str) else value
     if match is None or not math.isfinite(float(match.group(1))):
         raise InputError(field, said, f"numbers with one unit, as in {RANGE}")
     number, unit = match.groups()
@@ -260,6 +265,7 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
         raise InputError(field, said, "a decimal point instead of a decimal comma")
     if unit:
         parse_quantity(f"{number} {unit}", declared, field)
+        unit = parse_unit(unit, parse_unit(declared).kind).text
         if seen and seen[0] != unit:
             raise InputError(field, whole, f"one unit for all values, here {seen[0]} and {unit}")
         seen[:] = [unit]
@@ -360,12 +366,12 @@ def _one_range(field: str, text: str, unit: str) -> tuple[list[str], str]:
     around = AROUND.match(text)
     if around is None:
         end = re.split(r"\.\.|:", text)[-1]
-        match = NUMBER.match(end)
+        match = NUMBER.match(as_decimal(end))
         if match is None or end == text:
             return [text], unit
         own = match.group(2)
         return [text if own or not unit else f"{text} {unit}"], own or unit
-    matches = [NUMBER.match(x) for x in around.group(1).split(":")]
+    matches = [NUMBER.match(as_decimal(x)) for x in around.group(1).split(":")]
     units = {m.group(2) for m in matches if m is not None} - {""}
     if None in matches or len(matches) not in (1, 3) or len(units) > 1:
         raise InputError(field, text, "a range such as '+-10 %', or from, to and step with one unit: '+-5:20:5 %'")

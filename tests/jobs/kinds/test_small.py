@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from typing import Any
 
 import pytest
@@ -15,8 +14,9 @@ from synth.errors import InputError
 from synth.jobs.kinds import Sources
 from synth.jobs.kinds.kind_settings import KindSettings
 from synth.jobs.kinds.small import check, declaration, evaluate, examples, families
-from synth.question.spec_keys import FIELDS
 from tests.jobs.kinds.jobs import DISC, PAIR, SPECS, earlier
+from tests.question.hostile_values import ENTRIES, JUNK
+from tests.shipped import FAMILIES
 
 pytestmark = pytest.mark.slow
 
@@ -76,7 +76,7 @@ def test_options_change_a_declaration_and_wrong_ones_are_refused() -> None:
 
 def test_examples_come_with_their_families_and_are_ready() -> None:
     found = examples()
-    assert {one["family"] for one in found} == set(synth.families())
+    assert {one["family"] for one in found} >= set(FAMILIES)
     for one in found:
         assert one["description"]
         if one["design"]:
@@ -127,9 +127,8 @@ def test_faults_that_show_only_in_the_whole_are_told_together() -> None:
 
 def test_thousands_of_faults_do_not_keep_a_form_waiting() -> None:
     many = {f"x{k}": k for k in range(2000)}
-    begun = time.monotonic()
     found = check({**DISC, "requirements": {**DISC["requirements"], **many}}, Sources(), KindSettings(seconds=0.1))
-    assert time.monotonic() - begun < 10
+    assert 1 <= len(found["problems"]) < 2000  # those that were found in time
     assert not found["ready"]
 
 
@@ -166,17 +165,7 @@ def test_a_given_design_is_told_with_units() -> None:
         assert caught.value.path == path
 
 
-SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
-JUNK = st.recursive(
-    SCALARS,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=6), inner, max_size=3),
-    max_leaves=6,
-)
-KEYS = st.sampled_from([*FIELDS, "of", "dance"])
-NAMES = st.sampled_from(["load_torque", "mass", "friction_pair", "outer_diameter_limit", "practice", "actuation_force"])
-TEXTS = st.sampled_from(["<= 3 kg", "3 kg", "1e400 N*m", "nan", "6,5", "-1 N*m", "== 0", "1 .. 2", "+-5 %", "+", "x@1"])
-NEARLY = st.dictionaries(NAMES, JUNK | TEXTS | st.lists(TEXTS, max_size=2), max_size=3)
-CHANGES = st.dictionaries(KEYS, JUNK | NEARLY, max_size=3)
+CHANGES = st.builds(lambda entries, of: entries | of, ENTRIES, st.dictionaries(st.just("of"), JUNK, max_size=1))
 
 
 @given(JUNK | CHANGES)

@@ -7,7 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 import synth
+from synth.analysis.drawing import drawings_of
 from synth.question.catalogs import as_catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.problems.of_a_family import remarks
 
@@ -266,3 +268,18 @@ def test_curves_pass_through_the_borders_of_the_regimes():
     arm = 0.42 * 57.5
     needed = np.interp(arm, force.iloc[:, 0], force["8 surfaces [N]"])
     assert needed == pytest.approx(108 / (8 * arm * 1e-3), rel=1e-3)
+
+
+@pytest.mark.parametrize("lacking", ["free_length_L0", "total_coils_nt"])
+def test_springs_of_a_table_without_what_only_the_drawing_shows_are_designed_but_not_drawn(lacking):
+    own = Catalogs().table("compression_springs").to_frame()
+    own = own.drop(columns=[column for column in own.columns if column.split(" ")[0] == lacking])
+    tables = {"compression_springs": own}
+    found = design(catalogs=tables)
+    assert found.values["mass"] == design().values["mass"]
+    drawn, told = drawings_of(FAMILY, [found])
+    assert not drawn
+    assert "a number, which the drawing shows" in told[0]
+    assert lacking in told[0] or "length" in told[0]
+    with pytest.raises(synth.InputError, match="column mass"):
+        design(catalogs={"compression_springs": own.drop(columns=["mass [kg]"])})

@@ -218,7 +218,7 @@ def test_what_cannot_be_is_refused(code, requirements):
 def test_remarks():
     told = " ".join(design().advice)
     assert "reconstructed from words" in told
-    assert "stop_force is larger" in told
+    assert "stop force is larger" in told
     assert "return springs tire" in " ".join(
         design(values={"return_preload_deflection": "4 mm"}, requirements={"contact_travel": "6 mm"}).advice
     )

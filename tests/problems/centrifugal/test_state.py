@@ -6,11 +6,11 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from synth.problems.centrifugal import curves
+from synth.problems.centrifugal.state import balance, of_path
 from typer.testing import CliRunner
 
 import synth
-from problems.centrifugal import curves
-from problems.centrifugal.state import balance, of_path
 from synth.terminal.cli import app
 from tests.conformance.cases import CASES, answer
 

@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-
-from problems.cone import formulas as cone
-from problems.mechanics import ring
+from synth.problems.cone import formulas as cone
+from synth.problems.mechanics import ring
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=60)
 angles = st.floats(math.radians(4), math.radians(30))

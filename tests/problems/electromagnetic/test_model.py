@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from synth.problems.electromagnetic import formulas as pot_magnet
+from synth.problems.mechanics import magnetics
 
 import synth
-from problems.electromagnetic import formulas as pot_magnet
-from problems.mechanics import magnetics
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 from tests.problems.of_a_family import remarks, requirements_in_si
 
@@ -174,8 +174,8 @@ def magnet_by_hand(v, wire, surfaces, work, force_back=100.0):
         "pull_in_force": b_in**2 * area / mu0,
         "magnet_diameter": 2 * r4,
         "ampere_turns": turned,
-        "turns": math.ceil(n),
-        "current": current,
+        "turns": math.floor(n),
+        "current": turned / math.floor(n),
         "current_density": current / wire["copper_area"],
         "coil_voltage": current * hot,
         "coil_temperature_rise": rise,

@@ -3,10 +3,10 @@
 import math
 
 import pytest
+from synth.problems.electromagnetic import formulas as pot_magnet
+from synth.problems.mechanics import magnetics, plates
 
 import synth
-from problems.electromagnetic import formulas as pot_magnet
-from problems.mechanics import magnetics, plates
 
 DUTY = {
     "load_torque": "8 N*m",

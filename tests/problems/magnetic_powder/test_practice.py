@@ -3,10 +3,10 @@
 import math
 
 import pytest
+from synth.problems.magnetic_powder import formulas as powder
+from synth.problems.mechanics import magnetics
 
 import synth
-from problems.magnetic_powder import formulas as powder
-from problems.mechanics import magnetics
 
 DUTY = {"required_torque": "30 N*m", "driver_speed": "500 1/min", "slip_speed": "10 1/min"}
 # The worked numbers were computed with these, which are no longer defaults.

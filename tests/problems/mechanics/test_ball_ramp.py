@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from synth.problems.mechanics import ball_ramp, centrifugal
 
-from problems.mechanics import ball_ramp, centrifugal
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 MOVING = {

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from synth.problems.mechanics import centrifugal, ring
+from synth.problems.mechanics.contact import contact_modulus
 
-from problems.mechanics import centrifugal, ring
-from problems.mechanics.contact import contact_modulus
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 FLY = {"mass": "kg", "radius": "m"}

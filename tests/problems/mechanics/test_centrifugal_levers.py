@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from synth.problems.mechanics import centrifugal
+from synth.problems.mechanics import centrifugal_levers as levers
+from synth.problems.mechanics.lever_motion import CONTACT, ReversedLever, RodLever
 
-from problems.mechanics import centrifugal
-from problems.mechanics import centrifugal_levers as levers
-from problems.mechanics.lever_motion import CONTACT, ReversedLever, RodLever
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 RPM = math.pi / 30

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-
-from problems.mechanics import disc, ring
+from synth.problems.mechanics import disc, ring
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=60)
 mean_diameters = st.floats(0.05, 1.0)

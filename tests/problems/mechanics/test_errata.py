@@ -3,9 +3,8 @@
 import math
 
 import pytest
-
-from problems.mechanics import guide_friction as gf
-from problems.mechanics import heat, ring, startup
+from synth.problems.mechanics import guide_friction as gf
+from synth.problems.mechanics import heat, ring, startup
 
 RADIUS = 100 * ring.friction_radius(0.082, 0.012 / 0.082)  # S0's example in cm
 START = (1080.0, 600.0, 30.0, 26.6, 2.0)  # S1's example

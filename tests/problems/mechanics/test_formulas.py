@@ -4,9 +4,9 @@ import inspect
 from functools import partial
 
 import pytest
+from synth.problems.cone import formulas as cone
+from synth.problems.mechanics import disc, guide_friction, heat, motors, plates, ring, shaft, startup, wear
 
-from problems.cone import formulas as cone
-from problems.mechanics import disc, guide_friction, heat, motors, plates, ring, shaft, startup, wear
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of, positional
 
 RANGES = {
@@ -249,6 +249,7 @@ CASES = [
     (disc.hub_mass, {"density": "kg/m3", "discs": "-", "hub_radius": "m", "shaft_diameter": "m"}, "kg"),
     (disc.diaphragm_spring_mass, {"density": "kg/m3", "outer_radius": "m"}, "kg"),
     (shaft.shaft_diameter, {"torque": "N m", "shear_stress": "Pa"}, "m"),
+    (shaft.fatigue_shear, {"fatigue_strength": "Pa", "size_factor": "-", "safety": "-"}, "Pa"),
     (shaft.boss_mass, {"density": "kg/m3", "diameter": "m", "hub_factor": "-"}, "kg"),
     (wear.wear_life, {"area": "m2", "depth": "m", "wear_rate": "m3/J", "friction_work": "J"}, "-"),
     (
@@ -353,6 +354,7 @@ OTHERWISE_TESTED = {
     "startup_phases",
     "cover_thickness",  # with a least one; tests/problems/disc/test_practice.py
     "cover_mass",
+    "size_factor",  # with lengths of test bars; tests/problems/mechanics/test_shaft.py
 }
 
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
+from synth.problems.mechanics import guide_friction as gf
+from synth.problems.mechanics import ring
 
-from problems.mechanics import guide_friction as gf
-from problems.mechanics import ring
 from synth.errors import InputError
 
 ca.GlobalOptions.setNumpyMode(-1)  # as the engine does

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-
-from problems.mechanics import heat, plates
+from synth.problems.mechanics import heat, plates
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=40)
 

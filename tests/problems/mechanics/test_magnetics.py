@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy.integrate import quad
+from synth.problems.magnetic_powder import formulas as powder
+from synth.problems.mechanics import magnetics
 
-import catalogs
-from problems.magnetic_powder import formulas as powder
-from problems.mechanics import magnetics
+from synth import catalogs
 from synth.errors import InputError
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, positional
 

@@ -20,10 +20,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+import synth.problems.mechanics
 from scipy.special import lambertw
+from synth.problems.mechanics import Quantity
 
-import problems.mechanics
-from problems.mechanics import Quantity
 from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, UNIT, Entry, Formula, formula, formulas, modules
 from tests.problems.formula_checks import DIMENSION
 
@@ -41,7 +41,7 @@ NOT_QUANTITIES = ("str", "int", "callable", "StartupRun")  # first words of the 
 
 def calls(f: Formula) -> list[inspect.BoundArguments]:
     """Return what the doctest of a function calls it with."""
-    module = sys.modules[f"problems.mechanics.{f.module}"]
+    module = sys.modules[f"synth.problems.mechanics.{f.module}"]
     signature, found = inspect.signature(f.function), []
 
     def recorded(*arguments: Any, **named: Any) -> Any:
@@ -81,7 +81,7 @@ def defined(source: str) -> set[str]:
 
 def test_what_has_no_underscore_is_promised_and_nothing_else() -> None:
     assert defined("a: int = 1\n_b = 2\nC, D = 1, 2\ndef f():\n    g = 1\nclass _H: ...") == {"a", "C", "D", "f"}
-    folder = Path(problems.mechanics.__file__).parent
+    folder = Path(synth.problems.mechanics.__file__).parent
     promised = {module.__name__.rsplit(".", 1)[1]: module for module in modules()}
     assert set(promised) == {path.stem for path in folder.glob("*.py")} - {"__init__"}
     for name, module in promised.items():
@@ -189,7 +189,7 @@ def test_most_formulas_take_symbols() -> None:
 
 def test_formulas_are_used_without_casadi() -> None:
     code = (
-        "import sys, problems.mechanics as m\n"
+        "import sys, synth.problems.mechanics as m\n"
         "for name in m.__all__: getattr(m, name)\n"
         "m.startup.reactive_slip_time(1080.0, 600.0, driven_inertia=30.0, driver_speed=26.6, ramp_time=2.0)\n"
         "print([name for name in ('casadi', 'pandas', 'matplotlib') if name in sys.modules])"
@@ -197,7 +197,7 @@ def test_formulas_are_used_without_casadi() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout == "[]\n"
     with pytest.raises(AttributeError, match="no attribute 'friction_radius'"):
-        _ = problems.mechanics.friction_radius
+        _ = synth.problems.mechanics.friction_radius
 
 
 # ---- the units are those of what is computed -------------------------------------------------------------------------
@@ -209,7 +209,7 @@ CONSTANT = re.compile(r"^([A-Z_0-9]+) = .*  # .*\[(.+?)\]", re.MULTILINE)
     "f", [f for f in FORMULAS if f.takes != NUMBERS and UNIT.search(f.returns)], ids=lambda f: f"{f.module}.{f.name}"
 )
 def test_the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) -> None:
-    module = sys.modules[f"problems.mechanics.{f.module}"]
+    module = sys.modules[f"synth.problems.mechanics.{f.module}"]
     rng = np.random.default_rng(0)
     for _ in range(3):
         scale = rng.uniform(0.5, 2.0, 5)
@@ -297,7 +297,7 @@ def symbols_of(f: Formula, bound: inspect.BoundArguments) -> dict[str, Any]:
 
 def equation_value(f: Formula, bound: inspect.BoundArguments) -> Any:
     """Return what the equation of a docstring gives."""
-    module = sys.modules[f"problems.mechanics.{f.module}"]
+    module = sys.modules[f"synth.problems.mechanics.{f.module}"]
     own = {n: x for n, x in vars(module).items() if inspect.isfunction(x)}
     functions = {**own, **FUNCTIONS}
     _, _, right = f.equation.partition(" = ")

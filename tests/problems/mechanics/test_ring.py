@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
-
-from problems.mechanics import ring
+from synth.problems.mechanics import ring
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=60)
 mean_diameters = st.floats(0.01, 2.0)

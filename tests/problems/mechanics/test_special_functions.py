@@ -6,16 +6,16 @@ from functools import cache
 import casadi as ca
 import numpy as np
 import pytest
+import synth.problems.centrifugal.ball_ramp
+import synth.problems.cone.model
+import synth.problems.magnetic_powder.model
+import synth.problems.multi_plate.model  # noqa: F401 - fills the table
+from synth.problems.mechanics import startup
 
-import problems.centrifugal.ball_ramp
-import problems.cone.model
-import problems.magnetic_powder.model
-import problems.multi_plate.model  # noqa: F401 - fills the table
-from problems.mechanics import startup
 from synth.special import TABLE, SpecialFunction
 
 POINTS = 6000
-NAMES = sorted(n for n in TABLE if n.startswith("problems."))
+NAMES = sorted(n for n in TABLE if n.startswith("synth.problems."))
 REACTIVE = [n for n in NAMES if ".reactive_" in n]
 # Ratios of guide friction end at 1, where plates jam; all else is sampled over many decades.
 RANGES = {
@@ -208,7 +208,9 @@ def test_nothing_is_known_where_the_load_never_starts(name):
 
 
 def test_the_limit_on_the_border_is_the_value_there():
-    work, power = (TABLE[f"problems.mechanics.startup.reactive_{n}"] for n in ("friction_work", "peak_slip_power"))
+    work, power = (
+        TABLE[f"synth.problems.mechanics.startup.reactive_{n}"] for n in ("friction_work", "peak_slip_power")
+    )
     same = np.array(600.0)
     with np.errstate(divide="ignore"):
         assert np.isposinf(work.formula(same, same, 30.0, 26.6, 2.0))

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
+from synth.problems.mechanics import startup
 
-from problems.mechanics import startup
 from synth.errors import InputError
 
 ca.GlobalOptions.setNumpyMode(-1)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from synth.problems.mechanics import heat, motors, startup
+from synth.problems.mechanics.startup_simulation import StartupRun, simulate_startup, simulate_switching
 
-from problems.mechanics import heat, motors, startup
-from problems.mechanics.startup_simulation import StartupRun, simulate_startup, simulate_switching
 from synth.errors import InputError
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=25)

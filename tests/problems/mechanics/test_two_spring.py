@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from synth.problems.mechanics import centrifugal, two_spring
 
-from problems.mechanics import centrifugal, two_spring
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 SPRINGS = {"return_preload": "N", "clamp_preload": "N", "return_rate": "N/m", "clamp_rate": "N/m"}

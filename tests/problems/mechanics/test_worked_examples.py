@@ -1,9 +1,8 @@
 """The worked examples of the sources, recomputed, and the figures that the sources print where they are right."""
 
 import pytest
-
-from problems.mechanics import guide_friction as gf
-from problems.mechanics import heat, ring, startup
+from synth.problems.mechanics import guide_friction as gf
+from synth.problems.mechanics import heat, ring, startup
 
 
 def given(value, digits=6):

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import integrate, optimize, special
+from synth.problems.mechanics import contact as hertz
+from synth.problems.roller_coupling import formulas as rc
 
-from problems.mechanics import contact as hertz
-from problems.roller_coupling import formulas as rc
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 KP = 9.80665

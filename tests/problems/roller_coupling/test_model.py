@@ -292,7 +292,7 @@ def test_remarks():
     assert "plastic" not in texts(design())
     assert "same balls" in texts(design(requirements={"offset": 0}))
     assert "no optimum arm" in texts(design(requirements={"driver_speed": 0}))
-    assert "float_distance does nothing" in texts(design(requirements={"float_distance": "20 mm"}))
+    assert "float distance does nothing" in texts(design(requirements={"float_distance": "20 mm"}))
     assert "must follow the tilt" in texts(design(requirements=ANGLED))
     assert "doubles the steady push" in texts(design(values={"balance": "yes"}))
     assert "doubles the steady push" not in texts(design())

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from problems.roller_coupling import formulas as rc
-from problems.roller_coupling import motion as rm
+from synth.problems.roller_coupling import formulas as rc
+from synth.problems.roller_coupling import motion as rm
 
 R, K, D = 0.06, 0.1, 0.047
 TORQUE, SPEED, MASS, ROLLER = 300.0, 100.0, 2.0, 0.4

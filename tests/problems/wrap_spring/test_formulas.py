@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
+from synth.problems.wrap_spring import formulas as ws
 
-from problems.wrap_spring import formulas as ws
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of
 
 A, B, E, RHO = 0.003, 0.004, 206e9, 7850.0

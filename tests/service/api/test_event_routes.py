@@ -13,15 +13,18 @@ from typing import Any
 
 import httpx
 import pytest
+import sqlalchemy as sa
 
 from synth.jobs.engine_process import Engines
 from synth.jobs.job_table import Happening
+from synth.jobs.models import Token, moment
 from synth.jobs.store import Store
 from synth.jobs.views import Standing
 from synth.service.event_hub import EventHub
+from synth.service.security import SESSION_COOKIES
 from synth.service.settings import ServiceSettings
 from tests.service.calling import Service, bearer, code_of
-from tests.service.working import API, FRONT, LONG, QUICK, Client, listened, working
+from tests.service.working import API, FRONT, LIVE, LONG, QUICK, Client, listened, working
 
 pytestmark = pytest.mark.slow
 
@@ -51,7 +54,8 @@ def test_a_stream_tells_how_a_job_goes_and_ends_with_it(database: str, engines: 
         assert (kinds[0], kinds[-1]) == ("snapshot", "end")
         assert kinds.count("end") == 1
         assert "started" in kinds
-        assert (events[0]["state"], events[-1]["state"], events[-1]["outcome"]) == ("open", "done", "optimal")
+        assert events[0]["state"] in LIVE  # a worker may have begun it
+        assert (events[-1]["state"], events[-1]["outcome"]) == ("done", "optimal")
         assert [event["text"] for event in events if event["kind"] == "started"] == [""]  # not by which process
         numbers = [int(event["id"]) for event in events if event["id"]]
         assert numbers == sorted(set(numbers))
@@ -99,6 +103,35 @@ def wire(engines: Engines, tmp_path: Path) -> Iterator[tuple[Service, str]]:
         yield service, address
 
 
+@pytest.mark.parametrize("ending", ["revoked", "expired", "signed out", "another token"])
+def test_a_stream_ends_with_what_has_let_it_in(wire: tuple[Service, str], ending: str) -> None:
+    service, address = wire
+    job = Client(service).submit("synthesis", LONG)
+    place, headers, cookies = f"{API}/jobs/{job}/events", {}, {}
+    if ending != "another token":  # without one anybody at this machine may listen, until there is one
+        token = service.token("read", "submit")
+        headers, number = bearer(token), service.accounts.tokens()[-1].id
+    if ending == "signed out":
+        cookie = service.accounts.sign_in(number, 1.0)
+        headers, cookies = {}, {SESSION_COOKIES[0]: cookie}
+    with httpx.Client(base_url=address, headers=headers, cookies=cookies, timeout=20.0) as http:
+        with http.stream("GET", place) as stream:
+            lines = stream.iter_lines()
+            assert any(line.startswith("event: snapshot") for line in lines)
+            if ending == "revoked":
+                service.accounts.revoke(number)
+            elif ending == "expired":
+                with service.store.engine.begin() as connection:
+                    connection.execute(sa.update(Token).values(expires=moment() - 1.0))
+            elif ending == "signed out":
+                service.accounts.sign_out(cookie)
+            else:
+                service.token("read")
+            assert "event: end" not in list(lines)  # it ends, and not as the job does
+        assert http.get(place).status_code == 401
+        assert service.store.job(job).state in ("open", "running")  # type: ignore[union-attr]
+
+
 def test_streams_live_are_few_and_end_with_the_server(wire: tuple[Service, str]) -> None:
     service, address = wire
     token = service.token("read", "submit")
@@ -116,12 +149,10 @@ def test_streams_live_are_few_and_end_with_the_server(wire: tuple[Service, str])
                 assert third.status_code == 200  # another token has its own
                 text = http.get("/metrics").text
                 assert "clutchsynth_event_streams 3.0" in text
-                begun = time.monotonic()
                 service.context.ending.set()  # in the thread of the server: its reader looks each fifth of a second
                 for stream in (second, third):
                     stream.read()
                 list(lines)
-                assert time.monotonic() - begun < 2
 
 
 def test_a_client_that_goes_leaves_room(wire: tuple[Service, str]) -> None:

@@ -61,11 +61,13 @@ def test_what_depends_on_the_code_is_asked_once(tmp_path: Path) -> None:
         asked.append(task)
         return {"families": [], "declaration": {}, "code": "c"}
 
+    own = "families/cone_clutch?options=cooling:"
     with Service(tmp_path, Answering(answer), remembered=2) as service:
         client = Client(service)
-        for path in ("families", "families", "families/a", "families/a", "families/b", "families"):
+        for path in ("families", "families/cone_clutch", *(own + word for word in "aabcacbca"), "families"):
             assert client.get(path).status_code == 200
-    assert asked == ["families", "declaration", "declaration", "families"]  # of three things, two are remembered
+    # what there is for everybody stays, of declarations with options chosen the last two
+    assert asked == ["families", "declaration", *["declaration"] * 7]
 
 
 def test_a_check_tells_all_that_is_wrong(client: Client) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,6 @@ from tests.service.working import API, BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, 
 
 pytestmark = pytest.mark.slow
 METHODS = ("get", "post", "patch", "delete", "put")
-PATIENCE = 4.0  # s, for an answer that takes less than 2 where the machine is not shared
 WITHOUT_SCOPE = {"/version", "/session"}  # of whoever asks, or of nobody
 FOR_ADMINISTRATORS = ("/tokens", "/tenants/jobs")
 
@@ -271,19 +269,15 @@ FEW = settings(
 @FEW
 @given(SPECS)
 def test_any_spec_can_be_checked(client: Client, spec: dict[str, Any]) -> None:
-    begun = time.monotonic()
     answer = client.post("check", spec)
     assert answer.status_code in (200, 422), answer.text
-    assert time.monotonic() - begun < PATIENCE
 
 
 @FEW
 @given(st.sampled_from(KINDS), SPECS, VALUES)
 def test_any_job_can_be_asked(client: Client, kind: str, spec: dict[str, Any], title: Any) -> None:
-    begun = time.monotonic()
     answer = client.post("jobs", {"kind": kind, "request": spec, "title": title})
     assert answer.status_code in (200, 202, 422), answer.text
-    assert time.monotonic() - begun < PATIENCE
     if answer.status_code == 202:
         assert client("DELETE", f"jobs/{answer.json()['id']}").status_code == 204
 

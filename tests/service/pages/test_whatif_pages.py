@@ -13,12 +13,11 @@ import pytest
 from synth.files import yaml_text
 from tests.reports.browser import needs_chromium
 from tests.service.pages.visiting import Site, Tenant, in_all_forms, visit
-from tests.service.served import until
 from tests.service.working import DUTY, FAMILY, FRONT, QUICK
 from tests.terminal.entry import in_process
+from tests.waiting import until
 
 pytestmark = [pytest.mark.slow, needs_chromium]
-WAIT = 60_000.0  # ms
 HOLDS = "load_torque~540"
 FEW = {"friction_pair": ["sinter_bronze_wet"], "inner_plate": ["core 1.8"], "outer_plate": ["core 1.8"]}
 FIXED = {"ramp_time": "2 s", "ring_inner_diameter": "115 mm"}
@@ -56,7 +55,6 @@ class Sliders:
     ) -> Iterator[Any]:
         """Open a page; nothing may be complained about, and nothing asked of another host."""
         with visit(self.browser, self.site, who or self.who) as found:
-            found.page.set_default_timeout(WAIT)
             prepare(found.page)
             found.page.goto(f"{found.address}{path}")
             yield found.page

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -16,12 +15,13 @@ from synth.jobs.store import Store
 from synth.service.settings import ServiceSettings
 from tests.reports.browser import DESKTOP, FORMS, PHONE, Opened, serious
 from tests.service.calling import bearer
-from tests.service.served import Served, served, until
+from tests.service.served import Served, served
 from tests.service.working import LIVE, QUICK
+from tests.waiting import PATIENCE, until
 
 ALL = ("read", "submit", "admin")
 READ_ALOUD = ((DESKTOP, "light"), (PHONE, "dark"))  # forms in which axe looks: both sizes, both themes
-CLIENT = httpx.Client(timeout=60.0, verify=False)  # a new one for each request takes longer than the answer
+CLIENT = httpx.Client(timeout=PATIENCE, verify=False)  # a new one for each request takes longer than the answer
 
 
 class Tenant:
@@ -51,13 +51,9 @@ class Tenant:
         """Ask for a job; return its id."""
         return str(self.post("jobs", json={"kind": kind, "request": request, **more})["id"])
 
-    def ended(self, job: str, within: float = 60.0) -> dict[str, Any]:
-        """Wait until a job has ended."""
-        end = time.monotonic() + within
-        while (told := self.get(f"jobs/{job}"))["state"] in LIVE:
-            assert time.monotonic() < end, told
-            time.sleep(0.05)
-        return dict(told)
+    def ended(self, job: str) -> dict[str, Any]:
+        """State of a job that has ended."""
+        return dict(until(lambda: self.get(f"jobs/{job}"), lambda found: found["state"] not in LIVE))
 
 
 class Site:
@@ -83,8 +79,17 @@ def site_in(folder: Path, installed: Path | None = None) -> Iterator[Site]:
     beside = {} if installed is None else {"PYTHONPATH": str(installed)}
     with served(folder, "--workers", "2", environment=beside) as server:
         site = Site(server, token)
-        until(lambda: site.administrator.ask("POST", "check", json=QUICK).status_code == 200, 60.0)
+        until(lambda: site.administrator.ask("POST", "check", json=QUICK).status_code == 200)
         yield site
+
+
+# Where a page shows as words what is not there.
+NOTHING_AS_TEXT = """() => {
+  const texts = document.createTreeWalker(document.querySelector("main"), NodeFilter.SHOW_TEXT), found = [];
+  for (let text = texts.nextNode(); text; text = texts.nextNode())
+    if (["null", "undefined"].includes(text.data.trim())) found.push(text.parentElement.outerHTML.slice(0, 200));
+  return found;
+}"""
 
 
 class Visitor(Opened):
@@ -102,11 +107,12 @@ class Visitor(Opened):
     def loaded(self) -> None:
         """Wait until nothing on the page is busy."""
         self.page.wait_for_selector("main [aria-busy=true]", state="detached")
+        assert self.page.evaluate(NOTHING_AS_TEXT) == []
 
-    def sees(self, selector: str, text: str = "", seconds: float = 15.0) -> Any:
+    def sees(self, selector: str, text: str = "") -> Any:
         """Wait until something is seen, and return it."""
         found = self.page.locator(selector, has_text=text) if text else self.page.locator(selector)
-        found.first.wait_for(state="visible", timeout=1000 * seconds)
+        found.first.wait_for(state="visible")
         return found.first
 
     def expects(self, status: int) -> None:
@@ -136,7 +142,7 @@ def visit(
 ) -> Iterator[Visitor]:
     """Open a browser of somebody who has signed in; nothing may go wrong in it, nobody else may be asked."""
     context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=theme)
-    context.set_default_timeout(15_000)
+    context.set_default_timeout(1000.0 * PATIENCE)
     try:
         if who is not None:
             signed = context.request.post(f"{who.server.address}/api/v1/session", headers=bearer(who.token))

@@ -1,6 +1,7 @@
 // What was asked, shown in the units in which it was typed: the engine tells it in those that the family declares.
 
-import { amount, unitText, words } from "./dom.js";
+import { figure, unitText, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 import { quantity } from "./what_if_knobs.js";
 
 const bare = (unit) => unitText(unit).replaceAll(/[\s·]/g, "");
@@ -15,8 +16,8 @@ export function asTyped(record, typed) {
   const asked = record.asked.map((entry) => {
     const own = entry.words === undefined && typeof stated.get(entry.label) === "string" ? quantity(stated.get(entry.label), "") : null;
     if (!own?.unit || bare(own.unit) === bare(entry.unit)) return entry;
-    const told = `${amount(own.number)} ${unitText(own.unit)}`;
-    return { ...entry, words: told, text: [entry.text, `that is ${amount(entry.value)} ${entry.unit}`].filter(Boolean).join("; ") };
+    const told = `${figure(own.number, FULL_DIGITS)} ${unitText(own.unit)}`;
+    return { ...entry, words: told, text: [entry.text, `that is ${figure(entry.value, FULL_DIGITS)} ${entry.unit}`].filter(Boolean).join("; ") };
   });
   return { ...record, asked };
 }

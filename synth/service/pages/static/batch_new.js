@@ -2,7 +2,7 @@
 
 import { Refusal, ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { columnsCard } from "./columns_card.js";
-import { amount, h, say, unitText, words } from "./dom.js";
+import { figure, h, say, unitText, words } from "./dom.js";
 import { count } from "./words.js";
 
 const place = document.getElementById("batch");
@@ -99,7 +99,7 @@ function preview() {
   };
   first.hidden = false;
   first.replaceChildren(h("h2", {}, name), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "First rows" }, h("table", { class: "sheet" },
-    h("caption", {}, `${amount(size)} bytes; the first ${count(rows.length, "row")}`),
+    h("caption", {}, `${figure(size)} bytes; the first ${count(rows.length, "row")}`),
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Line"), header.map((title) => h("th", { scope: "col" }, title)))),
     h("tbody", {}, rows.map((row) => h("tr", {}, h("th", { scope: "row", class: "number" }, row.line), header.map((_, k) => cell(row, k))))))));
 }
@@ -170,7 +170,7 @@ async function refused(error) {
 function show(answer) {
   const all = answer.checked >= answer.rows, good = answer.rows - answer.bad;
   state.className = "";
-  state.textContent = `${count(answer.rows, "row")}${all ? "" : `, the first ${amount(answer.checked)} checked`}: ${answer.bad ? answer.bad >= answer.checked ? "none can be asked" : `${amount(answer.bad)} faulty, the others can be asked` : "all can be asked"}.`;
+  state.textContent = `${count(answer.rows, "row")}${all ? "" : `, the first ${figure(answer.checked)} checked`}: ${answer.bad ? answer.bad >= answer.checked ? "none can be asked" : `${figure(answer.bad)} faulty, the others can be asked` : "all can be asked"}.`;
   go.disabled = answer.checked <= answer.bad;
   go.textContent = answer.bad && !go.disabled ? `Start ${count(good, "row")} without the faulty` : `Start ${count(good, "row")}`;
   preview();
@@ -178,7 +178,7 @@ function show(answer) {
   detail.replaceChildren(
     faults.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Faults" }, h("table", {}, h("thead", {}, h("tr", {}, ["Line", "Column", "There stands", "Right would be"].map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, faults.map((one) => h("tr", {}, h("th", { scope: "row", class: "number" }, linesText(one.lines)), h("td", {}, one.column ?? ""), h("td", { class: "fault wrong" }, one.value === null ? "nothing" : String(one.value)), h("td", {}, one.expected)))))) : "",
-    more ? h("p", { class: "note" }, `and ${amount(more)} more`) : "",
+    more ? h("p", { class: "note" }, `and ${figure(more)} more`) : "",
     faults.length ? h("p", { class: "note" }, "Mend them in the file and bring it again, what you have chosen here stays; or go on without these rows.") : "",
     answer.carried.length ? h("p", { class: "note" }, `Carried along unread: ${answer.carried.join(", ")}.`) : "",
     ...Object.entries(answer.unused).map(([name, unused]) => h("p", { class: "note" }, `Not used by ${words(name)}: ${unused.join(", ")}.`)));
@@ -195,7 +195,7 @@ function gathered(faults) {
   return [...found.values()];
 }
 
-const linesText = (lines) => lines.slice(0, 3).join(", ") + (lines.length > 3 ? ` and ${amount(lines.length - 3)} more` : "");
+const linesText = (lines) => lines.slice(0, 3).join(", ") + (lines.length > 3 ? ` and ${figure(lines.length - 3)} more` : "");
 
 async function start() {
   go.disabled = true;

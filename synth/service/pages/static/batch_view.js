@@ -1,7 +1,7 @@
 // A batch: how its rows stand, and what each has found.
 
 import { faultCard, get } from "./api.js";
-import { amount, asWords, duration, h, unitText, withFigures, words } from "./dom.js";
+import { asWords, duration, figure, h, unitText, withFigures, words } from "./dom.js";
 import { sizesCard } from "./sizes_card.js";
 import { LIVE, ROWS, rowBadge } from "./words.js";
 
@@ -101,7 +101,7 @@ export function batchView(element, job) {
     }
     const { part, said, line } = marks.get(name);
     part.style.flexGrow = String(number);
-    part.title = said.textContent = `${amount(number)} ${label(name)}`;
+    part.title = said.textContent = `${figure(number)} ${label(name)}`;
     part.hidden = line.hidden = !number;
     line.querySelector("button")?.setAttribute("aria-pressed", String(status === name));
   }
@@ -121,7 +121,7 @@ export function batchView(element, job) {
       const seconds = job.started ? (job.ended ?? Date.now() / 1000) - job.started : 0;
       const answered = done - (parts.bad_input ?? 0); // faulty rows take no time
       const rate = seconds > 1 && answered ? answered / seconds : 0;
-      facts.textContent = [total ? `${amount(done)} of ${amount(total)} ${total === 1 ? "row" : "rows"}` : "The table is read", rate ? `${rate >= 1 ? `${rate.toFixed(1)} rows a second` : `${(60 * rate).toFixed(1)} rows a minute`}` : "",
+      facts.textContent = [total ? `${figure(done)} of ${figure(total)} ${total === 1 ? "row" : "rows"}` : "The table is read", rate ? `${rate >= 1 ? `${figure(rate, 3)} rows a second` : `${figure(60 * rate, 3)} rows a minute`}` : "",
         rate && total > done && LIVE.includes(job.state) ? `about ${duration((total - done) / rate)} left` : ""].filter(Boolean).join(" · ");
       if (LIVE.includes(job.state) && total && Date.now() - looked > PERIOD) rows();
     },

@@ -2,7 +2,8 @@
 
 import { ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { cellsOf, headingOf, sheet, short } from "./csv.js";
-import { amount, h, say, unitText, when, words } from "./dom.js";
+import { figure, h, say, unitText, when, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 import { badge, count } from "./words.js";
 
 const place = document.getElementById("catalogues");
@@ -30,12 +31,12 @@ async function lists() {
   const heads = (names) => h("thead", {}, h("tr", {}, names.map((name) => h("th", { scope: "col", class: name === "Rows" ? "right" : "" }, name))));
   place.replaceChildren(h("h1", {}, "Catalogues"), h("p", { class: "note lead" }, "The part tables that designs are made of: those that come with the families, and your own in versions."),
     h("section", { class: "card stack" }, h("h2", {}, "Your own"), catalogues.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Your own tables" }, h("table", {}, heads(["Version", "Rows", "Rows for", "Brought", "Note"]),
-      h("tbody", {}, catalogues.map((entry) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: ownPlace(entry.reference) }, entry.reference)), h("td", { class: "right" }, amount(entry.rows)), h("td", {}, words(entry.table)), h("td", {}, when(entry.created)), h("td", {}, entry.note))))))
+      h("tbody", {}, catalogues.map((entry) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: ownPlace(entry.reference) }, entry.reference)), h("td", { class: "right" }, figure(entry.rows)), h("td", {}, words(entry.table)), h("td", {}, when(entry.created)), h("td", {}, entry.note))))))
       : h("p", { class: "note" }, "You have brought no table. Studies use the tables below."),
     maySubmit() ? h("p", {}, h("a", { class: "button", href: "#bring" }, "Bring a table")) : null),
     h("section", { class: "card stack" }, h("h2", {}, "Tables that come with the families"), h("p", { class: "note" }, "Every row has a source, and says how far it can be trusted. A value that is not known stays empty."),
       h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tables that come with the families" }, h("table", {}, heads(["Table", "Rows", "Parts of"]),
-        h("tbody", {}, tables.map((table) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: `/catalogues?table=${table.name}` }, words(table.name))), h("td", { class: "right" }, amount(table.rows)), h("td", {}, table.families.length ? users(table.families.map((name) => titles.get(name) ?? words(name)).join("; ")) : h("span", { class: "note" }, "looked up by formulas, or for reference")))))))),
+        h("tbody", {}, tables.map((table) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: `/catalogues?table=${table.name}` }, words(table.name))), h("td", { class: "right" }, figure(table.rows)), h("td", {}, table.families.length ? users(table.families.map((name) => titles.get(name) ?? words(name)).join("; ")) : h("span", { class: "note" }, "looked up by formulas, or for reference")))))))),
     maySubmit() ? bringing(tables) : "");
   if (location.hash === "#bring") document.getElementById("bring")?.scrollIntoView();
 }
@@ -68,7 +69,7 @@ function shippedTable(table) {
   document.title = `${words(table.name)} · clutchsynth`;
   const name = words(table.name), numeric = table.columns.map((_, k) => table.rows.some((row) => typeof row[k] === "number"));
   const order = inOrder(table.columns.map((column) => column.name));
-  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(value) : value === null ? h("span", { class: "note" }, "–") : short(typeof value === "string" ? value.replaceAll(/;(?=\S)/g, "; ") : amount(value)));
+  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(value) : value === null ? h("span", { class: "note" }, "–") : short(typeof value === "string" ? value.replaceAll(/;(?=\S)/g, "; ") : figure(value, FULL_DIGITS)));
   const rows = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Rows" }, h("table", { class: "sheet" },
     h("thead", {}, h("tr", {}, order.map((k) => [table.columns[k], k]).map(([column, k]) => h("th", { scope: "col", class: numeric[k] ? "right" : "", title: column.text }, words(column.name), unitText(column.unit) && !column.unit.startsWith("column:") ? h("span", { class: "unit" }, ` ${unitText(column.unit)}`) : null)))),
     h("tbody", {}, table.rows.map((row) => h("tr", {}, order.map((k) => h(k ? "td" : "th", { scope: k ? null : "row", class: numeric[k] ? "right" : typeof row[k] === "string" && row[k].length > 40 ? "long" : "" }, cell(row[k], k))))))));
@@ -78,7 +79,7 @@ function shippedTable(table) {
   h("section", { class: "card" }, h("details", {}, h("summary", {}, h("h2", {}, "What the columns are"), h("span", { class: "note" }, String(table.columns.length))), h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Columns" }, h("table", {},
     h("thead", {}, h("tr", {}, ["Column", "Unit", "Plausible", "Meaning"].map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, table.columns.map((column) => h("tr", {}, h("th", { scope: "row" }, h("code", {}, column.name)), h("td", {}, column.unit?.startsWith("column:") ? `as ${words(column.unit.slice(7))} says` : unitText(column.unit)),
-      h("td", { class: "number" }, column.lower === null && column.upper === null ? "" : `${column.lower === null ? "" : amount(column.lower)} … ${column.upper === null ? "" : amount(column.upper)}`), h("td", { class: "text" }, column.text)))))))));
+      h("td", { class: "number" }, column.lower === null && column.upper === null ? "" : `${column.lower === null ? "" : figure(column.lower, FULL_DIGITS)} … ${column.upper === null ? "" : figure(column.upper, FULL_DIGITS)}`), h("td", { class: "text" }, column.text)))))))));
 }
 
 // ---- a version of one's own ----

@@ -1,7 +1,8 @@
 // Tables as CSV, read and drawn. Those that the service hands out have numbers in the units of their headings.
 
 import { API } from "./api.js";
-import { amount, h, unitText, words } from "./dom.js";
+import { figure, h, unitText, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 
 /** Return the lines of a CSV text, each as its cells; between them stands a comma, a semicolon or a tab. */
 export function cellsOf(text, separator = ",") {
@@ -62,14 +63,17 @@ function drawn(label, { class: kind, caption, heads, rows }) {
 export function sheet([header, ...rows], { label, caption, most = 300, cell, tone }) {
   const heads = header.map(headingOf).map(({ name, unit }, k) => ({ name, title: words(name), unit, right: name !== "line" && rows.some((row) => row[k]) && rows.every((row) => !row[k] || isNumber(row[k])) }));
   const shown = rows.slice(0, most);
-  const said = [caption, shown.length < rows.length ? `the first ${amount(shown.length)} of ${amount(rows.length)} rows` : ""].filter(Boolean).join("; ");
-  const text = (row, { name, right }, k) => cell?.(row[k] ?? "", name, row) ?? (right && row[k] ? amount(Number(row[k])) : short(row[k] ?? ""));
+  const said = [caption, shown.length < rows.length ? `the first ${figure(shown.length)} of ${figure(rows.length)} rows` : ""].filter(Boolean).join("; ");
+  const text = (row, { name, right }, k) => cell?.(row[k] ?? "", name, row) ?? (right && row[k] ? figure(Number(row[k]), FULL_DIGITS) : short(row[k] ?? ""));
   const cells = (row) => heads.map((head, k) => ({ shown: text(row, head, k), class: [!head.right && (row[k] ?? "").length > LONG ? "long" : "", tone?.(head.name, row) ?? ""].join(" ").trim() }));
   return drawn(label, { class: "sheet", caption: said ? h("caption", {}, said) : null, heads, rows: shown.map((row) => ({ cells: cells(row) })) });
 }
 
 const isAmount = (cell) => cell !== "" && cell !== null && cell !== undefined && Number.isFinite(Number(cell));
-const shortened = (cell) => amount(Number(Number(cell).toPrecision(4)));
+const shortened = (cell) => figure(Number(cell));
+
+/** The number in a cell; null where it is empty. */
+export const numberIn = (cell) => (isAmount(cell) ? Number(cell) : null);
 
 /**
  * Return a table of what was found, as people read it.

@@ -1,6 +1,6 @@
 // Curves over a value that varies: points joined by lines, ticks where something changes, and where nothing fits.
 
-import { amount, h, s, unitText, words } from "./dom.js";
+import { figure, h, s, unitText, words } from "./dom.js";
 import { span, ticks } from "./plot.js";
 
 const SMALL = innerWidth < 620; // letters keep their size on a phone
@@ -35,12 +35,12 @@ export function curveOf(across, up, series, { marks = [], barren = [], zero = fa
     }
     const last = points.findLast(([, py]) => py !== null);
     return s("g", { class: `series s${k % 6}` }, s("path", { d: path || "M0 0" }),
-      points.filter(([, py]) => py !== null).map(([px, py]) => s("circle", { cx: x(px), cy: y(py), r: 4 }, s("title", {}, `${label ? `${label}: ` : ""}${amount(px)} ${unitText(across.unit)}: ${words(up.name)} ${amount(Number(py.toPrecision(5)))} ${unitText(up.unit)}`.trim()))),
+      points.filter(([, py]) => py !== null).map(([px, py]) => s("circle", { cx: x(px), cy: y(py), r: 4 }, s("title", {}, `${label ? `${label}: ` : ""}${figure(px)} ${unitText(across.unit)}: ${words(up.name)} ${figure(py)} ${unitText(up.unit)}`.trim()))),
       series.length > 1 && last ? s("text", { x: x(last[0]) - 8, y: y(last[1]) - 8, "text-anchor": "end" }, label) : null);
   });
   const drawing = s("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, class: "plot curve", role: "img", "aria-label": `${title(up)} over ${title(across)}: ${known.length} points` }, bands,
-    ticks(x0, x1, SMALL ? 3 : 5).filter((value) => value >= x0 && value <= x1 && (!across.whole || Number.isInteger(value))).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: HIGH - BOTTOM }), s("text", { x: x(value), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, amount(value))]),
-    ticks(y0, y1).filter((value) => value >= y0 && value <= y1).map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, amount(value))]),
+    ticks(x0, x1, SMALL ? 3 : 5).filter((value) => value >= x0 && value <= x1 && (!across.whole || Number.isInteger(value))).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: HIGH - BOTTOM }), s("text", { x: x(value), y: HIGH - BOTTOM + 18, "text-anchor": "middle" }, figure(value))]),
+    ticks(y0, y1).filter((value) => value >= y0 && value <= y1).map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, figure(value))]),
     marks.filter(({ value }) => value >= x0 && value <= x1).map((mark) => s("g", { class: mark.ends ? "mark ends" : "mark" }, s("title", {}, mark.text), s("line", { x1: x(mark.value), x2: x(mark.value), y1: TOP, y2: HIGH - BOTTOM }), s("path", { d: `M${(x(mark.value) - 4).toFixed(1)} ${HIGH - BOTTOM}h8l-4 -6z` }))),
     lines, s("text", { class: "axis", x: WIDE - RIGHT, y: HIGH - 8, "text-anchor": "end" }, title(across)));
   return h("figure", { class: "curved" }, h("figcaption", {}, h("b", {}, title(up)), up.note ? h("span", { class: "note" }, ` ${up.note}`) : null), drawing);

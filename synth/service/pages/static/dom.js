@@ -1,5 +1,7 @@
 // Nodes and texts. Whatever comes from people goes in as text only; no markup is made of it, and no style attribute.
 
+import { FULL_DIGITS, number } from "./numbers.js";
+
 /**
  * Make an element.
  * @param {string} tag
@@ -40,25 +42,18 @@ export function unitText(unit) {
   return unit && unit !== "-" ? unit.replaceAll("*", "·").replace(/([A-Za-z])([23])(?!\d)/g, (_, letter, power) => letter + SUPERSCRIPT[power]) : "";
 }
 
-/** Return a number with five digits and thin spaces, at which no line ends, between thousands; a text as it is. */
-export function amount(value) {
-  if (typeof value !== "number") return value ?? "";
-  const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e7 || size < 1e-4)) return value.toExponential(3).replace(/\.?0*e\+?/, "e");
-  const [whole, part] = String(Number(value.toPrecision(size >= 1e5 ? 7 : 5))).split(".");
-  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") : whole;
-  return part ? `${spaced}.${part}` : spaced;
-}
+/** A number as it is shown; a text as it is. */
+export const figure = (value, digits) => (typeof value === "string" ? value : number(value, digits));
 
 /** Return a name of the interface as words. */
 export const words = (name) => String(name).replaceAll("_", " ");
 
 const LONG_NUMBER = /(?<![\w.,'"#-])\d[\d.]{3,}\d(?![\w'"]|,\d)/g; // neither quoted nor part of a name
 
-const figure = (found) => (/^\d+(\.\d+)?$/.test(found) ? amount(Number(found)) : found);
+const regrouped = (found) => (/^\d+(\.\d+)?$/.test(found) ? number(Number(found), FULL_DIGITS) : found);
 
 /** Return a text with its long numbers as they are shown elsewhere. */
-export const withFigures = (text) => text.replaceAll(LONG_NUMBER, figure);
+export const withFigures = (text) => text.replaceAll(LONG_NUMBER, regrouped);
 
 /** Return a sentence of the engine as people read it: names in words, units, signs and numbers as they are written. */
 export const asWords = (text) =>
@@ -72,19 +67,22 @@ export function symbol(text) {
   return h("span", { class: "symbol" }, GREEK[base] ?? base, below ? h("sub", {}, GREEK[below] ?? below) : null);
 }
 
+/** Return a date. */
+export const day = (seconds) => new Date(1000 * seconds).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
+
 /** Return a time of day or a date, as near as it matters. */
 export function when(seconds) {
   const date = new Date(1000 * seconds), minutes = Math.round((Date.now() / 1000 - seconds) / 60);
   const text = minutes < 1 ? "just now" : minutes < 60 ? `${minutes} min ago` : minutes < 24 * 60 ? `${Math.round(minutes / 60)} h ago`
-    : date.toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
+    : day(seconds);
   return h("time", { datetime: date.toISOString(), title: date.toLocaleString("en-GB") }, text);
 }
 
 /** Return how long something takes. */
 export function duration(seconds) {
-  if (seconds < 9.95) return `${Math.max(0, seconds).toFixed(1)} s`;
+  if (seconds < 9.95) return `${number(Math.max(0, seconds), 2)} s`;
   if (seconds < 90) return `${Math.round(seconds)} s`;
-  return seconds < 5400 ? `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s` : `${(seconds / 3600).toFixed(1)} h`;
+  return seconds < 5400 ? `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s` : `${number(seconds / 3600, 2)} h`;
 }
 
 /** Say something to whoever listens to the page instead of looking at it. */

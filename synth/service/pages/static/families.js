@@ -1,7 +1,8 @@
 // The families: what each declares, with the sources of its formulas.
 
 import { faultCard, get, maySubmit } from "./api.js";
-import { amount, h, symbol, unitText, words } from "./dom.js";
+import { figure, h, symbol, unitText, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 import { count } from "./words.js";
 
 const place = document.getElementById("families");
@@ -65,9 +66,9 @@ function cellOf(row) {
   const ranged = row.lower !== null && row.lower !== undefined || row.upper !== null && row.upper !== undefined;
   return {
     Unit: unitText(row.unit) || null,
-    Default: row.optional && row.default === null ? "not asked" : row.default === null || row.default === "" ? null : amount(row.default),
+    Default: row.optional && row.default === null ? "not asked" : row.default === null || row.default === "" ? null : figure(row.default, FULL_DIGITS),
     "Range or choices": table ? ["rows of ", h("a", { href: `/catalogues?table=${table}` }, words(table)), row.choices.slice("rows of ".length + table.length)]
-      : row.choices || (ranged ? `${row.lower === null ? "" : amount(row.lower)} … ${row.upper === null ? "" : amount(row.upper)}` : null),
+      : row.choices || (ranged ? `${row.lower === null ? "" : figure(row.lower, FULL_DIGITS)} … ${row.upper === null ? "" : figure(row.upper, FULL_DIGITS)}` : null),
     Meaning: row.text || null,
     Source: row.source || null,
   };

@@ -1,6 +1,7 @@
 // Fields of the form: what a family declares, one row for each name.
 
-import { asWords, amount, h, symbol, unitText, words } from "./dom.js";
+import { asWords, figure, h, symbol, unitText, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 
 /** What somebody has typed, as a spec states it: a number alone is meant in the unit that stands beside it. */
 export function stated(text, unit) {
@@ -70,18 +71,18 @@ const plain = (text) => text.replaceAll(/\s+/g, "");
 
 function nice(read) {
   const [, number, unit] = /^(\S+)\s?(.*)$/.exec(read) ?? [null, read, ""];
-  return `${Number.isFinite(Number(number)) ? amount(Number(number)) : number} ${unitText(unit)}`.trim();
+  return `${Number.isFinite(Number(number)) ? figure(Number(number), FULL_DIGITS) : number} ${unitText(unit)}`.trim();
 }
 
 function range(row) {
   if (row.section === "part") return "rows of the catalogue";
   if (row.lower === null || row.lower === undefined) return "";
-  return `${amount(row.lower)} … ${amount(row.upper)}`;
+  return `${figure(row.lower, FULL_DIGITS)} … ${figure(row.upper, FULL_DIGITS)}`;
 }
 
 /** Return what stands in an empty field. */
 export function hintOf(row) {
-  if (row.section === "assumption") return typeof row.default === "number" ? amount(row.default) : "by others";
+  if (row.section === "assumption") return typeof row.default === "number" ? figure(row.default, FULL_DIGITS) : "by others";
   if (row.section === "limit") return "not asked";
   if (row.section === "part") return "all that fit";
   return ["needed", "duty"].includes(row.section) ? "" : "free";

@@ -1,7 +1,8 @@
 // A front: drawn by the explorer where the server has it, else as certificate, points and table.
 
 import { API, get, maySubmit } from "./api.js";
-import { amount, h, unitText, words } from "./dom.js";
+import { figure, h, unitText, words } from "./dom.js";
+import { percent } from "./numbers.js";
 import { asTyped } from "./as_typed.js";
 import { nothingView, seek } from "./nothing_view.js";
 import { plotOf } from "./plot.js";
@@ -24,7 +25,7 @@ const MOST = 200, SHOWN = 14;
 export async function frontView(element, job, explorer, heard) {
   element.replaceChildren(h("p", { class: "note" }, "Loading the front …"));
   if (explorer && (await explored(element, job, explorer, heard))) return;
-  if (job.summary?.outcome === "infeasible") return nothingView(element, job, null);
+  if (["infeasible", "not_found"].includes(job.summary?.outcome)) return nothingView(element, job, null);
   const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
   const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
   const table = tableCard(job, record, page, objectives);
@@ -102,11 +103,11 @@ function certificate(job, record) {
   const told = record.certificate ?? {};
   const facts = job.summary;
   const proven = told.kind === "global" && !record.interrupted;
-  const gap = typeof told.gap === "number" ? `, to within ${amount(100 * told.gap)} %` : "";
+  const gap = typeof told.gap === "number" ? `, to within ${percent(told.gap)}` : "";
   return h("section", { class: `card certificate ${proven ? "proven" : ""}` },
     h("h2", {}, proven ? `${count(facts.designs, "design")}, proven` : `${count(facts.designs, "design")}, not proven to be the best`),
     h("p", {}, proven ? `No combination of the parts that were searched is better in all objectives${gap}.` : "They hold all limits. Better ones may exist: the search ended before it had excluded them.",
-      told.combinations ? ` ${amount(told.combinations)} combinations: ${amount(told.excluded_by_bound ?? 0)} excluded by bounds, ${amount(told.solved ?? 0)} solved.` : ""),
+      told.combinations ? ` ${figure(told.combinations)} combinations: ${figure(told.excluded_by_bound ?? 0)} excluded by bounds, ${figure(told.solved ?? 0)} solved.` : ""),
     record.interrupted ? h("p", { class: "note" }, `Interrupted: ${record.interrupted}`) : null,
     h("p", { class: "note" }, "The proof covers the formulas, limits and catalogue rows of this study, not the world outside them."));
 }
@@ -130,7 +131,7 @@ function tableCard(job, record, page, objectives) {
 
   for (const design of page.designs) {
     const sheet = `${API}/jobs/${job.id}/files/design_${String(design.rank).padStart(2, "0")}.yaml`;
-    lines.set(design.rank, h("tr", { tabindex: "-1" }, shown.map(({ name }) => h("td", { class: [numeric.has(name) ? "right" : "", objectives.some((own) => own.name === name) ? "main" : ""].join(" ") }, amount(design[name]))),
+    lines.set(design.rank, h("tr", { tabindex: "-1" }, shown.map(({ name }) => h("td", { class: [numeric.has(name) ? "right" : "", objectives.some((own) => own.name === name) ? "main" : ""].join(" ") }, figure(design[name]))),
       h("td", {}, h("a", { href: sheet, download: true, "aria-label": `Design ${design.rank} as YAML` }, "YAML"))));
   }
   sort("rank");

@@ -80,6 +80,8 @@ function typeOf(schema) {
   const own = resolved(schema);
   const known = schema.enum ?? own.enum;
   if (known) return known.join(", ");
+  if (own.const !== undefined) return JSON.stringify(own.const);
+  if (Array.isArray(own.type)) return own.type.map((type) => typeOf({ type })).join(" or ");
   if (own.type === "array") return `list of ${typeOf(own.items) || "values"}`;
   return schema.$ref ? schema.$ref.split("/").at(-1).replace(/([a-z])([A-Z])/g, "$1 $2").toLowerCase() : own.format && own.format !== "binary" ? own.format : { integer: "whole number", object: "object" }[own.type] ?? own.type ?? "anything";
 }
@@ -87,9 +89,17 @@ function typeOf(schema) {
 /** Return the fields of an object, and below each those of what it holds. */
 function fieldsOf(schema, level, asked = true) {
   const own = resolved(schema), fields = Object.entries(own.properties ?? {});
-  if (!fields.length) return null;
+  if (!fields.length) return some(own).map((one) => fieldsOf(one, level, asked)).find(Boolean) ?? null;
   const inner = (one) => { const held = some(one)[0] ?? one; return resolved(held).type === "array" ? resolved(held).items : held; };
-  return h("ul", { class: "schema" }, fields.map(([name, one]) => h("li", {}, named(name, asked && own.required?.includes(name)), " ", h("span", { class: "note" }, typeOf(one)), one.description ? [" – ", coded(one.description)] : "", level + 1 < DEEPEST ? fieldsOf(inner(one), level + 1, asked) : null)));
+  return h("ul", { class: "schema" }, fields.map(([name, one]) => h("li", {}, named(name, asked && own.required?.includes(name)), " ", h("span", { class: "note" }, typeOf(one)), one.description ? [" – ", coded(one.description)] : "", level + 1 < DEEPEST ? fieldsOf(inner(one), level + 1, asked) : null)), kindsOf(own));
+}
+
+/** Return what each kind of job takes as its request, to be opened one by one. */
+function kindsOf(own) {
+  return some(own).filter((one) => one.properties?.kind?.const).map(({ properties: { kind, request } }) => {
+    const asked = resolved(request), forms = asked.properties ? [asked] : some(asked);
+    return h("li", {}, h("details", {}, h("summary", {}, "request of ", h("code", {}, kind.const)), forms.map((form) => [h("p", {}, coded(form.description ?? "")), fieldsOf(form, 0)])));
+  });
 }
 
 function exampleOf(content) {

@@ -2,7 +2,7 @@
 
 import { ask, faultCard, get, listen, maySubmit, sentence } from "./api.js";
 import { batchView } from "./batch_view.js";
-import { duration, h, say, when, words } from "./dom.js";
+import { day, duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
 import { filesCard } from "./files_card.js";
 import { furtherCard } from "./further_card.js";
@@ -75,6 +75,9 @@ const kept = (progress) => (progress?.columns ? { columns: progress.columns, poi
 
 const gone = () => place.replaceChildren(h("section", { class: "card" }, h("p", {}, "This job was removed."), h("p", {}, h("a", { href: "/" }, "To the studies"))));
 
+/** Until when a job is kept that nobody looks at any more. */
+const keptUntil = (told) => (told.pinned || told.expires === null ? "" : ` · kept until ${day(told.expires)} unless it is used`);
+
 function heading() {
   const live = LIVE.includes(job.state);
   const family = job.families.length === 1 ? titles[job.families[0]] ?? words(job.families[0]) : `${job.families.length} families`;
@@ -84,11 +87,11 @@ function heading() {
     RESUMABLE.includes(job.state) ? h("button", { type: "button", class: "primary", onclick: () => act("POST", "/resume") }, "Resume") : null,
     ["synthesis", "explain", "compare"].includes(job.kind) && !live ? h("a", { class: "button", href: `/new?from=${shown.id}` }, "Change and ask again") : null,
     h("button", { type: "button", "aria-pressed": String(job.pinned), title: "Pinned jobs are kept for good", onclick: () => act("PATCH", "", { pinned: !job.pinned }) }, job.pinned ? "Kept for good" : "Keep for good"),
-    live ? null : h("button", { type: "button", onclick: remove }, "Delete"),
+    live || job.pinned ? null : h("button", { type: "button", onclick: remove }, "Delete"),
   ] : [];
   head.replaceChildren(
     h("div", { class: "heading" }, h("h1", {}, job.title), h("div", { class: "row" }, buttons)),
-    h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took),
+    h("p", { class: "row note" }, badge(job), h("span", {}, KINDS[job.kind] ?? words(job.kind), " · ", family, " · ", when(job.created), took, keptUntil(job)),
       shown.moved ? h("b", {}, `Shown with ${shown.moved}`) : null,
       job.parent ? h("a", { href: `/jobs/${job.parent}` }, "what it follows from") : null));
   document.title = `${live ? "… " : ""}${shown.moved ? `${shown.moved}: ` : ""}${job.title} · clutchsynth`;
@@ -146,7 +149,7 @@ async function ended() {
     const further = await furtherCard(job);
     if (job.kind === "batch") await batchView(slot, job).loaded;
     else if (job.kind === "explain") await nothingView(slot, job, job);
-    else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || job.summary?.outcome === "infeasible"))) {
+    else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || ["infeasible", "not_found"].includes(job.summary?.outcome)))) {
       await frontView(slot, job, place.dataset.explorer, (other, rank, moved) => {
         further.shown(other, rank);
         if (moved === undefined || other.id === shown.id) return;

@@ -1,9 +1,10 @@
 // What kinds of jobs have found that are no front: each as curve, table or sentence.
 
 import { API, get, sentence } from "./api.js";
-import { tableOf, tableView } from "./csv.js";
+import { numberIn, tableOf, tableView } from "./csv.js";
 import { curveOf } from "./curve.js";
-import { amount, duration, h, s, unitText, words } from "./dom.js";
+import { duration, figure, h, s, unitText, words } from "./dom.js";
+import { percent, signed, usedShare } from "./numbers.js";
 import { marksOf } from "./what_if_track.js";
 import { count, outcomeText } from "./words.js";
 
@@ -22,8 +23,6 @@ export async function kindView(element, job) {
 
 const card = (title, ...children) => h("section", { class: "card stack" }, title ? h("h2", {}, title) : null, children);
 const badge = (kind, mark, text) => h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
-const percent = (value, digits = 3) => `${amount(Number((100 * value).toPrecision(digits)))} %`;
-const signed = (value) => (value > 0 ? `+${amount(Number(value.toPrecision(3)))}` : value < 0 ? `−${amount(Number((-value).toPrecision(3)))}` : "0");
 const arrows = (text) => words(text).replaceAll("->", "→");
 const verdict = (kind, mark, word, text, ...more) => h("section", { class: `card verdict ${kind}` }, h("p", {}, badge(kind, mark, word), " ", h("b", {}, text)), more);
 
@@ -35,7 +34,7 @@ function folded(label, columns, rows, kind) {
 
 // ---- what if ----------------------------------------------------------------------------------------------------------
 
-const STANDS = { optimal: ["good", "✓", "proven"], feasible: ["", "✓", "not proven"], infeasible: ["warn", "!", "nothing fits"], not_solved: ["", "–", "no answer in time"] };
+const STANDS = { optimal: ["good", "✓", "proven"], feasible: ["", "✓", "not proven"], infeasible: ["warn", "!", "nothing fits"], not_found: ["warn", "?", "none found"], not_solved: ["", "–", "no answer in time"] };
 
 async function whatIfView(job) {
   const [study, table] = await Promise.all([get(`/jobs/${job.id}/result`), tableOf(job.id, "whatif.csv")]);
@@ -52,7 +51,7 @@ async function whatIfView(job) {
   }));
   const numeric = study.steps.every((step) => typeof step.values[place] === "number");
   const found = numeric && !others.length ? marksOf(study) : { marks: [], barren: [] };
-  const other = (step) => step.values.filter((_, k) => k !== place).map((value, k) => `${words(others[k].label)} ${amount(value)} ${unitText(others[k].unit)}`.trim()).join(", ");
+  const other = (step) => step.values.filter((_, k) => k !== place).map((value, k) => `${words(others[k].label)} ${figure(value)} ${unitText(others[k].unit)}`.trim()).join(", ");
   const series = (k) => {
     const lines = new Map();
     for (const step of study.steps) lines.set(other(step), [...(lines.get(other(step)) ?? []), [step.values[place], best.get(step)[k]]]);
@@ -61,7 +60,7 @@ async function whatIfView(job) {
   const across = { name: along.label, unit: along.unit };
   const curves = numeric ? objectives.map((objective, k) => [objective, series(k)]).filter(([, lines]) => lines.length).map(([{ name, unit, sense }, lines]) =>
     curveOf(across, { name, unit, note: sense === "max" ? "the largest there is" : "the least there is" }, lines, { ...found, marks: found.marks.filter((mark) => !mark.objective || mark.objective === name) })) : [];
-  const stated = (step) => step.values.map((value, k) => (Array.isArray(value) ? value.join(", ") : typeof value === "number" ? `${amount(value)} ${unitText(study.varied[k].unit)}`.trim() : value));
+  const stated = (step) => step.values.map((value, k) => (Array.isArray(value) ? value.join(", ") : typeof value === "number" ? `${figure(value)} ${unitText(study.varied[k].unit)}`.trim() : value));
   const seen = new Set();
   const once = (one) => one.kind !== "feasible" || others.length > 0 || !(seen.has(Boolean(one.before)) || !seen.add(Boolean(one.before)));
   const breaks = study.breaks.filter(once).sort((a, b) => a.value - b.value);
@@ -184,24 +183,26 @@ async function rateView(job) {
   const where = limits.columns.filter(({ name }) => name.startsWith("worst at: "));
   const facts = job.summary;
   const all = facts.holding === facts.rated;
-  const holds = (text) => (text === "yes" ? badge("good", "✓", "holds") : badge("bad", "✗", "does not hold"));
-  const at = (row) => where.filter(({ key }) => row[key] !== "").map(({ key, name, unit }) => `${words(name.slice(10))} ${amount(Number(row[key]))} ${unitText(unit)}`.trim()).join(", ");
-  const chance = (row) => (row.yield === "" ? "" : `${percent(row.yield)} (${percent(row["yield low"], 2)} to ${percent(row["yield high"], 2)})`);
+  const holds = (text) => ({ yes: badge("good", "✓", "holds"), no: badge("bad", "✗", "does not hold") }[text] ?? badge("warn", "!", "not shown"));
+  const at = (row) => where.filter(({ key }) => row[key] !== "").map(({ key, name, unit }) => `${words(name.slice(10))} ${figure(Number(row[key]))} ${unitText(unit)}`.trim()).join(", ");
+  const share = (value) => percent(value < 1 ? Math.floor(1e4 * value) / 1e4 : 1, 4); // what is not all is never shown as all
+  const chance = (row) => (row.yield === "" ? "" : `${share(row.yield)} (${share(row["yield low"])} to ${share(row["yield high"])})`);
   return [
     verdict(all ? "good" : "warn", all ? "✓" : "!", `${facts.holding} of ${facts.rated} hold`, sentence(facts.sentence), facts.interrupted ? h("p", { class: "note" }, `Interrupted: ${facts.interrupted}`) : null),
     card("Over the whole range", tableView("How designs stand what scatters", [
       { title: "design", cell: (row) => row.rank },
       { title: "over the range", cell: (row) => holds(row.robust) },
-      { title: "samples that keep all limits", words: true, cell: chance },
+      { title: "yield", words: true, cell: chance },
       { title: "worst limit", words: true, cell: (row) => words(row["worst limit"]) },
-      { title: "used", right: true, cell: (row) => percent(row["worst utilisation"]) },
+      { title: "used", right: true, cell: (row) => usedShare(numberIn(row["worst utilisation"])) },
       { title: "worst at", words: true, cell: (row) => row["worst at"] },
     ], designs.rows)),
     ...designs.rows.map((design) => {
       const rows = limits.rows.filter((row) => row.rank === design.rank && row.utilisation !== "").sort((a, b) => Number(b.utilisation) - Number(a.utilisation));
       return card(`Design ${design.rank}: how far each limit is used at its worst`, folded(`Limits of design ${design.rank}`, [
         { title: "limit", words: true, cell: (row) => words(row.limit) },
-        { title: "used", words: true, cell: (row) => h("span", { class: "share-used" }, bar(Number(row.utilisation)), percent(row.utilisation)) },
+        { title: "over the range", cell: (row) => holds(row.robust) },
+        { title: "used", words: true, cell: (row) => h("span", { class: "share-used" }, bar(Number(row.utilisation)), usedShare(numberIn(row.utilisation))) },
         { title: "value", cell: (row) => row.value },
         { title: "limit", cell: (row) => row["limit value"] },
         { title: "unit", words: true, cell: (row) => unitText(row.unit) || "–" },
@@ -219,7 +220,7 @@ async function verifyView(job) {
   const found = await get(`/jobs/${job.id}/result`);
   const [kind, mark] = found.holds ? VERDICTS.holds : VERDICTS[words(found.verdict)] ?? ["warn", "!"];
   const facts = [["designs looked at", found.designs], ["proof", words(found.certificate)], ["gap that was claimed", found.claimed_gap === null ? null : percent(found.claimed_gap)], ["gap that was proven again", found.proven_gap === null ? null : percent(found.proven_gap)],
-    ["boxes of the proof", amount(found.nodes)], ["time", typeof found.seconds === "number" ? duration(found.seconds) : null]].filter(([, value]) => value !== null && value !== undefined && value !== "");
+    ["boxes of the proof", figure(found.nodes)], ["time", typeof found.seconds === "number" ? duration(found.seconds) : null]].filter(([, value]) => value !== null && value !== undefined && value !== "");
   const list = (title, entries) => (entries?.length ? card(title, h("ul", { class: "misses" }, entries.map((entry) => h("li", {}, sentence(arrows(typeof entry === "string" ? entry : JSON.stringify(entry))))))) : null);
   return [
     verdict(kind, mark, words(found.verdict), sentence(arrows(found.sentence.replace(new RegExp(`^${found.verdict}: `), "").replace(/ \(\d+ boxes, [^()]*\)$/, "")))),

@@ -80,7 +80,7 @@ function draw() {
   else form.replaceChildren();
   const objectives = of("objective");
   const rules = [...asked("limit"), ...asked("assumption")].filter(ofPractice), assumptions = asked("assumption").filter((row) => !ofPractice(row));
-  form.append(
+  const cards = [
     familyCard(),
     study.several ? card("The duty", "what you know of it; who needs more says so", asked("duty").map((row) => field(row, "requirements")))
       : card("The duty", "needed", asked("needed").map((row) => field(row, "requirements"))),
@@ -91,7 +91,8 @@ function draw() {
     folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix")))]),
     folded("practice", "Rules of practice", `${rules.length} of what an experienced engineer demands; each can be widened alone`, rules.map((row) => field(row, "requirements")), false, true),
     folded("assumptions", "Assumptions", `${assumptions.length} values, each with a default and its source`, assumptions.map((row) => field(row, "requirements")), false, true),
-    h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } })));
+    h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } }))];
+  form.append(...cards.filter((one) => one !== null));
   for (const id of open) form.querySelector(`#${id}`)?.setAttribute("open", "");
   for (const one of form.querySelectorAll("details")) if (one.querySelector(".changed")) one.open = true;
   if (!place.contains(form)) place.replaceChildren(h("div", { class: "split" }, form, side.element));

@@ -1,7 +1,7 @@
 // Beside the form: what is missing, what it costs, the start, and the study as text.
 
 import { maySubmit } from "./api.js";
-import { amount, h, words } from "./dom.js";
+import { figure, h, words } from "./dom.js";
 import { curlText, pythonText, yamlText } from "./spec.js";
 
 const TEXTS = { "spec.yaml": (body) => yamlText(body.request), HTTP: curlText, Python: pythonText };
@@ -68,7 +68,7 @@ export function sideView({ start, spec, fieldAt }) {
         ...(answer.remarks ?? []).map((remark) => line("○", "note", remark.message)),
         ...missing.map(([field]) => line("○", "note", words(field.row.name), field.path)),
         ...(answer.ready ? [line("✓", "good", `${facts.stated} requirements stated, all others by default`), facts.slots.length ? line("✓", "good", `Searched among parts: ${facts.slots.join(", ")}`) : null].filter(Boolean) : []));
-      cost.textContent = answer.combinations ? `${amount(answer.combinations)} combinations of parts and counts. You can close the page; the job goes on.` : "";
+      cost.textContent = answer.combinations ? `${figure(answer.combinations)} combinations of parts and counts. You can close the page; the job goes on.` : "";
       go.disabled = !facts.objectives || faults > 0;
     },
   };

@@ -2,6 +2,7 @@
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { asWords, h } from "./dom.js";
+import { FULL_DIGITS, number } from "./numbers.js";
 import { quantity } from "./what_if_knobs.js";
 import { LIVE, outcomeText, stageText } from "./words.js";
 
@@ -63,7 +64,7 @@ export async function seek(ways, job, how = { heading: "h2" }) {
     }
   };
   ways.replaceChildren(h(how.heading, {}, "What would help?"), h("p", {}, "The smallest changes that make it feasible can be searched; that takes some seconds to minutes."),
-    maySubmit() ? h("p", {}, h("button", { type: "button", class: "primary", onclick: begin }, "Find ways out")) : null, fault);
+    ...(maySubmit() ? [h("p", {}, h("button", { type: "button", class: "primary", onclick: begin }, "Find ways out"))] : []), fault);
   if (how.begin && maySubmit()) await begin();
 }
 
@@ -92,7 +93,7 @@ function inUnit(text, typed) {
   const own = typeof typed === "string" ? quantity(typed, "") : null, found = REQUIREMENT.exec(text);
   if (!own?.unit || !found || own.unit === found[5] || /deg/.test(own.unit + found[5])) return text;
   const [, name, needed, unit, given, , rest = ""] = found;
-  return `${name} ${needed} ${unit} (${Number(((own.number * needed) / given).toPrecision(5))} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
+  return `${name} ${needed} ${unit} (${number((own.number * needed) / given, FULL_DIGITS)} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
 }
 
 /** Return how much a way out changes, and whether less would do. */

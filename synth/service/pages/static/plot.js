@@ -1,6 +1,6 @@
 // Designs as points: the first objective to the right, the second upwards; what is better stands low and left.
 
-import { amount, h, s, unitText, words } from "./dom.js";
+import { figure, h, s, unitText, words } from "./dom.js";
 
 const SMALL = innerWidth < 620; // letters keep their size on a phone
 const WIDE = SMALL ? 360 : 720, HIGH = SMALL ? 300 : 360, LEFT = 70, RIGHT = 22, TOP = 18, BOTTOM = 48, TICKS = SMALL ? 4 : 5;
@@ -41,12 +41,12 @@ export function plotOf(columns, designs, { label, choose }) {
   const y = (value) => high - BOTTOM - ((value - y0) / (y1 - y0)) * (high - TOP - BOTTOM);
   const title = ({ name, unit }) => `${words(name)}${unitText(unit) ? ` in ${unitText(unit)}` : ""}`;
   const drawing = s("svg", { viewBox: `0 0 ${WIDE} ${high}`, class: "plot", role: choose ? "group" : "img", "aria-label": `${label}: ${designs.length} points` },
-    ticks(x0, x1).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: high - BOTTOM }), s("text", { x: x(value), y: high - BOTTOM + 18, "text-anchor": "middle" }, amount(value))]),
-    one ? [] : ticks(y0, y1).map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, amount(value))]),
+    ticks(x0, x1).map((value) => [s("line", { class: "grid", x1: x(value), x2: x(value), y1: TOP, y2: high - BOTTOM }), s("text", { x: x(value), y: high - BOTTOM + 18, "text-anchor": "middle" }, figure(value))]),
+    one ? [] : ticks(y0, y1).map((value) => [s("line", { class: "grid", x1: LEFT, x2: WIDE - RIGHT, y1: y(value), y2: y(value) }), s("text", { x: LEFT - 9, y: y(value) + 4, "text-anchor": "end" }, figure(value))]),
     s("text", { class: "axis", x: (LEFT + WIDE - RIGHT) / 2, y: high - 8, "text-anchor": "middle" }, title(columns[0])),
     one ? null : s("text", { class: "axis", x: 0, y: 0, "text-anchor": "middle", transform: `translate(15 ${(TOP + high - BOTTOM) / 2}) rotate(-90)` }, title(columns[1])),
     designs.map((design) => {
-      const told = `${design.rank ? `design ${design.rank}: ` : ""}${columns.map(({ name, unit }, k) => `${words(name)} ${amount(design.values[k])} ${unitText(unit)}`.trim()).join(", ")}${design.note ? `, ${words(design.note)}` : ""}`;
+      const told = `${design.rank ? `design ${design.rank}: ` : ""}${columns.map(({ name, unit }, k) => `${words(name)} ${figure(design.values[k])} ${unitText(unit)}`.trim()).join(", ")}${design.note ? `, ${words(design.note)}` : ""}`;
       const own = choose ? { tabindex: "0", role: "button", "aria-label": told, onclick: () => choose(design), onkeydown: (event) => { if (["Enter", " "].includes(event.key)) { event.preventDefault(); choose(design); } } } : {};
       const at = { class: design.note ? "point named" : "point", cx: x(design.values[0]), cy: y(one ? 0 : design.values[1]), r: design.note ? 7 : 5 };
       return s("circle", { ...at, ...own }, s("title", {}, told));

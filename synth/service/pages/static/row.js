@@ -1,7 +1,8 @@
 // A row of a batch: what it asks, and the designs that it has found.
 
 import { faultCard, get, maySubmit, post, sentence } from "./api.js";
-import { amount, asWords, duration, h, symbol, unitText, words } from "./dom.js";
+import { asWords, duration, figure, h, symbol, unitText, words } from "./dom.js";
+import { percent, usedShare } from "./numbers.js";
 import { plotOf } from "./plot.js";
 import { yamlText } from "./spec.js";
 import { count, rowBadge } from "./words.js";
@@ -72,10 +73,10 @@ function studyButton(row, question, request, designs, fault) {
 
 function outcome(row, designs, faults) {
   if (faults.length) return [h("section", { class: "card stack" }, h("h2", {}, "What is wrong"), h("ul", {}, faults.map((one) => h("li", { class: "fault" }, `${one.column || "The line"}: ${one.value === null ? "nothing stands there" : `got ${one.value}`}; expected ${one.expected}.`))))];
-  if (!designs.length) return [h("section", { class: "card stack" }, h("h2", {}, row.status === "infeasible" ? "Nothing is feasible" : "No designs"), h("p", {}, sentence(asWords(row.explanation) || (row.status === "not_solved" ? "it has not been answered yet" : ""))))];
+  if (!designs.length) return [h("section", { class: "card stack" }, h("h2", {}, row.status === "infeasible" ? "Nothing is feasible" : row.status === "not_found" ? "No design was found" : "No designs"), h("p", {}, sentence(asWords(row.explanation) || (row.status === "not_solved" ? "it has not been answered yet" : ""))))];
   const proven = row.certificate === "global" && row.status === "optimal";
   return [h("section", { class: `card certificate ${proven ? "proven" : ""}` }, h("h2", {}, `${count(designs.length, "design")}, ${proven ? "proven" : "not proven to be the best"}`),
-    h("p", {}, proven ? `No other design that this row allows is better in all objectives${row.gap ? `, to within ${amount(100 * row.gap)} %` : ""}.` : "They hold all limits; better ones may exist."))];
+    h("p", {}, proven ? `No other design that this row allows is better in all objectives${row.gap ? `, to within ${percent(row.gap)}` : ""}.` : "They hold all limits; better ones may exist."))];
 }
 
 function found(row, columns, designs, request, family) {
@@ -91,7 +92,7 @@ function found(row, columns, designs, request, family) {
   const buttons = designs.map((design) => h("button", { type: "button", class: "small", "aria-label": `Show design ${design.rank}`, onclick: () => panel(design) }, design.rank));
   panel(designs[0]);
   const points = designs.map((design) => ({ rank: design.rank, note: designs.length > 1 ? design.note : "", values: objectives.map(({ name }) => design[name]), design }));
-  const lines = designs.map((design, k) => h("tr", {}, h("th", { scope: "row" }, buttons[k]), objectives.map(({ name }) => h("td", { class: "right" }, amount(design[name]))), h("td", { class: "note" }, words(design.note))));
+  const lines = designs.map((design, k) => h("tr", {}, h("th", { scope: "row" }, buttons[k]), objectives.map(({ name }) => h("td", { class: "right" }, figure(design[name]))), h("td", { class: "note" }, words(design.note))));
   return [designs.length > 1 && objectives.length ? plotOf(objectives, points, { label: "Designs of this row", choose: (point) => panel(point.design) }) : "",
     designs.length > 1 ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Designs" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Design"), objectives.map(({ name, unit }) => h("th", { scope: "col", class: "right" }, words(name), h("span", { class: "unit" }, ` ${unitText(unit)}`))), h("th", { scope: "col" }, "What it is"))), h("tbody", {}, lines)))) : "",
     shown];
@@ -99,7 +100,7 @@ function found(row, columns, designs, request, family) {
 
 /** Return everything that is kept of a design: its objectives large, then sizes, parts, what follows, and limits. */
 function panelOf(design, many, columns, objectives, kinds) {
-  const value = ({ name, unit }) => `${typeof design[name] === "number" ? amount(design[name]) : words(design[name] ?? "")} ${unitText(unit)}`.trim();
+  const value = ({ name, unit }) => `${typeof design[name] === "number" ? figure(design[name]) : words(design[name] ?? "")} ${unitText(unit)}`.trim();
   const line = (column) => [h("dt", { title: kinds.get(column.name)?.text ?? "" }, words(column.name), " ", symbol(kinds.get(column.name)?.symbol)), h("dd", { class: "number" }, typeof design[column.name] === "string" && kinds.get(column.name)?.section === "part" ? design[column.name] : value(column))];
   const rest = columns.filter((column) => !BESIDE.includes(column.name) && !column.name.startsWith(LIMIT) && !objectives.includes(column));
   const groups = GROUPS.map(([title, sections]) => [title, rest.filter(({ name }) => sections.includes(kinds.get(name)?.section ?? "derived"))]).filter(([, own]) => own.length);
@@ -108,7 +109,7 @@ function panelOf(design, many, columns, objectives, kinds) {
   return h("section", { class: "card stack", "aria-label": `Design ${design.rank}` }, h("h2", {}, many > 1 ? `Design ${design.rank}` : "The design"),
     h("dl", { class: "figures" }, objectives.map((column) => h("div", {}, h("dt", {}, words(column.name)), h("dd", {}, value(column))))),
     h("div", { class: "panels" }, h("div", { class: "stack" }, groups.slice(0, -1).map(group)),
-      limits.length ? h("div", {}, h("h3", {}, "Limits used"), h("dl", { class: "facts limits" }, limits.map(([name, share]) => [h("dt", {}, words(name)), h("dd", { class: share >= HOT ? "hot" : "" }, h("span", { class: "number" }, `${Math.round(100 * share)} %`), share >= HOT ? h("span", { class: "note" }, " decides") : null)]))) : null,
+      limits.length ? h("div", {}, h("h3", {}, "Limits used"), h("dl", { class: "facts limits" }, limits.map(([name, share]) => [h("dt", {}, words(name)), h("dd", { class: share >= HOT ? "hot" : "" }, h("span", { class: "number" }, usedShare(share)), share >= HOT ? h("span", { class: "note" }, " decides") : null)]))) : null,
       groups.slice(-1).map(group)));
 }
 

@@ -3,7 +3,8 @@
 import { get, listen, maySubmit, post, sentence } from "./api.js";
 import { cellsOf, headingOf, sheet, short } from "./csv.js";
 import { curveOf } from "./curve.js";
-import { amount, asWords, h, unitText, words } from "./dom.js";
+import { asWords, figure, h, unitText, words } from "./dom.js";
+import { percent } from "./numbers.js";
 import { LIVE, badge, count, outcomeText, rowBadge } from "./words.js";
 
 const MOST_LISTED = 5;
@@ -45,7 +46,7 @@ async function offer(element, job) {
   if (live.length) listen(live, (kind) => { if (kind === "end") offer(element, job).catch(() => {}); });
 }
 
-const sizesText = (job) => (job.summary?.variants ? `${count(job.summary.variants, "size")}, total excess of ${words(job.summary.objective)} ${amount(job.summary.total_excess)} ${unitText(job.summary.unit)}`.trim() : outcomeText(job));
+const sizesText = (job) => (job.summary?.variants ? `${count(job.summary.variants, "size")}, total excess of ${words(job.summary.objective)} ${figure(job.summary.total_excess)} ${unitText(job.summary.unit)}`.trim() : outcomeText(job));
 
 const file = (job, name) => get(`/jobs/${job.id}/files/${name}${name.endsWith(".csv") ? "?raw=1" : ""}`);
 
@@ -70,7 +71,7 @@ export async function sizesView(element, job) {
   const [, ...left] = cellsOf(unserved), unit = unitText(record.unit);
   element.replaceChildren(
     h("section", { class: "card stack certificate proven" }, h("h2", {}, `${count(record.variants, "size")} for ${count(cellsOf(assignment).length - 1, "row")}`),
-      h("p", {}, `Total excess of ${words(record.objective)} over each row's own best: ${amount(record.total_excess)} ${unit}, ${record.gap > 0 ? `proven to within ${amount(100 * record.gap)} %` : "proven"}. The fewest that serve all rows: ${record.fewest}${record.fewest_proven ? "" : ", not proven to be the fewest"}.`),
+      h("p", {}, `Total excess of ${words(record.objective)} over each row's own best: ${figure(record.total_excess)} ${unit}, ${record.gap > 0 ? `proven to within ${percent(record.gap)}` : "proven"}. The fewest that serve all rows: ${record.fewest}${record.fewest_proven ? "" : ", not proven to be the fewest"}.`),
       left.length ? h("p", { class: "fault" }, `${count(left.length, "row")} ${left.length === 1 ? "is" : "are"} not served; see below.`) : null),
     drawn ? h("section", { class: "card" }, drawn) : h("div"),
     h("section", { class: "card stack" }, h("h2", {}, "The sizes"), sheet(lines(variants), { label: "The sizes", cell: told })),

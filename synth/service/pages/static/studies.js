@@ -54,8 +54,7 @@ async function load(further = false) {
   const number = (state.asked += 1);
   const asked = query(further);
   try {
-    const [first] = await Promise.all([get(`/jobs?${asked}`), named]);
-    const pages = [first];
+    const pages = [await get(`/jobs?${asked}`)];
     if (!further) {
       asked.set("pinned", "true");
       pages.unshift(await get(`/jobs?${asked}`));
@@ -96,13 +95,18 @@ class Row {
     this.state = h("span", { class: "state" });
     this.words = h("span", { class: "outcome" });
     this.bar = h("progress", { hidden: true, "aria-label": "Share that is done" });
-    this.about = h("span", { class: "about note" }, aboutOf(job));
+    this.about = h("span", { class: "about note" });
     this.element = h("li", {},
       h("a", { class: "title", href: `/jobs/${job.id}` }, job.title),
       this.state,
       this.about,
       h("span", { class: "stands" }, this.words, this.bar));
     this.show(job);
+    this.tell();
+  }
+
+  tell() {
+    this.about.replaceChildren(...aboutOf(this.job));
   }
 
   show(job) {
@@ -169,5 +173,6 @@ function offer(example) {
 document.addEventListener("visibilitychange", () => { if (!document.hidden) load(); });
 const named = get("/families").then(({ families }) => {
   state.titles = Object.fromEntries(families.map((family) => [family.name, family.title]));
+  for (const row of rows.values()) row.tell();
 }, () => {});
 load();

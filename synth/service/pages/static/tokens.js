@@ -1,7 +1,7 @@
 // Tokens: made, shown once, and revoked.
 
 import { API, ask, faultCard, get, post, sentence } from "./api.js";
-import { h, say, when } from "./dom.js";
+import { day, h, say, when } from "./dom.js";
 
 const place = document.getElementById("tokens");
 const SCOPES = [["read", "see the jobs of its tenant"], ["submit", "ask for jobs, cancel and delete them"], ["admin", "make tokens for all tenants"]];
@@ -26,7 +26,7 @@ async function list() {
   listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
     h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Made", "Last used", "Valid until"].map((name) => h("th", { scope: "col" }, name)), h("td", {}, h("span", { class: "unseen" }, "What can be done")))),
     h("tbody", {}, tokens.map((token) => h("tr", { class: over(token) ? "over" : "" }, h("th", { scope: "row", class: "text" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, when(token.created)), h("td", {}, token.used ? when(token.used) : "never"),
-      h("td", {}, token.expires ? new Date(1000 * token.expires).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" }) : "for ever"),
+      h("td", {}, token.expires ? day(token.expires) : "for ever"),
       h("td", {}, over(token) ? h("span", { class: "badge" }, token.revoked ? "revoked" : "run out") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
     : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. The first one must be one that may admin: from then on nobody comes in without a token."));
 }

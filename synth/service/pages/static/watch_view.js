@@ -1,6 +1,6 @@
 // A search that is under way: its stage, and the designs it knows already.
 
-import { amount, duration, h, withFigures } from "./dom.js";
+import { duration, figure, h, withFigures } from "./dom.js";
 import { plotOf } from "./plot.js";
 import { STAGE_ORDER, STEPS, stageText } from "./words.js";
 
@@ -18,8 +18,8 @@ export function watchView(element, job) {
     const told = shown.progress ?? {};
     const parts = [
       shown.started ? `${duration(Math.max(0, Date.now() / 1000 - shown.started))} so far` : "waits for a worker",
-      told.combinations ? `${amount(told.combinations)} combinations` : "",
-      told.incumbents ? `${amount(told.incumbents)} designs known` : "",
+      told.combinations ? `${figure(told.combinations)} combinations` : "",
+      told.incumbents ? `${figure(told.incumbents)} designs known` : "",
       withFigures(told.message ?? ""),
     ];
     facts.textContent = parts.filter(Boolean).join(" · ");

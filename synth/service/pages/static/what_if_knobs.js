@@ -1,6 +1,7 @@
 // What can be varied of a study, and along which values: from what was asked, what its family declares and what was found.
 
-import { amount, unitText, words } from "./dom.js";
+import { figure, unitText, words } from "./dom.js";
+import { FULL_DIGITS } from "./numbers.js";
 
 const NUMBER = /^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s+((?:1\/)?[^\d\s].*?)|([^\d\s].*?))?\s*$/i; // 1/min begins with a digit
 const LIMIT = /^\s*(<=|>=)\s*(.+)$/;
@@ -99,7 +100,7 @@ function trackOf(low, high, base) {
 }
 
 /** Return a value as people read it. */
-export const shown = (knob, value) => (value === null ? "no limit" : `${amount(value)} ${unitText(knob.unit)}`.trim());
+export const shown = (knob, value) => (value === null ? "no limit" : `${figure(value, FULL_DIGITS)} ${unitText(knob.unit)}`.trim());
 
 /** Return a value as a spec states it. */
 export const stated = (knob, value) => (knob.unit && knob.unit !== "-" ? `${value} ${knob.unit}` : value);

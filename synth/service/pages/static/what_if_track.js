@@ -1,6 +1,6 @@
 // What a study has found along a track: where nothing fits, and where other parts are best.
 
-import { amount, h, s, unitText, words } from "./dom.js";
+import { figure, h, s, unitText, words } from "./dom.js";
 
 const LETTER = 6.4; // pixels
 const APART = 10; // pixels between two labels
@@ -20,12 +20,12 @@ const APART = 10; // pixels between two labels
  */
 export function marksOf(study) {
   const { unit } = study.varied[0];
-  const told = (value) => `${amount(Number(value.toPrecision(4)))} ${unitText(unit)}`.trim();
+  const told = (value) => `${figure(value)} ${unitText(unit)}`.trim();
   const marks = [], barren = [], seen = new Set();
   for (const found of study.breaks) {
     const ends = found.kind === "feasible";
     const here = told(found.value);
-    const label = ends ? `fits ${found.before ? "up to" : "from"} ${here}` : amount(Number(found.value.toPrecision(3)));
+    const label = ends ? `fits ${found.before ? "up to" : "from"} ${here}` : figure(found.value);
     if (ends && seen.has(Boolean(found.before))) continue; // one objective after the other tells it
     if (ends) seen.add(Boolean(found.before));
     const what = words(found.change).replaceAll("->", "→");

@@ -1,6 +1,7 @@
 // What another value has changed, in one sentence: two records of the explorer against each other.
 
-import { amount, words } from "./dom.js";
+import { figure, words } from "./dom.js";
+import { signed } from "./numbers.js";
 import { count } from "./words.js";
 
 const MOST = 3; // parts and counts that are named
@@ -14,14 +15,10 @@ function best(record, k, sense) {
   return record.designs.reduce((a, b) => (side * b.v[k] < side * a.v[k] ? b : a));
 }
 
-/** Return a number with as many digits as a comparison needs. */
-const short = (value) => amount(Number(value.toPrecision(4)));
-
 function change(before, after, unit) {
   const part = before ? (100 * (after - before)) / Math.abs(before) : NaN;
-  const size = Math.abs(part) < 10 ? Number(part.toPrecision(2)) : Math.round(part);
-  const share = Number.isFinite(part) ? ` (${size > 0 ? "+" : size < 0 ? "−" : "±"}${Math.abs(size)} %)` : "";
-  return `${short(before)} → ${short(after)}${unit ? ` ${unit}` : ""}${share}`;
+  const share = Number.isFinite(part) ? ` (${signed(part, 2)} %)` : "";
+  return `${figure(before)} → ${figure(after)}${unit ? ` ${unit}` : ""}${share}`;
 }
 
 /** Return what a design is made of that another one is not. */
@@ -34,7 +31,7 @@ function made(record, design, before, other) {
   for (const [name, word] of Object.entries(design.choices)) if (word !== other.choices[name]) told.push(`${words(word)} as ${words(name)}`);
   record.quantities.forEach((quantity, k) => {
     const earlier = before.quantities.findIndex((own) => own.name === quantity.name);
-    if (quantity.kind === "count" && earlier >= 0 && design.v[k] !== other.v[earlier]) told.push(`${amount(design.v[k])} ${quantity.label} (${amount(other.v[earlier])} before)`);
+    if (quantity.kind === "count" && earlier >= 0 && design.v[k] !== other.v[earlier]) told.push(`${figure(design.v[k])} ${quantity.label} (${figure(other.v[earlier])} before)`);
   });
   return told;
 }
@@ -51,7 +48,7 @@ export function difference(asked, now) {
     if (!(quantity.name in now.objectives)) return [];
     const earlier = asked.quantities.findIndex((own) => own.name === quantity.name);
     if (earlier < 0 || a.v[earlier] === null || b.v[k] === null) return [];
-    if (short(a.v[earlier]) === short(b.v[k])) return [`${quantity.label}${knee} as before`];
+    if (figure(a.v[earlier]) === figure(b.v[k])) return [`${quantity.label}${knee} as before`];
     return [`${quantity.label}${knee} ${change(a.v[earlier], b.v[k], quantity.unit)}`];
   });
   if (parts.length > 1 && knee) for (let k = 1; k < parts.length; k += 1) parts[k] = parts[k].replace(knee, "");

@@ -1,6 +1,7 @@
 // How jobs stand, in words.
 
 import { asWords, h, words } from "./dom.js";
+import { number } from "./numbers.js";
 
 export const LIVE = ["open", "running"];
 export const KINDS = {
@@ -14,7 +15,7 @@ const STAGES = {
 export const STAGE_ORDER = ["bounds", "coarse", "extremes", "front", "first", "report"];
 export const STEPS = { bounds: "bounds", coarse: "first designs", extremes: "ends of the front", front: "between them", first: "the best compromise", report: "results" };
 
-const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one : many}`;
+const count = (some, one, many = `${one}s`) => `${number(some)} ${some === 1 ? one : many}`;
 export { count };
 
 /** Return what a job is doing. */
@@ -32,12 +33,12 @@ export function share(job) {
 export function outcomeText(job) {
   const facts = job.summary ?? {};
   if (job.state === "open") return "Waits for a worker";
-  if (job.state === "running") return job.kind === "batch" && job.progress?.rows ? `${job.progress.done} of ${count(job.progress.rows, "row")}` : stageText(job.progress);
+  if (job.state === "running") return job.kind === "batch" && job.progress?.rows ? `${number(job.progress.done)} of ${count(job.progress.rows, "row")}` : stageText(job.progress);
   if (job.state === "failed") return job.error?.message ?? "Failed";
   if (job.kind === "batch" && facts.rows) {
     const status = facts.status ?? {};
     const names = [...Object.keys(ROWS).filter((name) => status[name]), ...Object.keys(status).filter((name) => !ROWS[name])];
-    const parts = names.map((name) => [name, status[name]]).map(([name, number]) => `${number} ${ROWS[name]?.[0].toLowerCase() ?? words(name)}`);
+    const parts = names.map((name) => [name, status[name]]).map(([name, rows]) => `${number(rows)} ${ROWS[name]?.[0].toLowerCase() ?? words(name)}`);
     return `${count(facts.rows, "row")}: ${parts.join(", ")}`;
   }
   if (job.state === "cancelled") return "Cancelled";
@@ -49,6 +50,7 @@ export function outcomeText(job) {
   if (job.kind === "verify" && job.outcome) return job.outcome === "holds" ? "Holds when it is checked again" : words(job.outcome[0].toUpperCase() + job.outcome.slice(1));
   if (job.kind === "whatif" && facts.steps) return `Designs at ${facts.feasible_steps} of ${count(facts.steps, "value")}`;
   if (job.outcome === "infeasible") return job.kind === "explain" ? count(facts.ways ?? 0, "way out", "ways out") : "Nothing is feasible";
+  if (job.outcome === "not_found") return "No design was found";
   if (job.outcome === "not_solved") return "No answer within the time";
   if (job.kind === "size_range" && facts.variants) return `${count(facts.variants, "size")} for all rows that can be served`;
   if (found) return `${found}, ${facts.certificate === "global" && !facts.interrupted ? "proven" : "not proven to be the best"}`;
@@ -62,14 +64,14 @@ const BADGES = {
 
 /** Return the state of a job as a badge: a word and a mark, not a colour alone. */
 export function badge(job) {
-  const [text, kind, mark] = job.state === "done" && job.outcome === "infeasible" && ["synthesis", "compare", "whatif"].includes(job.kind) ? ["Not feasible", "warn", "!"]
+  const [text, kind, mark] = job.state === "done" && ["infeasible", "not_found"].includes(job.outcome) && ["synthesis", "compare", "whatif"].includes(job.kind) ? [ROWS[job.outcome][0], "warn", "!"]
     : BADGES[job.state] ?? [words(job.state), "", "○"];
   return h("span", { class: `badge ${kind}` }, h("span", { "aria-hidden": "true" }, mark), text);
 }
 
 // Of rows of a batch: words, the class of their share in the bar and of their badge, and a mark.
 export const ROWS = {
-  optimal: ["Optimal", "good", "✓"], feasible: ["Feasible", "fair", "✓"], infeasible: ["Not feasible", "warn", "!"], not_solved: ["Not solved", "soft", "○"],
+  optimal: ["Optimal", "good", "✓"], feasible: ["Feasible", "fair", "✓"], infeasible: ["Not feasible", "warn", "!"], not_found: ["None found", "warn", "?"], not_solved: ["Not solved", "soft", "○"],
   refused: ["Refused", "warn", "–"], bad_input: ["Faulty", "bad", "✗"], failed: ["Failed", "bad", "✗"],
 };
 

@@ -1,0 +1,100 @@
+"""Nodes of a program that have a value wherever the limits of the family hold, as far as intervals tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import casadi as ca
+import numpy as np
+
+from synth.bounds.curvature import INF, Ends
+from synth.bounds.feasible_intervals import FeasibleIntervals, natural
+from synth.model.program import OP_SELECT, Node, Program
+from synth.question.search_space import SearchSpace
+
+LARGEST_EXPONENT = 700.0  # e to the power of more is no finite number
+
+
+def _free_of_zero(a: Ends) -> bool:
+    return a[0] > 0 or a[1] < 0
+
+
+def _power(base: Ends, exponent: Ends) -> bool:
+    if base[0] > 0 or (base[0] >= 0 and exponent[0] > 0):
+        return True
+    return exponent[0] == exponent[1] and exponent[0].is_integer() and (exponent[0] >= 0 or _free_of_zero(base))
+
+
+# Operations that have no value for some arguments, and whether they have one for all arguments in some intervals.
+DOMAINS: dict[int, Callable[..., bool]] = {
+    ca.OP_DIV: lambda a, b: _free_of_zero(b),
+    ca.OP_INV: _free_of_zero,
+    ca.OP_LOG: lambda a: a[0] > 0,
+    ca.OP_LOG1P: lambda a: a[0] > -1,
+    ca.OP_SQRT: lambda a: a[0] >= 0,
+    ca.OP_ASIN: lambda a: a[0] >= -1 and a[1] <= 1,
+    ca.OP_ACOS: lambda a: a[0] >= -1 and a[1] <= 1,
+    ca.OP_ACOSH: lambda a: a[0] >= 1,
+    ca.OP_ATANH: lambda a: a[0] > -1 and a[1] < 1,
+    ca.OP_EXP: lambda a: a[1] < LARGEST_EXPONENT,
+    ca.OP_EXPM1: lambda a: a[1] < LARGEST_EXPONENT,
+    ca.OP_POW: _power,
+    ca.OP_CONSTPOW: _power,
+    ca.OP_FMOD: lambda a, b: _free_of_zero(b),
+}
+
+
+def surely_exist(space: SearchSpace, nodes: Sequence[int]) -> list[bool]:
+    """Whether nodes have a value in every design that keeps the limits of the family.
+
+    Special functions count as existing: their families declare guards.
+
+    Parameters
+    ----------
+    space : SearchSpace
+    nodes : list of int
+    """
+    program, (low, high) = space.model.program, _input_ranges(space)
+    with np.errstate(all="ignore"):
+        plain: list[Ends] = []
+        for node in program.nodes:
+            plain.append(natural(program, node, plain, low, high))
+        found = _existing(program, low + high, plain)
+        if not all(found[k] for k in nodes):  # limits leave less, which takes several times as long to learn
+            within = FeasibleIntervals(space.model, low, high)
+            found = _existing(program, low + high, list(zip(within.low, within.high, strict=True)))
+    return [found[k] for k in nodes]
+
+
+def _existing(program: Program, inputs: np.ndarray, ends: Sequence[Ends]) -> list[bool]:
+    """Whether nodes with these intervals exist, each; inputs exist where they are finite."""
+    exists: list[bool] = []
+    for node in program.nodes:
+        if node.op == ca.OP_INPUT:
+            exists.append(bool(np.isfinite(inputs[int(node.constant)])))
+        else:
+            exists.append(_exists(node, [ends[a] for a in node.args], [exists[a] for a in node.args]))
+    return exists
+
+
+def _input_ranges(space: SearchSpace) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest value of every input; not-a-number where a row has none."""
+    low, high = space.ranges.lower.tolist(), space.ranges.upper.tolist()
+    first = space.data(np.zeros(1, dtype=np.int64))
+    for k, owner in enumerate(space.owners()):
+        values = np.ravel(first[k]) if owner < 0 else space.column(k)
+        low.append(float(np.min(values)))
+        high.append(float(np.max(values)))
+    return np.array(low), np.array(high)
+
+
+def _exists(node: Node, ends: Sequence[Ends], args: Sequence[bool]) -> bool:
+    """Whether a node exists for all arguments in some intervals; of branches those count that may be taken."""
+    if node.op == ca.OP_CONST:
+        return -INF < node.constant < INF
+    if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO):
+        low, high = ends[0]
+        taken = [high > 0.5, low < 0.5]
+        return args[0] and all(there or not may for there, may in zip(args[1:], taken, strict=False))
+    domain = DOMAINS.get(node.op)
+    return all(args) and (domain is None or domain(*ends))

@@ -1,0 +1,187 @@
+"""The contraction of boxes as a kernel: one code for all questions, which carries out a list of instructions.
+
+One call tightens boxes, snaps them to the grid, scores what is left of them and packs what is alive. Requirement
+values, tables and ends are arguments, so that a list serves all questions of a family and pattern of signs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from synth.bounds import box_instructions as lists
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, scored_room
+from synth.bounds.boxes import Boxes
+from synth.bounds.contractor import Code
+from synth.bounds.kernel_subtrees import SubtreeCode
+from synth.kernels.loading import kernel
+from synth.kernels.threads import side_by_side
+
+# Sizes that the kernel has room for; boxes of a larger question are tightened over arrays.
+# Variables are goals as well: the last that settle ties.
+MOST = {"N": 24, "LIMITS": 256, "GOALS": 40, "TABLES": 256, "NODES": 1536}
+MOST_REGISTERS = 4096
+
+
+class ListedCode:
+    """The instructions of generated code as the kernel reads them.
+
+    Parameters
+    ----------
+    code : Code
+    listed : Instructions
+
+    Attributes
+    ----------
+    record : array
+        The structure ``Shape`` of the C source: numbers and addresses of eight bytes each.
+    """
+
+    def __init__(self, code: Code, listed: lists.Instructions) -> None:
+        nodes, sweeps, at = code.nodes, code.sweeps, listed.places
+        own = [nodes.factor[k] for k in nodes.tables]
+        sizes = sizes_of(code)
+        numbers = [
+            *(sizes[name] for name in ("N", "LIMITS", "GOALS", "TABLES", "NODES")),
+            len(sweeps.variables),
+            at["registers"],
+            len(listed.literals),
+            len(sweeps.constants),
+            *(at[name] for name in ("literals", "constants", "right_sides", "cutoffs", "floors")),
+            *(at[name] for name in ("tables", "variables", "open", "goals", "scratch")),
+        ]
+        self._kept = [
+            listed.literals,
+            np.array([i for _, i in sweeps.variables], dtype=np.intc),
+            np.array(own, dtype=np.intc),
+            np.array([2 * own.count(f) for f in own], dtype=np.intc),
+            np.array([2 * own[:i].count(f) for i, f in enumerate(own)], dtype=np.intc),
+            *(np.ascontiguousarray(x, dtype=np.intc) for x in (listed.first, listed.later, listed.last)),
+        ]
+        self.record = np.array([*numbers, *(x.ctypes.data for x in self._kept)], dtype=np.int64)
+
+
+def sizes_of(code: Code) -> dict[str, int]:
+    """How large the arrays are that tightening works in."""
+    nodes = code.nodes
+    return {
+        "N": nodes.layout.n_variables + len(nodes.auxiliary),
+        "LIMITS": len(nodes.constraints),
+        "GOALS": len(nodes.goals),
+        "TABLES": len(nodes.tables),
+        "NODES": len(nodes.program.nodes),
+    }
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """What a contraction finds of each box, where that is wanted: searches go by the boxes that are left.
+
+    Parameters
+    ----------
+    alive : array (boxes,)
+        Which boxes are left.
+    undecided : array (boxes, limits)
+        Limits that a box may still break.
+    """
+
+    alive: np.ndarray
+    undecided: np.ndarray
+
+    @staticmethod
+    def room(boxes: int, limits: int) -> Verdicts:
+        """Return room for what is found of so many boxes."""
+        return Verdicts(np.zeros(boxes, dtype=bool), np.zeros((boxes, limits), dtype=bool))
+
+
+class BoxKernel:
+    """Contraction of boxes by a list of instructions.
+
+    Parameters
+    ----------
+    loaded : CDLL
+    listed : ListedCode
+
+    Attributes
+    ----------
+    subtrees : SubtreeCode
+        The same, with splitting.
+    """
+
+    def __init__(self, loaded: ctypes.CDLL, listed: ListedCode) -> None:
+        self._listed = listed  # addresses of its arrays are in its record
+        self._read = {"shape": listed.record}
+        self.subtrees = SubtreeCode(loaded, self._read)
+        self._contract = loaded.contract
+        self._contract.argtypes = [ctypes.POINTER(BatchStructure)]
+        self._contract.restype = ctypes.c_longlong
+
+    def contract(
+        self,
+        prepared: Prepared,
+        boxes: Boxes,
+        cutoffs: np.ndarray | None,
+        weights: np.ndarray,
+        passes: int,
+        workers: int = 1,
+        verdicts: Verdicts | None = None,
+    ) -> Boxes:
+        """Tighten, snap and score boxes; return what is alive.
+
+        Parameters
+        ----------
+        prepared : Prepared
+        boxes : Boxes
+        cutoffs : array (objectives,) or (boxes, objectives), optional
+            Upper bounds of the objectives, with their sign.
+        weights : array (sets, limits + objectives)
+            One row per set of objectives with a cutoff, a power of 2; or one row alone.
+        passes : int
+            Forward-backward sweeps.
+        workers : int
+            Threads; the boxes are split between them and the result is the same for any number.
+        verdicts : Verdicts, optional
+            Takes what is found of each box.
+        """
+        most = np.ascontiguousarray(np.full(boxes.bounds.shape[1], np.inf) if cutoffs is None else cutoffs, dtype=float)
+        step = most.shape[1] if most.ndim == 2 else 0
+        taken = scored_room(boxes, len(boxes))
+        moving, still = dict(taken), dict(self._read)
+        (moving if step else still)["cutoffs"] = most
+        if verdicts is not None:
+            moving |= {"alive": verdicts.alive, "undecided": verdicts.undecided}
+        batches = Batches(prepared, boxes, weights, passes, moving, still, cutoffs_step=step)
+        ends = prepared.parts(len(boxes), workers)
+        work = [partial(self._tightened, batches.part(first, last)) for first, last in pairwise(ends)]
+        kept = side_by_side(work, workers)
+        rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
+        found = filled(taken)
+        return Boxes.joined([found.take(own) for own in rows])
+
+    def _tightened(self, batch: BatchStructure) -> int:
+        """Tighten some boxes; return how many are left."""
+        return int(self._contract(ctypes.byref(batch)))
+
+
+def listed_code(code: Code) -> ListedCode | None:
+    """Instructions of generated code; None where the kernel has no room for them, or something has no form there."""
+    if any(size > MOST[name] for name, size in sizes_of(code).items()):
+        return None
+    listed = lists.instructions(code)
+    return None if listed is None or listed.places["registers"] > MOST_REGISTERS else ListedCode(code, listed)
+
+
+def box_kernel(code: Code) -> BoxKernel | None:
+    """Kernel for generated code; None where there is none, or it has no room for the code."""
+    loaded = kernel("boxes")
+    if loaded is None:
+        return None
+    if code.kernel is None:
+        listed = listed_code(code)
+        code.kernel = (None if listed is None else BoxKernel(loaded, listed),)
+    found: BoxKernel | None = code.kernel[0]
+    return found

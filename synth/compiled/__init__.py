@@ -1,1 +1,0 @@
-"""Compiled code: finding the compiler, keeping what it built."""

@@ -1,0 +1,51 @@
+"""Elementary operations as the kernels compute them, in C."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+# Per operation: its value from those of the arguments, which are registers.
+EXPRESSIONS = {
+    ca.OP_ADD: "{0} + {1}",
+    ca.OP_SUB: "{0} - {1}",
+    ca.OP_MUL: "{0} * {1}",
+    ca.OP_DIV: "{0} / {1}",
+    ca.OP_POW: "v_pow({0}, {1})",
+    ca.OP_CONSTPOW: "v_pow({0}, {1})",
+    ca.OP_LT: "{0} < {1}",
+    ca.OP_LE: "{0} <= {1}",
+    ca.OP_EQ: "{0} == {1}",
+    ca.OP_NE: "{0} != {1}",
+    ca.OP_FMOD: "v_fmod({0}, {1})",
+    ca.OP_COPYSIGN: "v_copysign({0}, {1})",
+    ca.OP_FMIN: "v_min({0}, {1})",
+    ca.OP_FMAX: "v_max({0}, {1})",
+    ca.OP_ATAN2: "v_atan2({0}, {1})",
+    ca.OP_HYPOT: "v_hypot({0}, {1})",
+    ca.OP_NEG: "-{0}",
+    ca.OP_EXP: "v_exp({0})",
+    ca.OP_LOG: "v_log({0})",
+    ca.OP_SQRT: "v_sqrt({0})",
+    ca.OP_SQ: "{0} * {0}",
+    ca.OP_TWICE: "{0} + {0}",
+    ca.OP_SIN: "v_sin({0})",
+    ca.OP_COS: "v_cos({0})",
+    ca.OP_TAN: "v_tan({0})",
+    ca.OP_ASIN: "v_asin({0})",
+    ca.OP_ACOS: "v_acos({0})",
+    ca.OP_ATAN: "v_atan({0})",
+    ca.OP_FLOOR: "v_floor({0})",
+    ca.OP_CEIL: "v_ceil({0})",
+    ca.OP_FABS: "v_abs({0})",
+    ca.OP_SIGN: "v_sign({0})",
+    ca.OP_ERF: "v_erf({0})",
+    ca.OP_INV: "1.0 / {0}",
+    ca.OP_SINH: "v_sinh({0})",
+    ca.OP_COSH: "v_cosh({0})",
+    ca.OP_TANH: "v_tanh({0})",
+    ca.OP_ASINH: "v_asinh({0})",
+    ca.OP_ACOSH: "v_acosh({0})",
+    ca.OP_ATANH: "v_atanh({0})",
+    ca.OP_LOG1P: "v_log1p({0})",
+    ca.OP_EXPM1: "v_expm1({0})",
+}

@@ -1,0 +1,44 @@
+"""Description of the interface: what the framework derives from routes, and the form of requests of jobs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI
+
+from synth.jobs.kinds.request_schemas import DESIGN, REQUESTS
+from synth.service.context import API
+from synth.service.errors import JSON
+
+
+class DescribedService(FastAPI):
+    """Application whose description tells what each kind of job takes as its request."""
+
+    def openapi(self) -> dict[str, Any]:
+        """Describe the interface."""
+        told = super().openapi()
+        schemas = told["components"]["schemas"]
+        schemas |= {_name(kind): schema for kind, schema in REQUESTS.items()} | {"Design": DESIGN}
+        schemas["JobRequest"]["anyOf"] = [
+            {"properties": {"kind": {"const": kind}, "request": _ref(_name(kind))}} for kind in REQUESTS
+        ]
+        batch = _ref(_name("batch"))
+        bodies = {
+            # A check answers whatever it is asked.
+            "check": {"anyOf": [_ref(_name("synthesis")), _ref(_name("compare")), {"type": "object"}]},
+            "evaluate": _ref("Design"),
+            "batches": batch,
+            "batches/check": batch,
+        }
+        for path, schema in bodies.items():
+            told["paths"][f"{API}/{path}"]["post"]["requestBody"]["content"][JSON]["schema"] = schema
+        return told
+
+
+def _name(kind: str) -> str:
+    """Return how the schema of requests of a kind is called."""
+    return "".join(word.capitalize() for word in kind.split("_")) + "Question"
+
+
+def _ref(name: str) -> dict[str, str]:
+    return {"$ref": f"#/components/schemas/{name}"}

@@ -1,0 +1,1 @@
+"""Texts for people: the one rule by which numbers are shown."""
