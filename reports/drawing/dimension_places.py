@@ -19,7 +19,6 @@ OVER = 1.0  # text over its line
 TAIL = 5.0  # of arrows that point at each other from outside
 CLEAR = 0.8  # between a text and a line
 EDGES: tuple[Edge, ...] = ("top", "bottom", "left", "right")
-OUTWARDS: dict[Edge, XY] = {"top": (0, 1), "bottom": (0, -1), "left": (-1, 0), "right": (1, 0)}
 
 
 @dataclass(frozen=True)

@@ -428,7 +428,6 @@ SIZE_COLUMNS = (
     Column("value", number=True, width=1.3),
     Column("", width=2.5),
 )
-OPTION_COLUMNS = (Column("option", width=2), Column("in force", width=2), Column("from"))
 PART_COLUMNS = (Column("meaning", width=4), Column("symbol"), Column("value", number=True, width=1.5))
 LIMIT_COLUMNS = (
     Column("limit", width=2.6),

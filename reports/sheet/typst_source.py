@@ -153,10 +153,6 @@ def _high_equation(layout: Layout) -> str:
     return f"eq({_alternative(plain(layout))}, $display({typst_math(layout)})$)"
 
 
-def _is_layout(part: object) -> bool:
-    return isinstance(part, LAYOUTS)
-
-
 def _lines_of(layout: Layout, widest: float) -> list[Layout]:
     """Return a layout as lines of a narrow column: broken before a comparison, then before terms and factors."""
     if width(layout) <= widest:

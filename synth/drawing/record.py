@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
@@ -180,10 +180,6 @@ class Drawing:
             for view in self.views
             for dimension in (*view.dimensions, *(m for d in view.details for m in d.dimensions))
         )
-
-    def with_remarks(self, *remarks: str) -> Drawing:
-        """Return the drawing with more remarks."""
-        return replace(self, remarks=(*self.remarks, *remarks))
 
     def volume(self, weight: Weight) -> float:
         """Return the volume of the bodies that a mass is compared with [mm3]."""

@@ -91,6 +91,7 @@ class EngineProcess:
         self._process = context.Process(target=_serve, args=(far, settings), name="engine", daemon=True)
         self._process.start()
         far.close()
+        self._ending = threading.Lock()
         self.settings = settings
         self.code = ""  # the fingerprint of its programs, once it is warm
         self.calls = 0
@@ -195,10 +196,11 @@ class EngineProcess:
         return f"the process ended with code {code}"
 
     def end(self) -> None:
-        """End the process at once, whatever it does."""
-        self._process.kill()
-        self._near.close()
-        self._process.join(timeout=5.0)
+        """End the process at once, whatever it does; who asks, and who ends all, may do so at once."""
+        with self._ending:  # a pipe that two threads close takes a file with it that was opened between
+            self._process.kill()
+            self._near.close()
+            self._process.join(timeout=5.0)
 
 
 class _Budget:

@@ -60,6 +60,8 @@ class Processes(Executor):
         self._context = multiprocessing.get_context("spawn")
         self.slots = workers
         self._all = [_Worker(self._context) for _ in range(workers)]
+        self._exchange = threading.Lock()
+        self._over = False
         self._idle: SimpleQueue[_Worker] = SimpleQueue()
         for worker in self._all:
             self._idle.put(worker)
@@ -80,10 +82,14 @@ class Processes(Executor):
         return self._replaced(worker) if broken else worker
 
     def _replaced(self, worker: _Worker) -> _Worker:
-        worker.end()
-        fresh = _Worker(self._context)
-        self._all[self._all.index(worker)] = fresh
-        return fresh
+        """Give a fresh process for one that died; after the end, when all die, there is none."""
+        with self._exchange:
+            if self._over:
+                return worker
+            worker.end()
+            fresh = _Worker(self._context)
+            self._all[self._all.index(worker)] = fresh
+            return fresh
 
     def found(self) -> int:
         """Return how many rows of the groups that are under way have designs by now."""
@@ -91,8 +97,12 @@ class Processes(Executor):
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the processes at once, whatever they do."""
-        for worker in self._all:
-            worker.end()
+        # Threads in which processes are found dead must not close the same pipes: a file opened meanwhile would go.
+        with self._exchange:
+            if not self._over:
+                self._over = True
+                for worker in self._all:
+                    worker.end()
 
 
 class _Worker:

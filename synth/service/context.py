@@ -118,4 +118,3 @@ async def store_of(request: Request) -> Store:
 
 
 Context = Annotated[ServiceContext, Depends(context_of)]
-JobStore = Annotated[Store, Depends(store_of)]

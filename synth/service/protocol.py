@@ -25,7 +25,7 @@ class BoundedProtocol(HttpToolsProtocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Expect the first head."""
         super().connection_made(transport)
-        self._head_bytes, self._in_head, self._timer = 0, False, None
+        self._head_bytes, self._timer = 0, None
         self._wait_for_head()
 
     def connection_lost(self, exc: Exception | None) -> None:

@@ -10,6 +10,7 @@ from synth.verification.verify import checked
 from tests.certificates.structures import STRUCTURES, make
 from tests.certificates.test_global_claims import run
 from tests.repetitions import repetitions
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.slow  # hundreds of searches
 
@@ -31,5 +32,5 @@ def test_a_front_of_a_random_problem_holds_when_it_is_checked_again(structure, s
 def test_it_holds_by_levels_alone_as_well(structure):
     front = run(make(structure, SEED + 1))
     levels = replace(PROOF, at_once=0, at_once_each=0, behind=0.0)
-    check = checked(front, None, None, time.monotonic() + 60, levels)
+    check = checked(front, None, None, time.monotonic() + PATIENCE, levels)
     assert (check.findings, check.open) == ([], [])

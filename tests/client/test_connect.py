@@ -17,6 +17,7 @@ import yaml
 import synth
 from synth.client.connection import ServiceClient
 from synth.client.transport import ClientSettings, ServiceRefusedError
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
@@ -44,7 +45,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield process.stdout.readline().split()[-1]
     finally:
         process.terminate()
-        process.communicate(timeout=30)
+        process.communicate(timeout=PATIENCE)
 
 
 @pytest.fixture

@@ -35,6 +35,7 @@ from synth.terminal import session as terminal
 from tests.docs import mechanics_page
 from tests.shipped import FAMILIES
 from tests.terminal.entry import at_once, in_process
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -145,7 +146,7 @@ class Reader:
             env={**self.environment, "COLUMNS": self.columns},
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=PATIENCE,
             check=False,
         )
 

@@ -20,6 +20,7 @@ from tests.ground.test_output_folder import small_disk
 from tests.terminal.entry import COMMAND, at_once, clutchsynth, in_process
 from tests.terminal.test_choice_commands import SEVERAL
 from tests.terminal.test_cli import HOIST, SMALL, refused
+from tests.waiting import PATIENCE
 
 pytestmark = [
     pytest.mark.slow,
@@ -74,7 +75,7 @@ def out(small: Path, tmp_path: Path) -> Path:
 def until_it_works(database: Path, rows: int) -> None:
     """Wait until a worker has taken the first rows of a batch of so many."""
     taken = "SELECT count(*) FROM unit JOIN job ON unit.job = job.id WHERE rows = ? AND owner <> ''"
-    deadline = time.monotonic() + 100
+    deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         with closing(sqlite3.connect(database)) as connection:
             if connection.execute(taken, (rows,)).fetchone()[0]:
@@ -104,7 +105,7 @@ def test_a_search_that_is_stopped_stands_beside_the_earlier_result(out: Path, nu
     before = contents(out)
     with begun(out) as process:
         process.send_signal(number)
-        said, errors = process.communicate(timeout=100)
+        said, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 4, errors
     kept, stopped = beside(out)
     assert kept == before
@@ -263,7 +264,7 @@ def test_a_batch_of_other_rows_that_is_stopped_stands_beside(tmp_path: Path) -> 
     ) as process:
         until_it_works(out / "jobs.sqlite", 2400)
         os.killpg(process.pid, signal.SIGTERM)  # its workers as well, as a scheduler does
-        said, errors = process.communicate(timeout=100)
+        said, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 4, errors
     assert "failed" not in said
     kept, stopped = beside(out)

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import PATIENCE
+
 ROOT = Path(__file__).parents[2]
 BEGIN = "from tests.endtoend.no_posix import begin\nbegin()\n"
 MAIN = "from synth.terminal.cli import main; main()"
@@ -58,7 +60,7 @@ def did(folder: Path, words: tuple[str, ...], **environment: str) -> subprocess.
         cwd=folder,
         env={"PATH": str(folder / "nothing"), "HOME": str(folder / "home"), **environment},
         capture_output=True,
-        timeout=300,
+        timeout=PATIENCE,
         check=False,
     )
 

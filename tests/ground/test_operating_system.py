@@ -12,6 +12,7 @@ import pytest
 from synth import operating_system as system
 from synth.errors import InputError
 from synth.output_folder import FRONT, READY, _is_inside, check_not_held, save_result, settle
+from tests.waiting import until
 
 SLEEP = "import time; time.sleep(600)"
 
@@ -21,7 +22,7 @@ def test_processes_are_asked_for_and_left_alone() -> None:
     try:
         assert system.is_alive(process.pid)
         assert process.poll() is None
-        assert system.resident(process.pid) > 1_000_000
+        until(lambda: system.resident(process.pid) > 1_000_000)  # little before Python has started
         assert system.beginning(process.pid) == system.beginning(process.pid) != system.beginning(os.getpid())
     finally:
         process.kill()

@@ -17,6 +17,7 @@ from synth.jobs.database import engine_for, file_url
 from synth.jobs.store import Store
 from tests.jobs.test_kill import small_table
 from tests.terminal.entry import COMMAND, at_once, in_process
+from tests.waiting import PATIENCE
 
 ROWS = 12
 ASKED = ("--points", "1", "--objective", "mass", "-q")
@@ -84,7 +85,7 @@ def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(
     words = ["batch", str(table), "-o", str(tmp_path / "out"), "--database", database, "--workers", "1", *ASKED]
     process = subprocess.Popen([*COMMAND, *words], stderr=subprocess.DEVNULL)
     try:
-        end = time.monotonic() + 90.0
+        end = time.monotonic() + PATIENCE
         while not answered(database):
             assert time.monotonic() < end
             assert process.poll() is None

@@ -18,7 +18,7 @@ import pytest
 
 import synth
 from synth.errors import InputError
-from synth.jobs import runner
+from synth.jobs import executors, runner
 from synth.jobs.batch import BatchJob, resume, work_off
 from synth.jobs.database import file_url
 from synth.jobs.executors import Cluster, Inline, Processes
@@ -28,6 +28,7 @@ from synth.jobs.store import Store
 from synth.question.settings import SearchSettings
 from tests.jobs.deadly import deadly_unit, faulty_unit
 from tests.sample_problems.rod import Rod
+from tests.waiting import PATIENCE, until
 
 PARTS = "steel = S185, 42CrMo4"
 
@@ -208,14 +209,35 @@ def test_a_process_that_dies_does_not_disturb_the_others() -> None:
     pool = Processes(2)
     try:
         dying, living = pool.submit(os._exit, 3), pool.submit(time.sleep, 0.2)
-        wait([dying, living], timeout=60)
+        wait([dying, living], timeout=PATIENCE)
         assert isinstance(dying.exception(), BrokenProcessPool)
         assert living.exception() is None
         own = os.getpid()
-        numbers = {pool.submit(os.getpid).result(timeout=60) for _ in range(4)}
+        numbers = {pool.submit(os.getpid).result(timeout=PATIENCE) for _ in range(4)}
         assert own not in numbers
     finally:
         pool.shutdown()
+
+
+def test_processes_that_are_ended_at_work_are_ended_once_and_not_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pipe closed twice takes with it whatever file has got its number meanwhile."""
+    ended, end = [], executors._Worker.end
+
+    def counted(worker: executors._Worker) -> None:
+        ended.append(worker)
+        end(worker)
+
+    monkeypatch.setattr(executors._Worker, "end", counted)
+    pool = Processes(2)
+    workers = list(pool._all)
+    asleep = [pool.submit(time.sleep, PATIENCE) for _ in range(2)]
+    until(lambda: all(future.running() for future in asleep))
+    pool.shutdown()
+    pool.shutdown()
+    wait(asleep, timeout=PATIENCE)
+    until(lambda: pool._idle.qsize() == 2)
+    assert [pool._idle.get() for _ in range(2)] in (workers, workers[::-1])
+    assert ended == workers
 
 
 class Slow(Inline):
@@ -288,7 +310,7 @@ def test_two_processes_may_work_on_one_job(tmp_path: Path) -> None:
     helper = threading.Thread(target=lambda: ends.append(work_off(other, job.id, shares, None, None, None, print)))
     helper.start()
     ends.append(job.work(None, None, None))
-    helper.join(timeout=60)
+    helper.join(timeout=PATIENCE)
     assert ends == ["", ""]
     assert job.write() == {"optimal": 12}
     other.close()

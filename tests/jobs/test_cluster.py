@@ -24,6 +24,7 @@ from synth.jobs.executors import Cluster
 from synth.jobs.job_settings import ClusterSettings, JobSettings, RunnerSettings
 from tests.jobs.asked import batch
 from tests.sample_problems.rod import Rod
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
@@ -67,9 +68,9 @@ class Parts:
     def ready(self, workers: int) -> None:
         from distributed import Client
 
-        with Client(self.address, timeout=60, set_as_default=False) as client:
+        with Client(self.address, timeout=PATIENCE, set_as_default=False) as client:
             if workers:
-                client.wait_for_workers(workers, timeout=60)
+                client.wait_for_workers(workers, timeout=PATIENCE)
 
 
 @pytest.fixture
@@ -136,7 +137,7 @@ def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts, capfd: pytest.Capt
     said.clear()
     scheduler.kill()
     scheduler.wait()
-    deadline = time.monotonic() + 30
+    deadline = time.monotonic() + PATIENCE
     while cluster.alive() and time.monotonic() < deadline:
         time.sleep(0.02)
     assert not cluster.alive()

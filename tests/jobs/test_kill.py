@@ -18,6 +18,7 @@ from synth.jobs.database import file_url
 from synth.jobs.store import Store
 from tests.repetitions import repetitions
 from tests.terminal.entry import COMMAND, in_process
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 ROWS = """id,family,load_torque,driver_speed [1/min],driven_inertia [kg*m2],guide_model,practice,ramp_time,parts,limits
@@ -51,7 +52,7 @@ def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_pat
         check=False,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=PATIENCE,
         env={**os.environ, "OMP_NUM_THREADS": "1"},
     )
     assert done.returncode == 0, done.stderr
@@ -99,18 +100,18 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
     process = subprocess.Popen([*COMMAND, *words, "--workers", "1"], stderr=subprocess.PIPE, text=True)
     try:
         file = tmp_path / "out" / DATABASE
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline and not at_work(file):
             time.sleep(0.02)
         time.sleep(random.Random(int(number)).uniform(0.0, 0.5))
         workers = children_of(process.pid)
         assert workers
         process.send_signal(number)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
     assert process.returncode == (-9 if number == signal.SIGKILL else 4), errors
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline and any(exists(worker) for worker in workers):
         time.sleep(0.02)
     assert not [worker for worker in workers if exists(worker)]

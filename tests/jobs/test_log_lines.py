@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.jobs.log_lines import JsonLines, log_line
+from tests.waiting import PATIENCE
 
 SPEAKS = """
 import logging, multiprocessing, sys, threading, warnings
@@ -46,7 +47,7 @@ if __name__ == "__main__":
 def test_all_that_is_said_is_json(tmp_path: Any) -> None:
     program = tmp_path / "speaks.py"
     program.write_text(SPEAKS)
-    done = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True, timeout=PATIENCE)
     *lines, last = done.stderr.splitlines()
     assert last == "plain again"
     told = [json.loads(line) for line in lines]

@@ -31,6 +31,7 @@ from synth.jobs.warm_starts import place
 from synth.parametric.joint_search import JointSearch
 from tests.jobs.asked import batch
 from tests.sample_problems.rod import Rod
+from tests.waiting import PATIENCE
 
 SMALL = JobSettings(groups=GroupSettings(least=4, most=9))
 SETTINGS = {"objectives": ["mass"], "points": 1}
@@ -309,7 +310,7 @@ def test_a_job_that_is_cancelled_stops_within_a_group(
         with Store(f"sqlite:///{tmp_path / 'jobs.sqlite'}") as store:
             (job,) = store.jobs()
             store.cancel(job.id)
-        end = time.monotonic() + 60
+        end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             deadline.check()
             time.sleep(0.01)
@@ -326,9 +327,9 @@ def test_a_job_that_is_cancelled_stops_within_a_group(
 def test_worker_processes_show_how_far_they_are() -> None:
     pool = Processes(1)
     try:
-        pool.submit(show, {"incumbents": 7}).result(timeout=60)
+        pool.submit(show, {"incumbents": 7}).result(timeout=PATIENCE)
         assert pool.found() == 7
-        pool.submit(show, {"incumbents": 0}).result(timeout=60)
+        pool.submit(show, {"incumbents": 0}).result(timeout=PATIENCE)
         assert pool.found() == 0
     finally:
         pool.shutdown()

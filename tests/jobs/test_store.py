@@ -24,6 +24,7 @@ from synth.jobs.job_table import CANCELLED, OPEN, RUNNING
 from synth.jobs.models import VERSION_TABLE, Base, WorkUnit
 from synth.jobs.owners import has_died, new_owner
 from synth.jobs.store import Outcome, Store
+from tests.waiting import PATIENCE
 
 
 def outcome(text: str = "found", status: str = "optimal") -> Outcome:
@@ -283,7 +284,7 @@ def test_what_is_no_database_is_not_waited_for(tmp_path: Path, monkeypatch: pyte
 def test_two_processes_may_open_a_new_database_at_once(new_database: str) -> None:
     program = f"from synth.jobs.store import Store; Store({new_database!r}).close()"
     both = [subprocess.Popen([sys.executable, "-c", program]) for _ in range(2)]
-    assert [process.wait(timeout=60) for process in both] == [0, 0]
+    assert [process.wait(timeout=PATIENCE) for process in both] == [0, 0]
 
 
 @pytest.mark.parametrize(

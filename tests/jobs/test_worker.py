@@ -244,14 +244,14 @@ def test_the_command_is_ended_and_another_one_goes_on(tmp_path: Path, engines: E
         first = subprocess.Popen([*words, "--slots", "1"], stderr=subprocess.PIPE, text=True)
         until(lambda: store.open_units(job), lambda units: units == (0, 1))
         first.send_signal(number)
-        _, said = first.communicate(timeout=20)
+        _, said = first.communicate(timeout=PATIENCE)
         assert first.returncode == (0 if number == signal.SIGTERM else -number)
         assert "working at the jobs of" in said
         second = subprocess.Popen([*words, "--slots", "1", "--follow"], stdin=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
             assert ended(store, job).state == DONE
         finally:
-            second.communicate(timeout=20)  # it ends with its standard input
+            second.communicate(timeout=PATIENCE)  # it ends with its standard input
         assert second.returncode == 0
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from synth import deadline
 from synth.kernels.threads import SideBySide, side_by_side
+from tests.waiting import PATIENCE
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 8])
@@ -22,7 +23,7 @@ def test_what_comes_of_parts_stands_in_their_order(workers: int, count: int) -> 
 
 
 def test_parts_run_side_by_side() -> None:
-    meeting = threading.Barrier(2, timeout=30.0)
+    meeting = threading.Barrier(2, timeout=PATIENCE)
     assert len(side_by_side([meeting.wait, meeting.wait], 2)) == 2  # one alone would wait in vain
 
 
@@ -109,12 +110,12 @@ def test_several_callers_share_threads_without_waiting_for_each_other_for_ever()
     for caller in callers:
         caller.start()
     for caller in callers:
-        caller.join(timeout=30.0)
+        caller.join(timeout=PATIENCE)
     assert [found[k] for k in range(16)] == expected
 
 
 def test_threads_know_of_no_end_of_the_caller() -> None:
-    meeting = threading.Barrier(2, timeout=30.0)
+    meeting = threading.Barrier(2, timeout=PATIENCE)
 
     def part() -> float:
         meeting.wait()
@@ -134,7 +135,7 @@ def test_a_process_that_was_forked_has_no_threads_and_does_it_alone() -> None:
     child = os.fork()
     if not child:
         os._exit(0 if side_by_side([partial(pow, 2, k) for k in range(4)], 2) == [1, 2, 4, 8] else 1)
-    end = time.monotonic() + 30.0
+    end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         ended, status = os.waitpid(child, os.WNOHANG)
         if ended:

@@ -27,6 +27,7 @@ from synth.reports.figure import STYLE, figure_png, figure_svg, make_figure
 import synth
 from synth.errors import InputError
 from tests.sample_problems.ropes import Ropes, ropes
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 
@@ -293,7 +294,7 @@ def test_the_drawing_depends_on_the_frame_alone() -> None:
         [sys.executable, "-c", program],
         capture_output=True,
         cwd=ROOT,
-        timeout=60,
+        timeout=PATIENCE,
         check=True,
         env={**os.environ, "PYTHONHASHSEED": "1"},
     )

@@ -11,6 +11,7 @@ import nbformat
 import pytest
 
 from tests.reports.browser import chromium, needs_chromium, opened
+from tests.waiting import PATIENCE
 
 CELLS = [
     "import synth",
@@ -36,7 +37,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
         cwd=folder,
         check=True,
         capture_output=True,
-        timeout=180,
+        timeout=PATIENCE,
     )
     return folder / "front.html"
 

@@ -13,6 +13,7 @@ import pytest
 
 from synth.terminal import batch_commands
 from synth.terminal.cli import main
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
@@ -46,7 +47,7 @@ def _run(command: list[str], folder: Path | None, environment: dict[str, str]) -
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=PATIENCE,
         check=False,
     )
 

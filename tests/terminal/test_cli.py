@@ -19,6 +19,7 @@ import yaml
 import synth
 from synth.results import drawings
 from tests.terminal.entry import COMMAND, ROOT, at_once, clutchsynth
+from tests.waiting import PATIENCE
 
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
@@ -73,7 +74,7 @@ def test_help_and_version_import_nothing_heavy(flag: str) -> None:
         "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
         f"print(code or 0, [m for m in {HEAVY!r} if m in sys.modules])\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE, check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
     assert "clutchsynth" in done.stdout
 
@@ -91,7 +92,7 @@ def test_a_run_imports_nothing_that_its_question_does_not_need(tmp_path: Path) -
         "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
         f"print(code or 0, [m for m in {UNASKED!r} if m in sys.modules])\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=True)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE, check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
     assert (tmp_path / "out" / "front.json").exists()
 
@@ -469,7 +470,7 @@ def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
         assert process.stderr is not None
         assert "designs" in process.stderr.readline()  # of the progress: the search has begun
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 4
     assert "Traceback" not in errors
     assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "interrupted"

@@ -16,6 +16,7 @@ import yaml
 from synth.results import drawings
 from tests.terminal.entry import at_once, clutchsynth
 from tests.terminal.test_cli import HEAVY, HOIST, LECTURE, quantity, refused
+from tests.waiting import PATIENCE
 
 SIMULATED = ["second_opinion.csv", "startup.csv", "startup.svg", "temperature.csv", "temperature.svg"]
 
@@ -213,6 +214,6 @@ def test_help_of_a_command_imports_nothing_heavy(command: str) -> None:
         "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
         f"print(code or 0, [m for m in {HEAVY!r} if m in sys.modules])\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE, check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
     assert "--output" in done.stdout

@@ -11,6 +11,7 @@ import pytest
 
 from synth.results import ParetoFront
 from tests.terminal.entry import COMMAND, at_once
+from tests.waiting import PATIENCE
 
 # One ring, three plate numbers: the force is all that is left to find.
 SPEC = """
@@ -49,7 +50,9 @@ def rewritten(folder: Path, change: object) -> None:
 
 @pytest.mark.slow
 def test_a_front_that_was_saved_holds(saved: Path) -> None:
-    done = subprocess.run([*COMMAND, "verify", str(saved)], capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(
+        [*COMMAND, "verify", str(saved)], capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
     assert (done.returncode, done.stderr) == (0, "")
     text = " ".join(done.stdout.split())
     assert text.startswith("holds: 3 designs are as saved, and proven again that no feasible design improves one")

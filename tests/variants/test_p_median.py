@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from synth.variants.p_median import Chooser, _not_dominated
+from tests.waiting import PATIENCE
 
 
 def cheapest(costs: np.ndarray, weights: np.ndarray, number: int) -> float:
@@ -20,7 +21,7 @@ def cheapest(costs: np.ndarray, weights: np.ndarray, number: int) -> float:
 
 
 def soon() -> float:
-    return time.monotonic() + 60.0
+    return time.monotonic() + PATIENCE
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -26,6 +26,7 @@ from synth.verification.verify import VerificationRun, checked
 from tests.asking import instance_of
 from tests.repetitions import repetitions
 from tests.sample_problems.strut import NEEDED, RODS, Strut
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 ASKED = {**NEEDED, "room": "90 mm"}
@@ -370,9 +371,9 @@ def test_whatever_is_changed_is_found_even_with_a_new_checksum(front, what, tmp_
 def test_a_front_that_is_wrong_is_refuted_by_levels_alone(front, what):
     levels = dataclasses.replace(PROOF, at_once=0, at_once_each=0, behind=0.0)
     tamper, words = TAMPERINGS[what]
-    own = checked(tamper(front), STRUT, RODS_TABLE, time.monotonic() + 60, levels)
+    own = checked(tamper(front), STRUT, RODS_TABLE, time.monotonic() + PATIENCE, levels)
     assert any(words in sentence for sentence in own.findings)
-    right = checked(front, STRUT, RODS_TABLE, time.monotonic() + 60, levels)
+    right = checked(front, STRUT, RODS_TABLE, time.monotonic() + PATIENCE, levels)
     assert (right.findings, right.open, right.proven) == ([], [], front.certificate.gap)
 
 

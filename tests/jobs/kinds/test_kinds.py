@@ -21,6 +21,7 @@ from synth.results.loading import front_of_record
 from synth.tables.catalogs import Catalogs
 from synth.tables.table_text import TableText
 from tests.jobs.kinds.jobs import DISC, PAIR, SPECS, disc, done, earlier, pair, summary
+from tests.waiting import PATIENCE
 
 BUILT = [name for name in KINDS if name not in ("batch", "size_range")]
 OF: dict[str, dict[str, Any]] = {
@@ -56,7 +57,7 @@ def fault(name: str, request: Any, sources: Sources | None = None) -> InputError
 def test_the_list_of_kinds_loads_nothing_heavy() -> None:
     heavy = "casadi", "numpy", "pandas", "cvxpy", "scipy", "yaml"
     code = f"import sys, synth.jobs.kinds; print([m for m in {heavy} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=PATIENCE)
     assert done.stdout.strip() == "[]"
 
 

@@ -26,6 +26,7 @@ from synth.problems.mechanics import Quantity
 
 from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, UNIT, Entry, Formula, formula, formulas, modules
 from tests.problems.formula_checks import DIMENSION
+from tests.waiting import PATIENCE
 
 ca.GlobalOptions.setNumpyMode(-1)
 
@@ -194,7 +195,7 @@ def test_formulas_are_used_without_casadi() -> None:
         "m.startup.reactive_slip_time(1080.0, 600.0, driven_inertia=30.0, driver_speed=26.6, ramp_time=2.0)\n"
         "print([name for name in ('casadi', 'pandas', 'matplotlib') if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=True)
     assert done.stdout == "[]\n"
     with pytest.raises(AttributeError, match="no attribute 'friction_radius'"):
         _ = synth.problems.mechanics.friction_radius

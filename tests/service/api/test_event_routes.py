@@ -25,6 +25,7 @@ from synth.service.security import SESSION_COOKIES
 from synth.service.settings import ServiceSettings
 from tests.service.calling import Service, bearer, code_of
 from tests.service.working import API, FRONT, LIVE, LONG, QUICK, Client, listened, working
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.slow
 
@@ -114,7 +115,7 @@ def test_a_stream_ends_with_what_has_let_it_in(wire: tuple[Service, str], ending
     if ending == "signed out":
         cookie = service.accounts.sign_in(number, 1.0)
         headers, cookies = {}, {SESSION_COOKIES[0]: cookie}
-    with httpx.Client(base_url=address, headers=headers, cookies=cookies, timeout=20.0) as http:
+    with httpx.Client(base_url=address, headers=headers, cookies=cookies, timeout=PATIENCE) as http:
         with http.stream("GET", place) as stream:
             lines = stream.iter_lines()
             assert any(line.startswith("event: snapshot") for line in lines)
@@ -136,7 +137,7 @@ def test_streams_live_are_few_and_end_with_the_server(wire: tuple[Service, str])
     service, address = wire
     token = service.token("read", "submit")
     other = service.token("read")
-    with httpx.Client(base_url=address, headers=bearer(token), timeout=20.0) as http:
+    with httpx.Client(base_url=address, headers=bearer(token), timeout=PATIENCE) as http:
         job = http.post(f"{API}/jobs", json={"kind": "synthesis", "request": LONG}).json()["id"]
         place = f"{API}/jobs/{job}/events"
         with http.stream("GET", place) as first, http.stream("GET", place) as second:
@@ -157,7 +158,7 @@ def test_streams_live_are_few_and_end_with_the_server(wire: tuple[Service, str])
 
 def test_a_client_that_goes_leaves_room(wire: tuple[Service, str]) -> None:
     _, address = wire
-    with httpx.Client(base_url=address, timeout=20.0) as http:
+    with httpx.Client(base_url=address, timeout=PATIENCE) as http:
         job = http.post(f"{API}/jobs", json={"kind": "synthesis", "request": LONG}).json()["id"]
         for _ in range(5):
             with http.stream("GET", f"{API}/jobs/{job}/events") as stream:

@@ -12,6 +12,7 @@ import pytest
 
 from synth.jobs.engine_process import Engines
 from tests.service.working import listened, working
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.slow
 PAGE = Path(__file__).parents[3] / "docs" / "rest.md"
@@ -34,7 +35,7 @@ def test_what_the_page_shows_happens(engines: Engines, tmp_path: Path) -> None:
     with working(tmp_path, engines, called=False) as service, listened(service) as address:
         script = f"\necho '{MARK}'\n".join(commands).replace("http://127.0.0.1:8350", address)
         done = subprocess.run(
-            ["bash", "-eu", "-c", script], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
+            ["bash", "-eu", "-c", script], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE, check=False
         )
     assert done.returncode == 0, done.stderr + done.stdout
     said = done.stdout.split(f"{MARK}\n")
