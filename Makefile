@@ -38,7 +38,7 @@ lint: $(DEV)
 	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32 --follow-imports skip $(DIFFERENT)
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin --follow-imports skip $(DIFFERENT)
 
-# Headers of the C kernels, from the operations in Python; a test compares them.
+# Headers of what Python and the C kernels must agree on; a test compares them.
 kernels: $(DEV)
 	$(BIN)/python -m tests.kernels.headers
 

@@ -142,12 +142,11 @@ def test_imports_point_one_way() -> None:
     assert wrong == NAMED_FROM_BELOW
 
 
-SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "boxes"}
-SOUND |= {"propagated_nodes", "root_propagation", "sweep_writer", "question_bounds", "propagation", "compiled_rules"}
+SOUND = {"intervals", "instructions", "fused_instructions", "box_emitter", "array_reader", "contractor", "clusters"}
+SOUND |= {"boxes", "propagated_nodes", "root_propagation", "question_bounds", "propagation"}
 SOUND |= {"log_forms", "log_relaxation"}
 STEERING = {"influences", "branching", "relaxed_branching"}
-BOTH = {"box_batches", "kernel_boxes", "kernel_subtrees", "kernel_propagation", "bounding", "box_instructions"}
-BOTH |= {"fused_instructions"}
+BOTH = {"box_batches", "kernel_boxes", "kernel_subtrees", "kernel_propagation", "bounding"}
 # What kind of function a formula is: not of the search.
 OF_FORMULAS = {"structure", "shapes", "composition", "log_terms", "feasible_intervals", "curvature", "elementary"}
 OF_FORMULAS |= {"existence"}

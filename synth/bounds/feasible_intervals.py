@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.curvature import INF, Ends
-from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING, loosened
+from synth.bounds.intervals import FORWARD, ROUNDING, backward, loosened
 from synth.feasibility import SLACK
 from synth.model.constraint import Constraint
 from synth.model.model import Model
@@ -104,11 +104,8 @@ class FeasibleIntervals:
 
     def _backward(self, k: int) -> None:
         node = self._program.nodes[k]
-        backward = BACKWARD.get(node.op)
-        if backward is None:
-            return
         args = [(np.float64(self.low[j]), np.float64(self.high[j])) for j in node.args]
-        found = backward((np.float64(self.low[k]), np.float64(self.high[k])), *args)
+        found = backward(node.op, (np.float64(self.low[k]), np.float64(self.high[k])), args)
         for j, bounds in zip(node.args, found, strict=True):
             if bounds is not None:
                 self.low[j] = float(np.fmax(self.low[j], bounds[0]))

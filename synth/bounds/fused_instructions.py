@@ -6,10 +6,12 @@ all bits of results, stay the same; only registers for what is passed on within 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-Row = tuple[int, ...]  # number of the operation, target, operands
+import numpy as np
+
+from synth.bounds.instructions import WIDTH, Op, Row
 
 
 class Run(NamedTuple):
@@ -25,106 +27,92 @@ class Run(NamedTuple):
         Letters.
     """
 
-    steps: tuple[tuple[str, str], ...]
+    steps: tuple[tuple[Op, str], ...]
     operands: str
 
 
-MEET = (("v_fmax(a, b)", "x x s"), ("v_fmin(a, b)", "x+ x+ s+"))
-MET_OTHER = (("v_fmax(a, b)", "y y s"), ("v_fmin(a, b)", "y+ y+ t"))
+MEET = ((Op.FMAX, "x x s"), (Op.FMIN, "x+ x+ s+"))
+MET_OTHER = ((Op.FMAX, "y y s"), (Op.FMIN, "y+ y+ t"))
 # Longer runs first: they begin like shorter ones.
-RUNS: Mapping[str, Run] = {
-    "PRODUCT_BACK": Run(
-        (("a / b", "s k x+"), ("a / b", "t k+ x"), ("both ends met a / b", "x k y+ k+ y"), *MET_OTHER), "k y"
-    ),
-    "QUOTIENT_BACK": Run(
-        (("a / b", "s x k+"), ("a / b", "t x+ k"), ("both ends met a * b", "x k y k+ y+"), *MET_OTHER), "k y"
-    ),
-    "SUM_BACK": Run(
+RUNS: dict[Op, Run] = {
+    Op.PRODUCT_BACK: Run(((Op.DIV, "s k x+"), (Op.DIV, "t k+ x"), (Op.MET_DIV, "x k y+ k+ y"), *MET_OTHER), "k y"),
+    Op.QUOTIENT_BACK: Run(((Op.DIV, "s x k+"), (Op.DIV, "t x+ k"), (Op.MET_MUL, "x k y k+ y+"), *MET_OTHER), "k y"),
+    Op.SUM_BACK: Run(
         (
-            ("a * b - c", "s k l x+"),
-            ("a * b - c", "t k+ m x"),
-            ("v_fmax(a, b * c - d)", "x x k l y+"),
-            ("v_fmin(a, b * c - d)", "x+ x+ k+ m y"),
+            (Op.MUL_SUB, "s k l x+"),
+            (Op.MUL_SUB, "t k+ m x"),
+            (Op.FMAX_MUL_SUB, "x x k l y+"),
+            (Op.FMIN_MUL_SUB, "x+ x+ k+ m y"),
             *MET_OTHER,
         ),
         "k y l m",
     ),
-    "DIFFERENCE_BACK": Run(
+    Op.DIFFERENCE_BACK: Run(
         (
-            ("a * b - c", "s x l k+"),
-            ("a * b - c", "t x+ m k"),
-            ("both ends met a + b", "x k y k+ y+"),
+            (Op.MUL_SUB, "s x l k+"),
+            (Op.MUL_SUB, "t x+ m k"),
+            (Op.MET_ADD, "x k y k+ y+"),
             *MET_OTHER,
         ),
         "k y l m",
     ),
-    "AT_MOST": Run(
-        (("a * b", "s b c"), ("kill a > b", "z x s"), ("v_fmin(a, b)", "x+ x+ s"), ("a > b", "o x+ d")), "b c o d"
-    ),
-    "AT_LEAST": Run(
-        (("a * b", "s b c"), ("kill a < b", "z x+ s"), ("v_fmax(a, b)", "x x s"), ("a < b", "o x d")), "b c o d"
-    ),
-    "SUM": Run(
+    Op.AT_MOST: Run(((Op.MUL, "s b c"), (Op.KILL_ABOVE, "z x s"), (Op.FMIN, "x+ x+ s"), (Op.GT, "o x+ d")), "b c o d"),
+    Op.AT_LEAST: Run(((Op.MUL, "s b c"), (Op.KILL_BELOW, "z x+ s"), (Op.FMAX, "x x s"), (Op.LT, "o x d")), "b c o d"),
+    Op.SUM: Run(
         (
-            ("a + b - c * d", "s a b c a"),
-            ("v_fmax(a, b)", "x x s"),
-            ("a + b + c * d", "s a+ b+ c a+"),
-            ("v_fmin(a, b)", "x+ x+ s"),
+            (Op.ADD_SUB_MUL, "s a b c a"),
+            (Op.FMAX, "x x s"),
+            (Op.ADD_ADD_MUL, "s a+ b+ c a+"),
+            (Op.FMIN, "x+ x+ s"),
         ),
         "a b c",
     ),
-    "DIFFERENCE": Run(
+    Op.DIFFERENCE: Run(
         (
-            ("a - b - c * d", "s a b+ c a"),
-            ("v_fmax(a, b)", "x x s"),
-            ("a - b + c * d", "s a+ b c a+"),
-            ("v_fmin(a, b)", "x+ x+ s"),
+            (Op.SUB_SUB_MUL, "s a b+ c a"),
+            (Op.FMAX, "x x s"),
+            (Op.SUB_ADD_MUL, "s a+ b c a+"),
+            (Op.FMIN, "x+ x+ s"),
         ),
         "a b c",
     ),
-    "TERM_BACK": Run((("v_fmax(a, b * c - d)", "x x k l y+"), ("v_fmin(a, b * c - d)", "x+ x+ k+ m y")), "k y l m"),
-    "ROOT": Run((("v_fmax(a, v_sqrt(b))", "x x a"), ("v_fmin(a, v_sqrt(b))", "x+ x+ a+")), "a"),
-    "MEET": Run(MEET, "s"),
-    "CROSSED": Run((("kill a > b + c * d", "z x x+ c x+"),), "c"),
+    Op.TERM_BACK: Run(((Op.FMAX_MUL_SUB, "x x k l y+"), (Op.FMIN_MUL_SUB, "x+ x+ k+ m y")), "k y l m"),
+    Op.ROOT: Run(((Op.FMAX_SQRT, "x x a"), (Op.FMIN_SQRT, "x+ x+ a+")), "a"),
+    Op.MEET: Run(MEET, "s"),
+    Op.CROSSED: Run(((Op.KILL_CROSSED, "z x x+ c x+"),), "c"),
 }
 # Instructions for one node that serve several nodes side by side: how many is their first operand.
-REPEATED = ("IN_ORDER", "CROSSED")
+REPEATED = (Op.IN_ORDER, Op.CROSSED)
+
+Steps = list[tuple[Op, list[str]]]
 
 
-def fused(rows: Sequence[Row], numbers: Mapping[str, int], width: int) -> list[Row]:
-    """Instructions with runs taken together.
-
-    Parameters
-    ----------
-    rows : list
-    numbers : mapping
-        Name of an operation -> its number.
-    width : int
-        Of an instruction.
-    """
-    repeated = [numbers[name] for name in REPEATED]
-    return list(_repeated(list(_fused(rows, _numbered(numbers), width)), repeated, width))
+def fused(rows: Sequence[Row]) -> np.ndarray:
+    """Instructions with runs taken together, as the kernel reads them: array (instructions, WIDTH)."""
+    filled = [(*row, *[0] * (WIDTH - len(row))) for row in rows]
+    return np.array(list(_repeated(list(_fused(filled)))), dtype=np.intc)
 
 
-def _numbered(numbers: Mapping[str, int]) -> dict[int, list[tuple[int, list[tuple[int, list[str]]], list[str]]]]:
+def _by_first() -> dict[int, list[tuple[Op, Steps, list[str]]]]:
     """Runs by the operation that they begin with."""
-    runs: dict[int, list[tuple[int, list[tuple[int, list[str]]], list[str]]]] = {}
-    for name, run in RUNS.items():
-        steps = [(numbers[operation], registers.split()) for operation, registers in run.steps]
-        runs.setdefault(steps[0][0], []).append((numbers[name], steps, run.operands.split()))
+    runs: dict[int, list[tuple[Op, Steps, list[str]]]] = {}
+    for op, run in RUNS.items():
+        steps = [(own, registers.split()) for own, registers in run.steps]
+        runs.setdefault(steps[0][0], []).append((op, steps, run.operands.split()))
     return runs
 
 
-def _fused(
-    rows: Sequence[Row], runs: Mapping[int, list[tuple[int, list[tuple[int, list[str]]], list[str]]]], width: int
-) -> Iterator[Row]:
+BY_FIRST = _by_first()
+
+
+def _fused(rows: Sequence[Row]) -> Iterator[Row]:
     k = 0
     while k < len(rows):
-        for number, steps, operands in runs.get(rows[k][0], ()):
+        for op, steps, operands in BY_FIRST.get(rows[k][0], ()):
             registers = _registers(rows[k : k + len(steps)], steps)
             if registers is not None:
-                row = (number, registers["x"], *(registers[letter] for letter in operands))
-                yield (*row, *[0] * (width - len(row)))
+                row = (int(op), registers["x"], *(registers[letter] for letter in operands))
+                yield (*row, *[0] * (WIDTH - len(row)))
                 k += len(steps)
                 break
         else:
@@ -132,29 +120,29 @@ def _fused(
             k += 1
 
 
-def _repeated(rows: Sequence[Row], repeated: Sequence[int], width: int) -> Iterator[Row]:
+def _repeated(rows: Sequence[Row]) -> Iterator[Row]:
     """Instructions with those for nodes side by side taken together; their last operand is the same."""
     k = 0
     while k < len(rows):
         number, target, *operands = rows[k]
-        if number not in repeated:
+        if number not in REPEATED:
             yield rows[k]
             k += 1
             continue
         count = 1
         while rows[k + count][:2] == (number, target + 2 * count) and rows[k + count][2] == operands[0]:
             count += 1
-        yield (number, target, count, operands[0], *[0] * (width - 4))
+        yield (number, target, count, operands[0], *[0] * (WIDTH - 4))
         k += count
 
 
-def _registers(rows: Sequence[Row], steps: Sequence[tuple[int, list[str]]]) -> dict[str, int] | None:
+def _registers(rows: Sequence[Row], steps: Steps) -> dict[str, int] | None:
     """Register of each letter of a run; None where the instructions are others."""
     if len(rows) < len(steps):
         return None
     registers: dict[str, int] = {}
-    for row, (number, letters) in zip(rows, steps, strict=True):
-        if row[0] != number:
+    for row, (op, letters) in zip(rows, steps, strict=True):
+        if row[0] != op:
             return None
         for register, letter in zip(row[1:], letters, strict=False):
             own = register - letter.endswith("+")

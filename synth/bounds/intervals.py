@@ -12,13 +12,14 @@ feasibility.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from synth.model.program import OP_SELECT
+from synth.special import SpecialFunction
 
 ROUNDING = 1e-8  # relative: ends of an interval that pass each other by less do so by rounding
 CANCELLATION = 1e-12  # of the size of the terms: what a sum or difference of them may be off by
@@ -294,66 +295,79 @@ def _blurred(r: Interval) -> Interval:
     return r[0] - CANCELLATION * np.abs(r[0]), r[1] + CANCELLATION * np.abs(r[1])
 
 
-def _back_exp(r: Interval, a: Interval) -> tuple[Interval]:
+def _back_exp(r: Interval, a: Interval) -> Interval:
     low, high = _blurred(r)
-    return ((np.log(np.maximum(low, 0.0)), np.log(np.maximum(high, 0.0))),)
+    return np.log(np.maximum(low, 0.0)), np.log(np.maximum(high, 0.0))
 
 
-def _back_expm1(r: Interval, a: Interval) -> tuple[Interval]:
+def _back_expm1(r: Interval, a: Interval) -> Interval:
     low, high = _blurred(r)
-    return ((np.log1p(np.maximum(low, -1.0)), np.log1p(np.maximum(high, -1.0))),)
+    return np.log1p(np.maximum(low, -1.0)), np.log1p(np.maximum(high, -1.0))
 
 
-def _back_sq(r: Interval, a: Interval) -> tuple[Interval]:
+def _back_sq(r: Interval, a: Interval) -> Interval:
     root = np.sqrt(np.maximum(r[1], 0.0)), np.sqrt(np.maximum(r[0], 0.0))
     low = np.where(a[0] >= 0, root[1], -root[0])
-    return ((low, np.where(a[1] <= 0, -root[1], root[0])),)
+    return low, np.where(a[1] <= 0, -root[1], root[0])
 
 
-def _back_pow(r: Interval, a: Interval, b: Interval) -> tuple[Interval | None, None]:
+def _back_pow(r: Interval, a: Interval, b: Interval) -> Interval | None:
     exponent = b[0]
     if _surely(a[0]) and np.ndim(exponent) == 0 and np.all(b[0] == b[1]) and float(exponent) != 0.0:
-        base = _pow((np.maximum(r[0], 0.0), np.maximum(r[1], 0.0)), (1.0 / exponent, 1.0 / exponent))
-        return base, None
-    return None, None
+        return _pow((np.maximum(r[0], 0.0), np.maximum(r[1], 0.0)), (1.0 / exponent, 1.0 / exponent))
+    return None
 
 
-def _back_if_else_zero(r: Interval, c: Interval, x: Interval) -> tuple[None, Interval]:
-    sure = c[0] > 0.5
-    return None, (np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf))
+def _where(sure: Any, r: Interval) -> Interval:
+    """An interval where it is sure that it counts; elsewhere nothing is known."""
+    return np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf)
 
 
-def _back_select(r: Interval, c: Interval, x: Interval, y: Interval) -> tuple[None, Interval, Interval]:
-    sure, never = c[0] > 0.5, c[1] < 0.5
-    return (
-        None,
-        (np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf)),
-        (np.where(never, r[0], -np.inf), np.where(never, r[1], np.inf)),
-    )
+def _below(r: Interval, a: Interval, b: Interval) -> Interval:
+    return np.full_like(r[1], -np.inf), r[1]
 
 
-BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
-    ca.OP_ADD: lambda r, a, b: (_widened(_sub(r, b), r, b), _widened(_sub(r, a), r, a)),
-    ca.OP_SUB: lambda r, a, b: (_widened(_add(r, b), r, b), _widened(_sub(a, r), a, r)),
-    ca.OP_MUL: lambda r, a, b: (_quotient(r, b), _quotient(r, a)),
-    ca.OP_DIV: lambda r, a, b: (_mul(r, b), _quotient(a, r)),
-    ca.OP_NEG: lambda r, a: (_neg(r),),
-    ca.OP_TWICE: lambda r, a: ((0.5 * r[0], 0.5 * r[1]),),
-    ca.OP_SQ: _back_sq,
-    ca.OP_INV: lambda r, a: (_quotient((1.0, 1.0), r),),
-    ca.OP_EXP: _back_exp,
-    ca.OP_LOG: lambda r, a: ((np.exp(r[0]), np.exp(r[1])),),
-    ca.OP_LOG1P: lambda r, a: ((np.expm1(r[0]), np.expm1(r[1])),),
-    ca.OP_EXPM1: _back_expm1,
-    ca.OP_SQRT: lambda r, a: ((np.where(r[0] > 0, r[0] * r[0], 0.0), r[1] * r[1]),),
-    ca.OP_FABS: lambda r, a: ((np.where(a[0] >= 0, r[0], -r[1]), np.where(a[1] <= 0, -r[0], r[1])),),
-    ca.OP_POW: _back_pow,
-    ca.OP_CONSTPOW: _back_pow,
-    ca.OP_FMAX: lambda r, a, b: ((np.full_like(r[1], -np.inf), r[1]), (np.full_like(r[1], -np.inf), r[1])),
-    ca.OP_FMIN: lambda r, a, b: ((r[0], np.full_like(r[0], np.inf)), (r[0], np.full_like(r[0], np.inf))),
-    ca.OP_IF_ELSE_ZERO: _back_if_else_zero,
-    OP_SELECT: _back_select,
+def _over(r: Interval, a: Interval, b: Interval) -> Interval:
+    return r[0], np.full_like(r[0], np.inf)
+
+
+# Per argument, None where nothing follows for it.
+BACKWARD: dict[int, tuple[Callable[..., Interval | None] | None, ...]] = {
+    ca.OP_ADD: (lambda r, a, b: _widened(_sub(r, b), r, b), lambda r, a, b: _widened(_sub(r, a), r, a)),
+    ca.OP_SUB: (lambda r, a, b: _widened(_add(r, b), r, b), lambda r, a, b: _widened(_sub(a, r), a, r)),
+    ca.OP_MUL: (lambda r, a, b: _quotient(r, b), lambda r, a, b: _quotient(r, a)),
+    ca.OP_DIV: (lambda r, a, b: _mul(r, b), lambda r, a, b: _quotient(a, r)),
+    ca.OP_NEG: (lambda r, a: _neg(r),),
+    ca.OP_TWICE: (lambda r, a: (0.5 * r[0], 0.5 * r[1]),),
+    ca.OP_SQ: (_back_sq,),
+    ca.OP_INV: (lambda r, a: _quotient((1.0, 1.0), r),),
+    ca.OP_EXP: (_back_exp,),
+    ca.OP_LOG: (lambda r, a: (np.exp(r[0]), np.exp(r[1])),),
+    ca.OP_LOG1P: (lambda r, a: (np.expm1(r[0]), np.expm1(r[1])),),
+    ca.OP_EXPM1: (_back_expm1,),
+    ca.OP_SQRT: (lambda r, a: (np.where(r[0] > 0, r[0] * r[0], 0.0), r[1] * r[1]),),
+    ca.OP_FABS: (lambda r, a: (np.where(a[0] >= 0, r[0], -r[1]), np.where(a[1] <= 0, -r[0], r[1])),),
+    ca.OP_POW: (_back_pow, None),
+    ca.OP_CONSTPOW: (_back_pow, None),
+    ca.OP_FMAX: (_below, _below),
+    ca.OP_FMIN: (_over, _over),
+    ca.OP_IF_ELSE_ZERO: (None, lambda r, c, x: _where(c[0] > 0.5, r)),
+    OP_SELECT: (None, lambda r, c, x, y: _where(c[0] > 0.5, r), lambda r, c, x, y: _where(c[1] < 0.5, r)),
 }
+
+
+def backward(op: int, result: Interval, args: Sequence[Interval]) -> list[Interval | None]:
+    """What the interval of a node says of each of its arguments; None where nothing follows."""
+    return [None if rule is None else rule(result, *args) for rule in BACKWARD.get(op, (None,) * len(args))]
+
+
+def special_range(function: SpecialFunction, args: Sequence[Interval]) -> Interval:
+    """Range of a special function: it is monotone in every argument."""
+    rising = [low >= 0 for low, _ in function.elasticity]
+    least = function.formula(*[a[0] if up else a[1] for a, up in zip(args, rising, strict=True)])
+    most = function.formula(*[a[1] if up else a[0] for a, up in zip(args, rising, strict=True)])
+    inside = np.logical_and.reduce(np.broadcast_arrays(*[a[0] >= 0 for a in args]))
+    return _where(inside, (least, most))
 
 
 def loosened(limit: Any, size: Any, share: float) -> Any:

@@ -13,10 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from synth.bounds import box_instructions as lists
 from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, scored_room
 from synth.bounds.boxes import Boxes
 from synth.bounds.contractor import Code
+from synth.bounds.fused_instructions import fused
 from synth.bounds.kernel_subtrees import SubtreeCode
 from synth.kernels.loading import kernel
 from synth.kernels.threads import side_by_side
@@ -27,13 +27,12 @@ MOST = {"N": 24, "LIMITS": 256, "GOALS": 40, "TABLES": 256, "NODES": 1536}
 MOST_REGISTERS = 4096
 
 
-class ListedCode:
-    """The instructions of generated code as the kernel reads them.
+class KernelList:
+    """Instructions as the kernel reads them.
 
     Parameters
     ----------
     code : Code
-    listed : Instructions
 
     Attributes
     ----------
@@ -41,26 +40,25 @@ class ListedCode:
         The structure ``Shape`` of the C source: numbers and addresses of eight bytes each.
     """
 
-    def __init__(self, code: Code, listed: lists.Instructions) -> None:
-        nodes, sweeps, at = code.nodes, code.sweeps, listed.places
-        own = [nodes.factor[k] for k in nodes.tables]
-        sizes = sizes_of(code)
+    def __init__(self, code: Code) -> None:
+        nodes, own = code.nodes, code.instructions
+        at, sizes, factor = own.regions, sizes_of(code), [nodes.factor[k] for k in nodes.tables]
         numbers = [
             *(sizes[name] for name in ("N", "LIMITS", "GOALS", "TABLES", "NODES")),
-            len(sweeps.variables),
-            at["registers"],
-            len(listed.literals),
-            len(sweeps.constants),
-            *(at[name] for name in ("literals", "constants", "right_sides", "cutoffs", "floors")),
-            *(at[name] for name in ("tables", "variables", "open", "goals", "scratch")),
+            len(own.variables),
+            at.count,
+            len(own.literals),
+            own.constants,
+            *(at.literals, at.constants, at.right_sides, at.cutoffs, at.floors),
+            *(at.tables, at.variables, at.open, at.goals, at.scratch),
         ]
         self._kept = [
-            listed.literals,
-            np.array([i for _, i in sweeps.variables], dtype=np.intc),
-            np.array(own, dtype=np.intc),
-            np.array([2 * own.count(f) for f in own], dtype=np.intc),
-            np.array([2 * own[:i].count(f) for i, f in enumerate(own)], dtype=np.intc),
-            *(np.ascontiguousarray(x, dtype=np.intc) for x in (listed.first, listed.later, listed.last)),
+            own.literals,
+            np.array(own.variables, dtype=np.intc),
+            np.array(factor, dtype=np.intc),
+            np.array([2 * factor.count(f) for f in factor], dtype=np.intc),
+            np.array([2 * factor[:i].count(f) for i, f in enumerate(factor)], dtype=np.intc),
+            *(fused(rows) for rows in (own.first, own.later, own.last)),
         ]
         self.record = np.array([*numbers, *(x.ctypes.data for x in self._kept)], dtype=np.int64)
 
@@ -104,7 +102,7 @@ class BoxKernel:
     Parameters
     ----------
     loaded : CDLL
-    listed : ListedCode
+    listed : KernelList
 
     Attributes
     ----------
@@ -112,7 +110,7 @@ class BoxKernel:
         The same, with splitting.
     """
 
-    def __init__(self, loaded: ctypes.CDLL, listed: ListedCode) -> None:
+    def __init__(self, loaded: ctypes.CDLL, listed: KernelList) -> None:
         self._listed = listed  # addresses of its arrays are in its record
         self._read = {"shape": listed.record}
         self.subtrees = SubtreeCode(loaded, self._read)
@@ -167,21 +165,18 @@ class BoxKernel:
         return int(self._contract(ctypes.byref(batch)))
 
 
-def listed_code(code: Code) -> ListedCode | None:
-    """Instructions of generated code; None where the kernel has no room for them, or something has no form there."""
-    if any(size > MOST[name] for name, size in sizes_of(code).items()):
-        return None
-    listed = lists.instructions(code)
-    return None if listed is None or listed.places["registers"] > MOST_REGISTERS else ListedCode(code, listed)
+def fits(code: Code) -> bool:
+    """True if the kernel has room for some code."""
+    small = all(size <= MOST[name] for name, size in sizes_of(code).items())
+    return small and code.instructions.regions.count <= MOST_REGISTERS
 
 
 def box_kernel(code: Code) -> BoxKernel | None:
-    """Kernel for generated code; None where there is none, or it has no room for the code."""
+    """Kernel for the instructions of a sign pattern; None where there is none, or it has no room for them."""
     loaded = kernel("boxes")
     if loaded is None:
         return None
     if code.kernel is None:
-        listed = listed_code(code)
-        code.kernel = (None if listed is None else BoxKernel(loaded, listed),)
+        code.kernel = (BoxKernel(loaded, KernelList(code)) if fits(code) else None,)
     found: BoxKernel | None = code.kernel[0]
     return found

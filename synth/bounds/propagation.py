@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from synth.bounds.array_reader import BoxArrays
 from synth.bounds.boxes import Boxes
 from synth.bounds.clusters import Cells, ClusterTree
 from synth.bounds.contractor import Code
@@ -94,26 +95,26 @@ class Propagation:
         every : bool
             Whether objectives that only settle ties count.
         """
-        count, question, width = len(boxes), self.question, self.question.width
-        root = question.root
-        function = self.code(every, cutoffs is not None).function(root)
-        variables = [(boxes.low[:, i], boxes.high[:, i]) for i in range(width)]
-        tables = [(a.take(boxes.cell[:, f]), b.take(boxes.cell[:, f])) for f, a, b in self.tables[every]]
-        constants, right_sides = question.constants[every], question.right_sides
-        most = None if cutoffs is None else list(np.moveaxis(cutoffs, -1, 0))
-        floors = self.floors
-        least = [-np.inf] * len(question.goals) if floors is None else list(floors[boxes.cell[:, 0]].T)
+        count, question, width, floors = len(boxes), self.question, self.question.width, self.floors
+        read = BoxArrays(
+            count=count,
+            variables=[(boxes.low[:, i], boxes.high[:, i]) for i in range(width)],
+            tables=[(a.take(boxes.cell[:, f]), b.take(boxes.cell[:, f])) for f, a, b in self.tables[every]],
+            constants=question.constants[every],
+            right_sides=question.right_sides,
+            cutoffs=None if cutoffs is None else list(np.moveaxis(cutoffs, -1, 0)),
+            floors=[-np.inf] * len(question.goals) if floors is None else list(floors[boxes.cell[:, 0]].T),
+        )
         with np.errstate(all="ignore"):
-            dead, goals, undecided = function(
-                variables, tables, constants, right_sides, most, least, root.low, root.high, passes, count
-            )
+            reader = self.code(every, cutoffs is not None).reader
+            dead, goals, undecided = reader.contract(read, question.root, passes)
         low, high = np.empty((count, width)), np.empty((count, width))
-        for i, (x, y) in enumerate(variables):
+        for i, (x, y) in enumerate(read.variables):
             low[:, i], high[:, i] = x, y
         return Propagated(~dead, low, high, goals, undecided)
 
     def code(self, every: bool, capped: bool) -> Code:
-        """Return the generated code; ``every``: with objectives that only settle ties, ``capped``: with cutoffs."""
+        """Code of a sign pattern; ``every``: with objectives that only settle ties, ``capped``: with cutoffs."""
         key = (every, capped)
         if key not in self._codes:
             self._codes[key] = self.question.contractors[every].code(self.question.root, capped)

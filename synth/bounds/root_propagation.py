@@ -9,9 +9,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING, Interval, loosened, whole
+from synth.bounds.intervals import FORWARD, ROUNDING, Interval, backward, loosened, special_range, whole
 from synth.bounds.propagated_nodes import PropagatedNodes
-from synth.bounds.statements import special_range
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SPECIAL, Node, Program
 
@@ -180,10 +179,8 @@ class _NodePropagation:
 
     def _backward(self, k: int) -> None:
         node, a, b = self.program.nodes[k], self.a, self.b
-        backward = BACKWARD.get(node.op)
-        if backward is None:
-            return
-        for j, bound in zip(node.args, backward((a[k], b[k]), *((a[j], b[j]) for j in node.args)), strict=True):
+        found = backward(node.op, (a[k], b[k]), [(a[j], b[j]) for j in node.args])
+        for j, bound in zip(node.args, found, strict=True):
             if bound is not None:
                 self._narrow(j, *bound)
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from synth.problems.mechanics.guide_friction import sum_geometric
 
 import synth
+from synth.bounds.array_reader import BoxArrays
 from synth.bounds.clusters import ClusterTree, Factor
 from synth.bounds.contractor import Contractor
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
@@ -72,7 +73,7 @@ def random_expressions(rng, symbols, data, count):
 
 
 def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=None, floors=None):
-    """Contract boxes as a question does: constants, tables per cluster, what holds over everything, generated code.
+    """Contract boxes as a question does: constants, tables per cluster, what holds over everything, instructions.
 
     ``data`` holds, per data input, a number or the column of the factor it belongs to.
     """
@@ -93,12 +94,11 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
     inputs = contractor.nodes.program.input_nodes[:n]
     variables = [(np.fmax(low[:, i], root.low[k]), np.fmin(high[:, i], root.high[k])) for i, k in enumerate(inputs)]
     count = len(low)
-    function = contractor.code(root, caps is not None).function(root)
+    reader = contractor.code(root, caps is not None).reader
     with np.errstate(all="ignore"):
         least = [-np.inf] * len(contractor.nodes.goals) if floors is None else floors
-        dead, goals, opens = function(
-            variables, tables, constants, right, caps, least, root.low, root.high, passes, count
-        )
+        boxes = BoxArrays(count, variables, tables, constants, right, caps, least)
+        dead, goals, opens = reader.contract(boxes, root, passes)
     return SimpleNamespace(
         alive=~dead & (not root.empty),
         low=np.stack([np.broadcast_to(a, (count,)) for a, _ in variables], axis=1),

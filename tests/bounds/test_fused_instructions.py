@@ -4,46 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.bounds.box_instructions import WIDTH, operations
 from synth.bounds.fused_instructions import REPEATED, RUNS, fused
+from synth.bounds.instructions import WIDTH, Op, Row
 
-NUMBER = operations()
+END = (Op.END, *[0] * (WIDTH - 1))
 
 
-def rows_of(name: str, registers: dict[str, int]) -> list[tuple[int, ...]]:
+def rows_of(op: Op, registers: dict[str, int]) -> list[Row]:
     """Instructions of a run, with registers for its letters."""
-    rows = []
-    for operation, letters in RUNS[name].steps:
-        row = (NUMBER[operation], *(registers[x.rstrip("+")] + x.endswith("+") for x in letters.split()))
-        rows.append((*row, *[0] * (WIDTH - len(row))))
-    return rows
+    return [(own, *(registers[x.rstrip("+")] + x.endswith("+") for x in text.split())) for own, text in RUNS[op].steps]
 
 
 def test_each_run_becomes_one_instruction() -> None:
-    rng, end = np.random.default_rng(1), (NUMBER["END"], *[0] * (WIDTH - 1))
-    for name, run in RUNS.items():
+    rng = np.random.default_rng(1)
+    for op, run in RUNS.items():
         letters = {x.rstrip("+") for _, registers in run.steps for x in registers.split()}
         registers = dict(zip(sorted(letters), (2 * rng.permutation(40)).tolist(), strict=False))
-        rows = rows_of(name, registers)
+        rows = rows_of(op, registers)
         operands = [registers[x] for x in run.operands.split()]
-        if name in REPEATED:
+        if op in REPEATED:
             operands = [1, *operands]
-        expected = (NUMBER[name], registers["x"], *operands)
-        assert fused([*rows, end], NUMBER, WIDTH) == [(*expected, *[0] * (WIDTH - len(expected))), end]
+        expected = (op, registers["x"], *operands)
+        expected = (*expected, *[0] * (WIDTH - len(expected)))
+        assert fused([*rows, END]).tolist() == [list(expected), list(END)]
         for step in range(len(rows)):  # with another register anywhere it is another computation
             for place in range(2, len(run.steps[step][1].split()) + 1):
                 other = [list(row) for row in rows]
                 other[step][place] += 100
-                read = [tuple(row) for row in other]
-                found = fused([*read, end], NUMBER, WIDTH)
-                again = [row for row in found if row[0] == NUMBER[name] and row[1] == registers["x"]]
-                assert not again or again[0] != (*expected, *[0] * (WIDTH - len(expected)))
+                found = fused([*(tuple(row) for row in other), END]).tolist()
+                again = [row for row in found if row[0] == op and row[1] == registers["x"]]
+                assert not again or tuple(again[0]) != expected
 
 
 def test_nodes_side_by_side_are_put_in_order_at_once() -> None:
-    def order(*targets: int) -> list[tuple[int, ...]]:
-        return [(NUMBER["IN_ORDER"], target, *[0] * (WIDTH - 2)) for target in targets]
-
-    end = (NUMBER["END"], *[0] * (WIDTH - 1))
-    found = fused([*order(4, 6, 8, 20, 22), end], NUMBER, WIDTH)
-    assert [row[:3] for row in found] == [(NUMBER["IN_ORDER"], 4, 3), (NUMBER["IN_ORDER"], 20, 2), end[:3]]
+    found = fused([*((Op.IN_ORDER, target) for target in (4, 6, 8, 20, 22)), END])
+    assert found[:, :3].tolist() == [[Op.IN_ORDER, 4, 3], [Op.IN_ORDER, 20, 2], list(END[:3])]

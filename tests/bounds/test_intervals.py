@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from synth.bounds.intervals import BACKWARD, FORWARD, loosened
+from synth.bounds.intervals import BACKWARD, FORWARD, backward, loosened
 from synth.feasibility import SLACK
 from synth.model.program import TEMPLATES
 
@@ -118,7 +118,7 @@ def test_backward_rules_cut_off_no_argument(op):
             low = np.where(rng.random(300) < 0.2, natural[0], low)
             high = np.where(rng.random(300) < 0.2, natural[1], high)
             exists = ~np.isnan(value)
-            cuts = BACKWARD[op]((low, high), *intervals)
+            cuts = backward(op, (low, high), intervals)
         assert len(cuts) == len(intervals)
         for point, cut in zip(points, cuts, strict=True):
             if cut is not None:
@@ -140,7 +140,7 @@ def test_inverses_keep_arguments_that_rounding_has_nearly_lost(op, formula, poin
     value = formula(points)
     for rounded in (value, np.nextafter(value, -np.inf), np.nextafter(value, np.inf)):
         with np.errstate(divide="ignore"):  # where nothing is left of the argument it may be anything
-            ((low, high),) = BACKWARD[op]((rounded, rounded), (points, points))
+            ((low, high),) = backward(op, (rounded, rounded), [(points, points)])
         assert np.all((low <= points) & (points <= high))
 
 

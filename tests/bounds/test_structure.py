@@ -398,7 +398,7 @@ def test_texts_name_the_inputs_there_is_room_for():
 
 
 def size_of(op, y, mirrored):
-    """Logarithm of the size of a function, as generated code computes it."""
+    """Logarithm of the size of a function, as the bounds compute it."""
     scope = {"np": np, "erf": erf, "a": -y if mirrored else y}
     return np.log(np.abs(eval(TEMPLATES[op].format("a"), scope)))
 

@@ -1,48 +1,50 @@
-/* Made by `make kernels`; edits are lost. */
-case 1: result = a + b; break;
-case 2: result = a - b; break;
-case 3: result = a * b; break;
-case 4: result = a / b; break;
-case 8: result = v_pow(a, b); break;
-case 9: result = v_pow(a, b); break;
-case 19: result = keep(a < b, all(1.0)); break;
-case 20: result = keep(a <= b, all(1.0)); break;
-case 21: result = keep(a == b, all(1.0)); break;
-case 22: result = keep(a != b, all(1.0)); break;
-case 28: result = v_fmod(a, b); break;
-case 31: result = v_copysign(a, b); break;
-case 34: result = v_min(a, b); break;
-case 35: result = v_max(a, b); break;
-case 43: result = v_atan2(a, b); break;
-case 95: result = v_hypot(a, b); break;
-case 5: result = -a; break;
-case 6: result = v_exp(a); break;
-case 7: result = v_log(a); break;
-case 10: result = v_sqrt(a); break;
-case 11: result = a * a; break;
-case 12: result = a + a; break;
-case 13: result = v_sin(a); break;
-case 14: result = v_cos(a); break;
-case 15: result = v_tan(a); break;
-case 16: result = v_asin(a); break;
-case 17: result = v_acos(a); break;
-case 18: result = v_atan(a); break;
-case 26: result = v_floor(a); break;
-case 27: result = v_ceil(a); break;
-case 29: result = v_abs(a); break;
-case 30: result = v_sign(a); break;
-case 33: result = v_erf(a); break;
-case 36: result = 1.0 / a; break;
-case 37: result = v_sinh(a); break;
-case 38: result = v_cosh(a); break;
-case 39: result = v_tanh(a); break;
-case 40: result = v_asinh(a); break;
-case 41: result = v_acosh(a); break;
-case 42: result = v_atanh(a); break;
-case 93: result = v_log1p(a); break;
-case 94: result = v_expm1(a); break;
-case 23: result = keep(a == 0.0, all(1.0)); break;
-case 24: result = keep((a != 0.0) & (b != 0.0), all(1.0)); break;
-case 25: result = keep((a != 0.0) | (b != 0.0), all(1.0)); break;
-case 32: result = keep(a != 0.0, b); break;
-case -1: result = choose(a != 0.0, b, r[code[4]]); break;
+/* What is done for each operation of a formula, by the number that it has in CasADi. */
+#define VALUE(name, expression) case OP_##name: result = expression; break;
+#define TRUE(name, condition) VALUE(name, keep(condition, all(1.0)))
+VALUE(ADD, a + b)
+VALUE(SUB, a - b)
+VALUE(MUL, a * b)
+VALUE(DIV, a / b)
+VALUE(POW, v_pow(a, b))
+VALUE(CONSTPOW, v_pow(a, b))
+VALUE(FMOD, v_fmod(a, b))
+VALUE(COPYSIGN, v_copysign(a, b))
+VALUE(FMIN, v_min(a, b))
+VALUE(FMAX, v_max(a, b))
+VALUE(ATAN2, v_atan2(a, b))
+VALUE(HYPOT, v_hypot(a, b))
+VALUE(NEG, -a)
+VALUE(EXP, v_exp(a))
+VALUE(LOG, v_log(a))
+VALUE(SQRT, v_sqrt(a))
+VALUE(SQ, a * a)
+VALUE(TWICE, a + a)
+VALUE(SIN, v_sin(a))
+VALUE(COS, v_cos(a))
+VALUE(TAN, v_tan(a))
+VALUE(ASIN, v_asin(a))
+VALUE(ACOS, v_acos(a))
+VALUE(ATAN, v_atan(a))
+VALUE(FLOOR, v_floor(a))
+VALUE(CEIL, v_ceil(a))
+VALUE(FABS, v_abs(a))
+VALUE(SIGN, v_sign(a))
+VALUE(ERF, v_erf(a))
+VALUE(INV, 1.0 / a)
+VALUE(SINH, v_sinh(a))
+VALUE(COSH, v_cosh(a))
+VALUE(TANH, v_tanh(a))
+VALUE(ASINH, v_asinh(a))
+VALUE(ACOSH, v_acosh(a))
+VALUE(ATANH, v_atanh(a))
+VALUE(LOG1P, v_log1p(a))
+VALUE(EXPM1, v_expm1(a))
+TRUE(LT, a < b)
+TRUE(LE, a <= b)
+TRUE(EQ, a == b)
+TRUE(NE, a != b)
+TRUE(NOT, a == 0.0)
+TRUE(AND, (a != 0.0) & (b != 0.0))
+TRUE(OR, (a != 0.0) | (b != 0.0))
+VALUE(IF_ELSE_ZERO, keep(a != 0.0, b))
+VALUE(SELECT, choose(a != 0.0, b, r[code[4]]))
