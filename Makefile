@@ -8,7 +8,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 	--no-emit-index-url --no-annotate --custom-compile-command "make lock" --quiet
 
 # What systems do differently: its types are checked for each of them, a second for one.
-DIFFERENT := synth/operating_system.py
+DIFFERENT := synth/system/operating_system.py
 
 .PHONY: demo check test thorough lint kernels mechanics picture gallery lock clean
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.files import read_bytes
+from synth.folders.files import read_bytes
 
 MOST_LETTERS = 500  # of one entry
 MOST_LOGO = 1_000_000  # bytes

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from synth.plain_text import counted, printable, words
 from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
 from synth.text.numbers import gap_text, page_text, percent, thousands
+from synth.text.plain_text import counted, printable, words
 
 from .about import About
 from .drawing.files import svg_of

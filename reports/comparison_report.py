@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from synth.plain_text import words
 from synth.results import ParetoFront
 from synth.results.ratings import DesignRating
 from synth.text.numbers import page_text
+from synth.text.plain_text import words
 
 from .about import About
 from .front_plot import front_file

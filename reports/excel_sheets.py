@@ -9,7 +9,7 @@ from collections.abc import Container, Mapping, Sequence
 from datetime import datetime
 from typing import Any, TypeAlias
 
-from synth.plain_text import printable
+from synth.text.plain_text import printable
 
 from .extras import needed
 

@@ -10,9 +10,9 @@ from html import escape
 from itertools import combinations, pairwise
 from typing import TypeAlias
 
-from synth.plain_text import printable, words
 from synth.results import Design, ParetoFront
 from synth.text.numbers import page_text
+from synth.text.plain_text import printable, words
 from synth.units import from_si, unit_text
 
 from .label_spots import Box, label_spots

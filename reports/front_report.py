@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from synth.feasibility import binds, most_used
+from synth.order.feasibility import binds, most_used
 from synth.results import Design, ParetoFront, foremost
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from synth.plain_text import words
 from synth.results import Design, ParetoFront
 from synth.results.design import reached_limits
 from synth.text.numbers import percent
+from synth.text.plain_text import words
 
 SIGN_OF = {"at_most": "≤", "at_least": "≥", "equal": "="}  # of a limit, by its sense
 EQUAL = 1e-9  # relative; objectives closer than this are the same

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from synth.plain_text import words
 from synth.results import Design
 from synth.results.calculation import CalculatedDesign, Calculation, NamedQuantity
 from synth.results.expression import Expression, in_force, names_in, value_of
+from synth.text.plain_text import words
 from synth.units import in_unit, unit_text
 
 from .formula.layout import Fraction, Layout, Row, Sign, Typesetter, Word, textbook

@@ -10,12 +10,12 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from synth.plain_text import words, wrapped
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 from synth.results.design import reached_limits
 from synth.results.rating_tables import rating_row
 from synth.text.numbers import SHARE_DIGITS, column_texts
+from synth.text.plain_text import words, wrapped
 from synth.units import finite_from_si, in_unit, unit_text
 
 from .reasons import why

@@ -12,9 +12,9 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 from rich.text import Text
 
-from synth.plain_text import one_line, printable, words
 from synth.results import Design
 from synth.text.numbers import number_text
+from synth.text.plain_text import one_line, printable, words
 
 from .front_plot import LABELLED, Axis, Drawn
 from .label_spots import Box, label_spots

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.results import Design, ParetoFront, shown_value
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.text.numbers import typed_number

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from synth.feasibility import TOLERANCE, holds, most_used, residual
+from synth.order.feasibility import TOLERANCE, holds, most_used, residual
 from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict
 from synth.text.numbers import used_share
 
@@ -182,7 +182,7 @@ def _any(conditions: Sequence[str]) -> str:
 
 
 def _share(sense: str, found: str, allowed: str) -> str:
-    """Return the share of a limit that is used, as :func:`synth.feasibility.utilisation` has it."""
+    """Return the share of a limit that is used, as :func:`synth.order.feasibility.utilisation` has it."""
     if sense == "equal":
         least, most = f"MIN(ABS({found}),ABS({allowed}))", f"MAX(ABS({found}),ABS({allowed}))"
         same = f"AND(SIGN({found})=SIGN({allowed}),{least}>0)"

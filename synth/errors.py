@@ -10,8 +10,8 @@ from numbers import Integral
 from types import TracebackType
 from typing import Any, TypeVar
 
-from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import printable
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.plain_text import printable
 
 Key = str | int
 EXPECTED = 8  # times as much room for what is right: that lists names of ours

@@ -5,7 +5,7 @@ handed down from where a question is posed (``synth.search.question.pose``, ``Fo
 others makes a record of them with ``dataclasses.replace`` and passes it in. ``TUNING`` are those that everybody gets.
 
 Counts of boxes and of problems decide wherever they can, never seconds, so that the same question goes the same way on
-every machine. What verification takes is not here: it shares nothing with the search, see ``synth.proof_limits``.
+every machine. What verification takes is not here: it shares nothing with the search, see ``synth.proof.settings``.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class Tolerances:
     """What the search takes for equal.
 
     By how much a limit may be missed is no tolerance of the search but a promise of ``docs/results.md``, the same for
-    everything that evaluates, searches and verifies: ``synth.feasibility.TOLERANCE``. These lie inside it. Users meet
-    two of them, ``limit`` and ``snap``, which ``docs/search.md`` tells under what is exact; they move with its text.
+    everything that evaluates, searches and verifies: ``synth.order.feasibility.TOLERANCE``. These lie inside it. Users
+    meet two of them, ``limit`` and ``snap``, which ``docs/search.md`` names under what is exact: they move with it.
 
     Parameters
     ----------

@@ -96,9 +96,16 @@ REPORT = {
     "synth.results",
     "synth.units",
     "synth.errors",
-    "synth.files",
+    "synth.folders.files",
 }
-REPORT |= {"synth.files", "synth.feasibility", "synth.plain_text", "synth.text", "synth.ui", "synth.drawing"}
+REPORT |= {
+    "synth.folders.files",
+    "synth.order.feasibility",
+    "synth.text.plain_text",
+    "synth.text",
+    "synth.ui",
+    "synth.drawing",
+}
 MAY_IMPORT = {
     **dict.fromkeys(PROBLEMS, FAMILY),
     "problems/mechanics": {"synth.problems.mechanics", "numpy", "pandas", "scipy", *GROUND},

@@ -15,25 +15,10 @@ ENGINE = ROOT / "synth"
 
 # From the ground up; each place, a package or a module, may import what stands in lines before its own.
 LAYERS = (
-    ("operating_system",),
-    (
-        "special",
-        "margins",
-        "pareto",
-        "feasibility",
-        "interrupts",
-        "deadline",
-        "file_locks",
-        "plugins",
-        "notices",
-        "kernels",
-        "text",
-        "ui",
-    ),
-    ("plain_text", "input_limits", "tuning", "proof_limits", "study_limits", "row_cells"),
+    ("system", "text", "order", "special", "plugins", "ui"),
+    ("kernels", "tuning"),
     ("errors",),
-    ("files", "csv_style"),
-    ("output_folder",),
+    ("folders",),
     ("units", "drawing"),
     ("results", "tables"),
     ("declaration",),
@@ -178,16 +163,15 @@ def picture() -> str:
             needs = {end[1] for end in arrows() if end[0] == place and LEVELS[end[1]] < LEVELS[place]}
             packages = sorted((p for p in needs if is_drawn(p)), key=lambda p: (LEVELS[p], p))
             if is_drawn(place):
-                lines.append(f"{level - GROUND:2d}  {place:13s} <- {' '.join(packages) or 'the ground'}")
+                lines.append(f"{level:2d}  {place:13s} <- {' '.join(packages) or 'the ground'}")
     return "\n".join(lines)
 
 
-EVERYWHERE = {"text", "ui"}  # packages of the ground that whatever shows something imports
-GROUND = next(level for level, places in enumerate(LAYERS) if (ENGINE / places[0]).is_dir()) - 1
+ON_THE_GROUND = {"system", "text", "order", "folders", "ui"}  # whatever reads, writes or shows something imports them
 
 
 def is_drawn(place: str) -> bool:
-    return place not in EVERYWHERE and (ENGINE / place).is_dir()
+    return place not in ON_THE_GROUND and (ENGINE / place).is_dir()
 
 
 def test_contributing_shows_the_packages_as_they_are() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("synth", "problems", "catalogs", "reports")
-OWN = "synth/operating_system.py"  # where all of it may be named
+OWN = "synth/system/operating_system.py"  # where all of it may be named
 
 
 # ---- names that one system has and another has not ------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.plain_text import one_line
+from synth.text.plain_text import one_line
 
 TEXT = 3.5  # mm, height of letters of dimensions (ISO 3098)
 SMALL = 2.5  # of lists and notes

@@ -8,7 +8,7 @@ from html import escape
 
 from synth.drawing import XY, Angle, Area, Circle, Drawable, Drawing, Line, LineKind, Slant
 from synth.drawing.shapes import arc_of, sides, thickness
-from synth.plain_text import one_line
+from synth.text.plain_text import one_line
 
 from .dimension_places import TAIL
 from .filling import Filling, filling

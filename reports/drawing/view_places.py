@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from synth.drawing import XY, Angle, Box2, Detail, Dimension, Line, LineKind, Radius, Slant, View
 from synth.drawing.shapes import box_of, points_of
-from synth.plain_text import one_line
+from synth.text.plain_text import one_line
 
 from .callout_places import callouts
 from .dimension_places import angular, slanted, tiers

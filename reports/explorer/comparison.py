@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from synth.drawing import Drawing
-from synth.plain_text import counted
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.calculation import Calculation
+from synth.text.plain_text import counted
 
 from ..about import About
 from ..front_report import NOT_COVERED

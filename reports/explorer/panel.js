@@ -6,7 +6,7 @@ import { colourClass, shape } from "./marks.js";
 import { FULL_DIGITS, amount, number, percent, signed, usedShare } from "./numbers.js";
 
 const FIRST_LIMITS = 7;
-const BINDING = 0.999; // as in synth/feasibility.py
+const BINDING = 0.999; // as in synth/order/feasibility.py
 
 /**
  * Make the panel.

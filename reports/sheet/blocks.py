@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from synth.plain_text import counted
+from synth.text.plain_text import counted
 
 from ..formula.layout import Layout
 

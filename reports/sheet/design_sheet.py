@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from synth.feasibility import binds, most_used
+from synth.order.feasibility import binds, most_used
 from synth.results import Design, ParetoFront
 from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict, NamedQuantity
 from synth.results.provenance import installed_versions

@@ -11,8 +11,8 @@ from html import escape
 from importlib.resources import files
 from itertools import islice
 
-from synth.plain_text import escaped
 from synth.text.numbers import page_text
+from synth.text.plain_text import escaped
 from synth.ui import as_script
 
 from ..formula.layout import Layout

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from synth.feasibility import TOLERANCE
+from synth.order.feasibility import TOLERANCE
 from synth.results.calculation import CalculatedDesign, Calculation, LimitVerdict, NamedQuantity
 from synth.results.dimensions import dimension_of
 from synth.results.expression import Expression, in_force, names_in, value_of

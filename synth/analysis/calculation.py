@@ -29,9 +29,9 @@ from synth.results.calculation import Calculation, LimitRule, NamedQuantity, Rem
 from synth.results.dimensions import dimension_of, unit_for
 from synth.results.expression import Expression, names_in, simplified_product, simplified_sum
 from synth.robust.counterpart import nominal
-from synth.row_cells import CODE_OF, named_column
 from synth.special import expanded
 from synth.tables.catalogs import Catalogs
+from synth.text.row_cells import CODE_OF, named_column
 
 LONGEST = 26  # quantities and numbers in one formula: what fits a line of a page
 SHORTEST = 5  # in a part of a formula that is told alone

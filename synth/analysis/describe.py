@@ -17,9 +17,9 @@ from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
 from synth.question.ranges import declared_ranges
-from synth.row_cells import ELSE, named_column
 from synth.tables.catalogs import Catalogs
 from synth.text.numbers import typed_number
+from synth.text.row_cells import ELSE, named_column
 from synth.units import finite_from_si, from_si
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from synth.declaration import VariableRecord
-from synth.feasibility import Status, utilisation
-from synth.margins import MARGINS
 from synth.model.model import Evaluation, Model
 from synth.model.next_rows import rows_read
+from synth.order.feasibility import Status, utilisation
+from synth.order.margins import MARGINS
 from synth.question.count_domain import stated
 from synth.question.inputs import fixed_designation
 from synth.question.instance import Instance

@@ -11,9 +11,9 @@ from synth.analysis.hooks import requirements_of
 from synth.drawing import Angle, Drawing, Measured
 from synth.drawing.shapes import moments, points_of
 from synth.errors import InputError
-from synth.margins import MARGINS
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.order.margins import MARGINS
 from synth.question.catalogs import catalogs_for
 from synth.results import Design
 

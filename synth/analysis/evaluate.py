@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 
 from synth.analysis.designs import make_design, make_frame, part_row, rows_beside
+from synth.analysis.settings import DERIVED
 from synth.errors import InputError, RefusedError, at
 from synth.model.model import DataInput, Model
 from synth.model.problem import DesignProblem
@@ -22,7 +23,6 @@ from synth.question.search_range import outside, refuse_not_computable, refuse_o
 from synth.results import Design
 from synth.results.design import DesignSteps
 from synth.special import expanded
-from synth.study_limits import DERIVED
 from synth.units import parse_quantity, typed_quantity
 
 

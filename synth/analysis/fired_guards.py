@@ -10,12 +10,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.analysis.settings import GUARDS, WAYS_OUT
 from synth.declaration import Refusal
 from synth.model.numbers import numeric
 from synth.question.instance import Instance
 from synth.question.requirement_values import RequirementValues
 from synth.special import expanded
-from synth.study_limits import GUARDS, WAYS_OUT
 from synth.text.numbers import percent
 from synth.units import miss_text, outward, parse_quantity, typed_quantity
 

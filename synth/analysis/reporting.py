@@ -13,19 +13,19 @@ from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
 from synth.analysis.drawing import drawings_of
 from synth.analysis.restate import problem_of, question_of, table_differences
-from synth.csv_style import unstyled
 from synth.errors import ExtraNeededError, InputError, first_with_others
-from synth.feasibility import Status
-from synth.files import read_bytes, read_json
-from synth.output_folder import save_files
-from synth.pareto import KNEE, knee_of
-from synth.plain_text import csv_cell
+from synth.folders.csv_style import unstyled
+from synth.folders.files import read_bytes, read_json
+from synth.folders.output_folder import save_files
+from synth.order.feasibility import Status
+from synth.order.pareto import KNEE, knee_of
 from synth.question.instance import Instance
 from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE, result_digest
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
+from synth.text.plain_text import csv_cell
 
 CURVES = ("*.svg",)
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank

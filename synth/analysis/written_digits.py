@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.margins import MARGINS, within
 from synth.model.model import Evaluation
+from synth.order.margins import MARGINS, within
 from synth.question.search_space import SearchSpace
 from synth.units import parse_quantity, written_quantity
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from synth.bounds.curvature import INF, Ends
 from synth.bounds.intervals import FORWARD, ROUNDING, backward, loosened
-from synth.feasibility import SLACK
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.program import OP_SPECIAL, Node, Program
+from synth.order.feasibility import SLACK
 
 SWEEPS = 3  # over all limits; more hardly narrow any further
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 from synth.client.remote_job import Progress, RemoteJob, job_of
 from synth.client.transport import CLIENT, ClientSettings, ServiceRefusedError, Transport
 from synth.errors import InputError
-from synth.files import csv_text, read_bytes
+from synth.folders.files import csv_text, read_bytes
 from synth.jobs.row_table import ROWS, read_table
 from synth.question.count_domain import stated_value
 from synth.results import ParetoFront

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from synth.client.transport import ServiceRefusedError, Transport, told_input_error
 from synth.errors import InputError
-from synth.output_folder import save_files
+from synth.folders.output_folder import save_files
 from synth.results.loading import front_of_record
 
 if TYPE_CHECKING:

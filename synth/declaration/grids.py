@@ -8,7 +8,7 @@ from numbers import Real
 import numpy as np
 
 from synth.errors import DeclarationError
-from synth.margins import MARGINS, within
+from synth.order.margins import MARGINS, within
 
 RENARD_STEPS = {"R5": 5, "R10": 10, "R20": 20, "R40": 40}
 # ISO 3 rounds the exact tenth-powers; the rounded mantissas are the preferred numbers themselves.

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from synth.errors import DeclarationError, InputError
-from synth.row_cells import CODE_OF, ELSE, text_code
+from synth.text.row_cells import CODE_OF, ELSE, text_code
 
 # A CasADi symbol or an expression of symbols, in SI; no class that formulas could be checked against exists for both.
 Quantity: TypeAlias = Any

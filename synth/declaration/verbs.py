@@ -34,8 +34,8 @@ from synth.declaration.records import (
     VariableRecord,
 )
 from synth.errors import DeclarationError, InputError, UnknownOptionError, shortened
-from synth.feasibility import SMALLEST
-from synth.margins import MARGINS
+from synth.order.feasibility import SMALLEST
+from synth.order.margins import MARGINS
 from synth.units import Unit, parse_unit, to_si
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from synth.jobs.database import Database
 from synth.jobs.job_table import LOCAL
 from synth.jobs.log_lines import BEGINNING
 from synth.jobs.models import BrowserSession, Tenant, Token, moment
-from synth.plain_text import UNSAFE_IN_LINE
+from synth.text.plain_text import UNSAFE_IN_LINE
 
 READ, SUBMIT, ADMIN = "read", "submit", "admin"
 SCOPES = (READ, SUBMIT, ADMIN)

@@ -15,9 +15,9 @@ from typing import IO, TYPE_CHECKING, Any
 
 from sqlalchemy import URL
 
-from synth.csv_style import ENGLISH, GERMAN, CsvStyle, list_with_points
 from synth.errors import InputError, SeveralErrors, whole_number
-from synth.input_limits import INPUT_LIMITS
+from synth.folders.csv_style import ENGLISH, GERMAN, CsvStyle, list_with_points
+from synth.folders.output_folder import claimed, settle
 from synth.jobs.batch_folder import DATABASE
 from synth.jobs.database import digest, encoded, file_url
 from synth.jobs.executors import Cluster, Inline, Processes
@@ -35,14 +35,14 @@ from synth.jobs.store import Store
 from synth.jobs.warm_starts import WarmStarts
 from synth.kernels.loading import native_code
 from synth.model.registry import families, load
-from synth.output_folder import claimed, settle
-from synth.plain_text import as_meant
 from synth.question.catalogs import as_catalogs
 from synth.question.count_domain import stated_value
 from synth.question.names import as_mapping
 from synth.question.request import EXAMPLES, check_grid, listed_objectives
 from synth.question.settings import SearchSettings, check_progress
 from synth.results.provenance import code_digest, problem_digest, processor
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.plain_text import as_meant
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.files import read_json
+from synth.folders.files import read_json
 from synth.jobs.database import file_url
 from synth.jobs.models import Job
 from synth.jobs.store import Store

@@ -13,19 +13,18 @@ from synth.analysis.calculation import calculation_of
 from synth.analysis.drawing import drawings_of
 from synth.analysis.evaluate import evaluate_in_si
 from synth.analysis.reporting import NO_REPORTS, WrittenReport, write_report
-from synth.csv_style import unstyled
 from synth.errors import ExtraNeededError, InputError
-from synth.feasibility import Status
-from synth.files import read_bytes, read_json
+from synth.folders.csv_style import unstyled
+from synth.folders.files import read_bytes, read_json
+from synth.folders.output_folder import BATCH, check_kind
 from synth.jobs.batch_folder import job_of_folder, job_written, opened_batch
 from synth.jobs.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, missed_limits, status_of
 from synth.jobs.solve import GROUP, LIKE
 from synth.jobs.store import Answered, Store
 from synth.jobs.views import row_at
-from synth.margins import MARGINS
 from synth.model.registry import load
-from synth.output_folder import BATCH, check_kind
-from synth.plain_text import as_meant
+from synth.order.feasibility import Status
+from synth.order.margins import MARGINS
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -37,6 +36,7 @@ from synth.results.provenance import installed_versions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.text.numbers import typed_number
+from synth.text.plain_text import as_meant
 
 if TYPE_CHECKING:
     from synth.jobs.models import Job

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from synth.errors import InputError
-from synth.plain_text import listed
+from synth.text.plain_text import listed
 
 ENTRY = re.compile(r"\s*([^\W\d][\w.]*)\s*(:|<=|>=|==|=|<|>)\s*(\S.*?)\s*", re.DOTALL)
 BETWEEN = re.compile(r";(?=(?:[^']*'[^']*')*[^']*$)")  # not within quotes

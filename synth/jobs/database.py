@@ -23,8 +23,8 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, StoreSettings
 from synth.jobs.models import VERSION_TABLE
-from synth.operating_system import private_file, private_folder
-from synth.plain_text import one_line
+from synth.system.operating_system import private_file, private_folder
+from synth.text.plain_text import one_line
 
 HEAD = "2"  # the last of the migrations
 WHOLE = "a job database that is whole"

@@ -23,7 +23,7 @@ from synth.errors import InputError, where_raised
 from synth.jobs.engine_tasks import task_of
 from synth.jobs.job_settings import JOBS, EngineSettings
 from synth.jobs.served_process import begin_to_serve
-from synth.operating_system import bound_memory, give_way, processor_time, resident
+from synth.system.operating_system import bound_memory, give_way, processor_time, resident
 from synth.text.numbers import typed_number
 
 READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"

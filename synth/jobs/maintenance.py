@@ -15,7 +15,7 @@ from sqlalchemy.exc import DBAPIError
 from synth.errors import InputError
 from synth.jobs.database import HEAD, WHOLE, DamagedError, Database, engine_for, version_of
 from synth.jobs.job_settings import JOBS
-from synth.operating_system import private_file, put_in_place
+from synth.system.operating_system import private_file, put_in_place
 
 SHOWN = 5  # faults of a damaged file that are told
 

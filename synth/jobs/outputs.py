@@ -12,14 +12,24 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from synth.csv_style import ENGLISH, CsvStyle
-from synth.files import csv_writer, read_json
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_writer, read_json
+from synth.folders.output_folder import (
+    BATCH,
+    BATCH_REPORTS,
+    STOPPED,
+    Replacement,
+    check_kind,
+    claimed,
+    holds,
+    replaced,
+    settle,
+)
 from synth.jobs.job_table import DONE
 from synth.jobs.store import Answered, Store
-from synth.output_folder import BATCH, BATCH_REPORTS, STOPPED, Replacement, check_kind, claimed, holds, replaced, settle
-from synth.plain_text import words
 from synth.results.provenance import installed_versions
 from synth.text.numbers import typed_number
+from synth.text.plain_text import words
 
 TABLES = ("designs.csv", "rows.csv")
 BATCH_FORMAT = 1  # of batch.json

@@ -6,7 +6,7 @@ import os
 import socket
 import uuid
 
-from synth.operating_system import beginning, is_alive
+from synth.system.operating_system import beginning, is_alive
 
 
 def new_owner() -> str:

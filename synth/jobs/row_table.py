@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import Described, InputError
-from synth.files import open_bytes, read_bytes
-from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import as_list, as_meant
+from synth.folders.files import open_bytes, read_bytes
 from synth.tables.delimited_text import DelimitedText, delimited_file, delimited_text, first_lines
 from synth.tables.table_file import table_file
 from synth.tables.workbook import LOOKED_AT, Sheet, cell_text, header_first, is_workbook, sheet_of, table_elsewhere
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.plain_text import as_list, as_meant
 
 ROWS = "a CSV or .xlsx file"
 

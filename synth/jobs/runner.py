@@ -13,7 +13,6 @@ from typing import Any, TypeVar
 
 from sqlalchemy.exc import OperationalError
 
-from synth.deadline import until
 from synth.errors import InputError
 from synth.jobs.executors import Cluster, Inline, Processes, is_foreign, is_lost
 from synth.jobs.job_queue import Claim
@@ -25,6 +24,7 @@ from synth.jobs.solve import OtherCodeError, is_group, solve_unit
 from synth.jobs.store import NONE_ALONE, Account, Outcome, Store
 from synth.jobs.unit_results import sorted_out
 from synth.results.provenance import computing_digest
+from synth.system.deadline import until
 
 T = TypeVar("T")
 

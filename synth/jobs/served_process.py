@@ -6,7 +6,7 @@ import os
 import signal
 
 from synth.jobs.log_lines import follow_switch
-from synth.operating_system import ENDING
+from synth.system.operating_system import ENDING
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 

@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from synth.deadline import NEEDLESS, Stopped, until
 from synth.errors import InputError
+from synth.system.deadline import NEEDLESS, Stopped, until
 
 if TYPE_CHECKING:
     from synth.bounds.branching import BranchingStatistics

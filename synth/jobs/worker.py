@@ -39,7 +39,7 @@ from synth.jobs.shelf import Shelf
 from synth.jobs.solve import is_group
 from synth.jobs.store import Store
 from synth.jobs.unit_results import sorted_out
-from synth.operating_system import resident
+from synth.system.operating_system import resident
 from synth.text.numbers import typed_number
 
 T = TypeVar("T")

@@ -15,9 +15,9 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Limit, Origin
-from synth.feasibility import SLACK, SMALLEST
 from synth.model.limit_terms import MOST_TIMES
 from synth.model.program import InputValue
+from synth.order.feasibility import SLACK, SMALLEST
 
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
 

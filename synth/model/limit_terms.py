@@ -15,8 +15,8 @@ from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
-from synth.feasibility import SMALLEST
 from synth.model.program import OP_SELECT, OP_SPECIAL, Program
+from synth.order.feasibility import SMALLEST
 
 # Share of the range of a variable around zero: within it all values count as equally large.
 NEAR_ZERO = 1e-6

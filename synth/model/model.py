@@ -12,15 +12,15 @@ import numpy as np
 
 from synth.declaration import Declaration, DeclarationError, Origin, Part, Refusal
 from synth.errors import InputError
-from synth.feasibility import holds, residual
-from synth.interrupts import held_back
 from synth.model.constraint import SIGNS, Constraint
 from synth.model.limit_terms import NEAR_ZERO, LimitTerms
 from synth.model.next_rows import next_row
 from synth.model.numbers import numeric
 from synth.model.program import InputValue, Program, UnsupportedOperation
+from synth.order.feasibility import holds, residual
 from synth.results.next_row import NextRow
 from synth.special import SpecialCall, expanded
+from synth.system.interrupts import held_back
 from synth.units import typed_quantity
 
 MOST_FUNCTIONS = 512  # that a model keeps

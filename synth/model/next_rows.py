@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.margins import MARGINS
+from synth.order.margins import MARGINS
 from synth.results.next_row import NextRow
 
 if TYPE_CHECKING:

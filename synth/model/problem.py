@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from synth.declaration import Declaration, DeclarationError, Setting, declaring
 from synth.errors import InputError
-from synth.interrupts import held_back
 from synth.model.model import Model
 from synth.model.slot_comparison import SlotComparison, refusal_of
 from synth.special import recorded
+from synth.system.interrupts import held_back
 from synth.tables.catalogs import Catalogs
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from functools import lru_cache
 from synth.declaration import Declaration
 from synth.errors import DeclarationError, InputError, named_fault
 from synth.model.problem import DesignProblem
-from synth.notices import notice
 from synth.plugins import FAMILIES, family_names, installed
 from synth.tables.catalogs import Catalogs
+from synth.text.notices import notice
 
 
 def families() -> list[str]:

@@ -15,7 +15,6 @@ import casadi as ca
 
 from synth.declaration import Declaration, Part, Refusal
 from synth.errors import InputError, at
-from synth.row_cells import text_code
 from synth.tables.conditions import (
     Condition,
     Junction,
@@ -26,6 +25,7 @@ from synth.tables.conditions import (
     may_be_condition,
     parse_condition,
 )
+from synth.text.row_cells import text_code
 from synth.units import parse_quantity
 
 _COMPARE: dict[str, Callable[[Any, Any], Any]] = {

@@ -19,8 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from synth import deadline
-from synth.feasibility import SMALLEST, size_of_miss
 from synth.kernels.threads import side_by_side
 from synth.model.program import Program
 from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Problems, SparsityPattern
@@ -28,6 +26,8 @@ from synth.nlp.interior_point_numpy import InteriorPoint
 from synth.nlp.kernel_solver import KernelSolver, kernel_solver
 from synth.nlp.row_functions import RowFunctions
 from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.order.feasibility import SMALLEST, size_of_miss
+from synth.system import deadline
 from synth.tuning import TUNING, NlpSettings
 
 

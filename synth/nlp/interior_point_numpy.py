@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from synth import deadline
 from synth.nlp.interior_point import (
     CONVERGED,
     INFEASIBLE,
@@ -24,6 +23,7 @@ from synth.nlp.interior_point import (
     split,
 )
 from synth.nlp.row_functions import RowFunctions
+from synth.system import deadline
 from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 
 

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from synth.order.pareto import spread_subset
 from synth.parametric.joint_groups import groups_of
 from synth.parametric.joint_report import JointReport
 from synth.parametric.joint_search import JointSearch, told
-from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search.archive import Candidate, distinct
 from synth.search.budget import Clock

@@ -12,7 +12,7 @@ import numpy as np
 
 from synth.analysis.designs import make_frame, offered
 from synth.bounds.boxes import Boxes
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.results.least_infeasible import LeastInfeasible

@@ -33,9 +33,9 @@ from synth.proof.enclosure import Enclosed, Encloser, NodeComparison
 from synth.proof.interval_arithmetic import INF
 from synth.proof.multipliers import StraightRows, lifted_value
 from synth.proof.questions import Coordinate, LimitSides, Point, ProofOutcome
+from synth.proof.settings import PROOF, ProofLimits
 from synth.proof.tape import Expr, Ref, Tape
 from synth.proof.tightening import ProofRow, _Step
-from synth.proof_limits import PROOF, ProofLimits
 from synth.question.instance import Instance
 from synth.special import expanded
 

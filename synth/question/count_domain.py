@@ -16,8 +16,8 @@ import numpy as np
 
 from synth.declaration import Count
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
-from synth.margins import MARGINS
+from synth.order.margins import MARGINS
+from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import typed_number
 from synth.units import parse_quantity
 

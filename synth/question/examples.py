@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib.resources import as_file, files
 from typing import Any
 
-from synth.files import read_text
+from synth.folders.files import read_text
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_family
 from synth.question.spec import read_content

@@ -11,9 +11,9 @@ import numpy as np
 
 from synth.declaration import Choice, Count, Part
 from synth.errors import InputError, at
-from synth.margins import MARGINS
 from synth.model.constraint import SIGNS, Constraint
 from synth.model.model import Model
+from synth.order.margins import MARGINS
 from synth.question.count_domain import shown_set
 from synth.question.inputs import part_value
 from synth.question.selection import Selection, SlotRows

@@ -11,8 +11,8 @@ import numpy as np
 
 from synth.declaration import RequirementRecord
 from synth.errors import InputError, at
-from synth.margins import MARGINS, within
 from synth.model.model import Model
+from synth.order.margins import MARGINS, within
 from synth.question.inputs import fixed_designation, fixed_row_values
 from synth.tables.catalogs import Catalogs
 from synth.units import TORQUE_OF_POWER, Quantity, from_si, parse_quantity, parse_unit, typed_quantity

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.declaration import Count, VariableRecord
 from synth.errors import InputError
-from synth.margins import MARGINS, within
+from synth.order.margins import MARGINS, within
 from synth.text.numbers import typed_number
 from synth.units import typed_quantity
 

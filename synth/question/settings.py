@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from synth.errors import InputError, whole_number
-from synth.input_limits import INPUT_LIMITS
 from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_gap, is_number, read_keys
+from synth.text.input_limits import INPUT_LIMITS
 
 Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
 LEAST_SECONDS = 1e-3  # for a search when all that goes before it has taken the time there is

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from synth.errors import Described, InputError, at
-from synth.files import read_bytes
-from synth.input_limits import INPUT_LIMITS
+from synth.folders.files import read_bytes
 from synth.question.spec_keys import (
     ASKED,
     FIELDS,
@@ -22,6 +21,7 @@ from synth.question.spec_keys import (
     hint_at_key,
     read_keys,
 )
+from synth.text.input_limits import INPUT_LIMITS
 
 if TYPE_CHECKING:
     from synth.question.request import Request

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import Described, InputError, at, whole_number
-from synth.input_limits import INPUT_LIMITS
+from synth.text.input_limits import INPUT_LIMITS
 
 LEAST_GAP, LARGEST_GAP = 1e-6, 0.5
 GAP_EXPECTED = "a fraction from 1e-6 to 0.5, for example 0.001"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from synth.errors import InputError, at, whole_number
-from synth.input_limits import INPUT_LIMITS
+from synth.text.input_limits import INPUT_LIMITS
 from synth.units import parse_quantity
 
 LIMITS, RATE = "limits", "rate"

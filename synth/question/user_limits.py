@@ -10,12 +10,12 @@ import numpy as np
 
 from synth.declaration import Origin
 from synth.errors import InputError, at
-from synth.input_limits import INPUT_LIMITS
-from synth.margins import MARGINS, above
 from synth.model.constraint import Constraint
 from synth.model.model import Model
+from synth.order.margins import MARGINS, above
 from synth.question.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.question.variable_ranges import VariableRanges
+from synth.text.input_limits import INPUT_LIMITS
 from synth.units import parse_quantity, typed_quantity
 
 SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}

@@ -9,8 +9,8 @@ import numpy as np
 
 from synth.declaration import VariableRecord
 from synth.errors import InputError
-from synth.margins import MARGINS, within
 from synth.model.constraint import Constraint
+from synth.order.margins import MARGINS, within
 from synth.question.search_range import shown_range
 from synth.units import typed_quantity
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.feasibility import Status
-from synth.pareto import Scale, rank, signs_of
+from synth.order.feasibility import Status
+from synth.order.pareto import Scale, rank, signs_of
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame
 from synth.results.front import ParetoFront

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.feasibility import holds, residual, utilisation
-from synth.files import read_json
+from synth.folders.files import read_json
+from synth.order.feasibility import holds, residual, utilisation
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import digest_of, finite
-from synth.row_cells import CODE_OF, cell_value, named_column, text_code
 from synth.text.numbers import percent
+from synth.text.row_cells import CODE_OF, cell_value, named_column, text_code
 
 CALCULATION_FORMAT = 1
 CALCULATION = "calculation.json"

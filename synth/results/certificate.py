@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from synth.plain_text import counted, words
 from synth.text.numbers import gap_text, number_text, thousands, typed_number
+from synth.text.plain_text import counted, words
 from synth.units import parse_unit, unit_text
 
 

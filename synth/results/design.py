@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import InputError
-from synth.feasibility import Status, binds
-from synth.files import found_from, named_from, yaml_text
+from synth.folders.files import found_from, named_from, yaml_text
+from synth.order.feasibility import Status, binds
 from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
 from synth.results.plain import finite

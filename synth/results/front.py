@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError, derived
-from synth.feasibility import Status
-from synth.files import csv_text
-from synth.output_folder import FRONT, save_files, save_result
-from synth.pareto import KNEE, Scale, knee_of
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text
+from synth.folders.output_folder import FRONT, save_files, save_result
+from synth.order.feasibility import Status
+from synth.order.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
-from synth.plain_text import counted
 from synth.results.told import UNTOLD, Told, Untold
+from synth.text.plain_text import counted
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

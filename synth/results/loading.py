@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.feasibility import Status
-from synth.files import read_json
-from synth.output_folder import settle
-from synth.pareto import Scale
+from synth.folders.files import read_json
+from synth.folders.output_folder import settle
+from synth.order.feasibility import Status
+from synth.order.pareto import Scale
 from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront

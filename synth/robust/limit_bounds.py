@@ -16,9 +16,9 @@ from typing import Any, TypeAlias
 import casadi as ca
 import numpy as np
 
-from synth.feasibility import TOLERANCE, holds
 from synth.model.constraint import Constraint
 from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
+from synth.order.feasibility import TOLERANCE, holds
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
 from synth.proof.interval_arithmetic import DEFINED_FROM, ZERO, Pair, is_thin
 from synth.proof.tape import Expr, Ref, Tape

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
-from synth.files import csv_text
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text
+from synth.folders.output_folder import RATING, save_result
 from synth.model.registry import load
-from synth.output_folder import RATING, save_result
 from synth.question.catalogs import catalogs_for
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress

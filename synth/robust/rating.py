@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from synth.feasibility import SMALLEST, holds, most_used, utilisation
-from synth.feasibility import residual as limit_residual
 from synth.model.constraint import Constraint
 from synth.model.model import Evaluation
 from synth.model.program import InputValue
+from synth.order.feasibility import SMALLEST, holds, most_used, utilisation
+from synth.order.feasibility import residual as limit_residual
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -31,7 +31,7 @@ from synth.results.ratings import SAMPLED, DesignRating, LimitRating
 from synth.robust.limit_bounds import LimitBounds, MonotoneLimit, MovingInput
 from synth.robust.uncertainty import Member, check_values, scattered
 from synth.robust.worst_points import stretched, worst_point
-from synth.row_cells import cell_value
+from synth.text.row_cells import cell_value
 from synth.tuning import TUNING, RobustLimits
 
 PROVEN, BOUNDED = "proven", "bounded"

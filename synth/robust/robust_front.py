@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.question.instance import Instance
 from synth.question.settings import LEAST_SECONDS, Progress
 from synth.question.uncertainty import LIMITS, Uncertainty

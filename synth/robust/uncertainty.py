@@ -17,7 +17,7 @@ import numpy as np
 
 from synth.declaration import Declaration
 from synth.errors import InputError, at
-from synth.margins import MARGINS, within
+from synth.order.margins import MARGINS, within
 from synth.question.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_of_ranges, words_of
 from synth.text.numbers import typed_number
 from synth.units import as_decimal, parse_quantity, parse_unit, to_si, typed_quantity

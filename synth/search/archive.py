@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.pareto import non_dominated
+from synth.order.pareto import non_dominated
 from synth.search.dominance import SortedPoints, sorted_points
 from synth.search.dominance_code import dominance_code
 from synth.tuning import TUNING, Tuning

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth import deadline
 from synth.bounds.bounding import Bounding
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.bounds.kernel_subtrees import CutoffTables, Growth
-from synth.margins import above
+from synth.order.margins import above
 from synth.search.archive import Archive
 from synth.search.counters import SearchCounters
 from synth.search.log_objectives import LogObjectives
 from synth.search.makeable_values import MakeableValues
 from synth.search.refused_cells import RefusedCells, not_refused
+from synth.system import deadline
 from synth.tuning import TUNING, Tuning
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from synth import deadline
 from synth.bounds.boxes import Boxes
-from synth.deadline import Stopped
+from synth.system import deadline
+from synth.system.deadline import Stopped
 
 __all__ = ["Clock", "Stopped"]
 

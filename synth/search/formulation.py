@@ -10,8 +10,8 @@ import numpy as np
 
 from synth.bounds.bounding import Bounding
 from synth.bounds.question_bounds import QuestionBounds
-from synth.feasibility import SLACK
 from synth.model.constraint import Goal, NodeConstraint
+from synth.order.feasibility import SLACK
 from synth.question.requirement_values import RequirementValues
 from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive

@@ -10,8 +10,8 @@ import numpy as np
 
 from synth.analysis.designs import make_frame, offered
 from synth.analysis.written_digits import written_digits
-from synth.feasibility import Status
-from synth.pareto import Scale
+from synth.order.feasibility import Status
+from synth.order.pareto import Scale
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.results.least_infeasible import LeastInfeasible

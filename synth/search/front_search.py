@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from synth import deadline
 from synth.analysis.designs import make_frame
-from synth.deadline import Stopped
 from synth.question.settings import Progress
 from synth.results import Design, Frame, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
@@ -23,6 +21,8 @@ from synth.search.stages.first_by_rank import find_first, first_is_listed
 from synth.search.stages.first_designs import bound_everything, find_first_designs
 from synth.search.stages.one_best import find_extremes
 from synth.search.stages.stopping import stop_early
+from synth.system import deadline
+from synth.system.deadline import Stopped
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import BranchingStatistics
-from synth.feasibility import SLACK, slack_for
+from synth.order.feasibility import SLACK, slack_for
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings
 from synth.search.archive import Candidate, rows_of

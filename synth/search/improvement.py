@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.analysis.restate import problem_of
 from synth.errors import InputError
-from synth.margins import MARGINS
+from synth.order.margins import MARGINS
 from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.feasibility import VANISHING, missed_share, size_of_miss
 from synth.model.constraint import Constraint
 from synth.nlp.batch import Tasks
-from synth.plain_text import counted
+from synth.order.feasibility import VANISHING, missed_share, size_of_miss
 from synth.results.least_infeasible import LeastInfeasible, MissedLimit
 from synth.search.formulation import Formulation
 from synth.text.numbers import typed_number
+from synth.text.plain_text import counted
 from synth.units import miss_text, typed_quantity
 
 PROVEN, NOT_PROVEN = "No combination is feasible.", "No feasible design was found; that there is none is not proven."

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.margins import above, below
+from synth.order.margins import above, below
 
 
 class MakeableValues:

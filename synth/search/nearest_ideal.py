@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.bounds.kernel_subtrees import CutoffTables
-from synth.pareto import Scale
+from synth.order.pareto import Scale
 from synth.search.archive import Archive, Candidate
 from synth.search.formulation import Formulation
 from synth.search.log_objectives import LogObjectives

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from synth.nlp.batch import Tasks
-from synth.pareto import spread_subset
+from synth.order.pareto import spread_subset
 from synth.search.archive import Candidate
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation

@@ -18,15 +18,15 @@ from pathlib import Path
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.file_locks import alone
 from synth.nlp.batch import Tasks
-from synth.operating_system import cache_home
 from synth.question.instance import Instance
 from synth.results.provenance import hash_of
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings
 from synth.search.pruning import PruningRule
+from synth.system.file_locks import alone
+from synth.system.operating_system import cache_home
 from synth.tuning import TUNING, Tuning
 
 BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"

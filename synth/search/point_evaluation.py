@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from synth.feasibility import TOLERANCE, holds, residual
-from synth.margins import below
 from synth.model.constraint import Constraint, Goal, NodeConstraint, void_limits
 from synth.model.model import Evaluation
+from synth.order.feasibility import TOLERANCE, holds, residual
+from synth.order.margins import below
 from synth.question.search_space import SearchSpace
 from synth.search.archive import Candidate, rows_of
 from synth.search.log_objectives import LogObjectives

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from synth import deadline
 from synth.bounds.boxes import Boxes
 from synth.nlp.batch import Tasks
 from synth.question.search_space import SearchSpace
@@ -15,6 +14,7 @@ from synth.search.archive import Candidate
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.pruning import PruningRule
+from synth.system import deadline
 from synth.text.numbers import typed_number
 
 

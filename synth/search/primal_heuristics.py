@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.margins import below
 from synth.nlp.batch import Solutions, Tasks
+from synth.order.margins import below
 from synth.search.archive import rows_of
 from synth.search.formulation import Formulation
 from synth.search.polishing import polish_variables

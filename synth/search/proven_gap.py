@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.pareto import non_dominated
+from synth.order.pareto import non_dominated
 from synth.tuning import TUNING
 
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth import deadline
 from synth.bounds.boxes import Boxes
 from synth.bounds.log_relaxation import LogRelaxation
 from synth.bounds.relaxed_branching import relaxed_scores
 from synth.search.formulation import Formulation
+from synth.system import deadline
 
 
 class RelaxedBoxes:

@@ -9,11 +9,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.feasibility import residual
 from synth.model.model import Evaluation, Model
 from synth.model.numbers import numeric
 from synth.model.program import InputValue
 from synth.nlp.batch import Tasks
+from synth.order.feasibility import residual
 from synth.question.requirement_values import RequirementValues
 from synth.search.archive import Candidate
 from synth.search.formulation import Formulation

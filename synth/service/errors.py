@@ -28,10 +28,10 @@ from synth.errors import ExtraNeededError, InputError
 from synth.jobs.database import DISK_FULL
 from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 from synth.jobs.job_table import KeyTakenError, QueueFullError
-from synth.operating_system import NO_ROOM
 from synth.service.addresses import Addresses
 from synth.service.small_work import BusyError, LateError
 from synth.service.wording import fault_of
+from synth.system.operating_system import NO_ROOM
 
 JSON = "application/json"
 NO_SPACE_SENTENCE = "there is no room on the disk of the service; nothing was kept, whoever runs it has to make room"

@@ -20,20 +20,20 @@ from fastapi import FastAPI
 from sqlalchemy.exc import ArgumentError
 
 from synth.errors import InputError
-from synth.file_locks import is_taken, locked, unlock
 from synth.jobs.accounts import Accounts
 from synth.jobs.database import refuse_damaged
 from synth.jobs.engine_process import Engines
 from synth.jobs.job_settings import INTERACTIVE, StoreSettings
 from synth.jobs.log_lines import json_lines
 from synth.jobs.store import Store
-from synth.operating_system import ENDING, private_file, private_folder
 from synth.service.app import create_app
 from synth.service.context import ServiceContext
 from synth.service.protocol import bounded
 from synth.service.recording import LOG
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor, worker_command
+from synth.system.file_locks import is_taken, locked, unlock
+from synth.system.operating_system import ENDING, private_file, private_folder
 
 ADDRESS = "an address of this machine"
 BACKLOG = 128  # connections that the system holds until they are looked at

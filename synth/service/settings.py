@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 from synth.errors import InputError
-from synth.operating_system import cores, data_home
+from synth.system.operating_system import cores, data_home
 from synth.text.numbers import typed_number
 
 FILE = "clutchsynth.toml"  # read from the folder in which the service starts, where there is one

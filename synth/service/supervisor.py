@@ -10,9 +10,9 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import IO
 
-from synth.operating_system import apart
 from synth.service.recording import log
 from synth.service.settings import ServiceSettings
+from synth.system.operating_system import apart
 
 COMMAND = (sys.executable, "-c", "from synth.terminal.cli import main; main()")
 LIVED = 2.0  # times as long as the pause before it, that a process must live to count as having begun well

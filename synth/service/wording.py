@@ -8,7 +8,7 @@ from typing import Any
 
 from synth.errors import Described, InputError, Key
 from synth.jobs.accounts import NAME_PATTERN
-from synth.plain_text import UNSAFE_IN_LINE
+from synth.text.plain_text import UNSAFE_IN_LINE
 
 WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0
 LINE = rf"^[^{UNSAFE_IN_LINE}]*$"

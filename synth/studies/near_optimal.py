@@ -20,15 +20,13 @@ from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
 from synth.analysis.written_digits import written_digits
 from synth.bounds.boxes import Boxes
-from synth.csv_style import ENGLISH, CsvStyle
-from synth.deadline import Stopped, until
 from synth.errors import InputError, at, whole_number
-from synth.feasibility import Status
-from synth.files import csv_text
-from synth.input_limits import INPUT_LIMITS
-from synth.margins import MARGINS
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text
+from synth.folders.output_folder import NEAR_EQUALS, save_result
 from synth.nlp.batch import Tasks
-from synth.output_folder import NEAR_EQUALS, save_result
+from synth.order.feasibility import Status
+from synth.order.margins import MARGINS
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
@@ -43,7 +41,9 @@ from synth.search.goals import goals_of
 from synth.search.polishing import polish_discrete, polish_variables
 from synth.search.primal_heuristics import PrimalHeuristics, roundings
 from synth.search.pruning import EpsilonCover
-from synth.study_limits import NEAR, NearLimits
+from synth.studies.settings import NEAR, NearLimits
+from synth.system.deadline import Stopped, until
+from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import percent, thousands, typed_number
 from synth.units import parse_quantity
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.files import read_bytes, read_json, write_atomically
-from synth.output_folder import settle
+from synth.folders.files import read_bytes, read_json, write_atomically
+from synth.folders.output_folder import settle
 from synth.results import ParetoFront
 from synth.results.front_record import record_text
 from synth.results.loading import load_front

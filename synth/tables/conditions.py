@@ -29,9 +29,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
 from synth.tables.schema import Column
 from synth.tables.table import Table
+from synth.text.input_limits import INPUT_LIMITS
 from synth.units import parse_quantity, parse_unit
 
 BoolArray = NDArray[np.bool_]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.errors import InputError
-from synth.files import read_bytes
+from synth.folders.files import read_bytes
 from synth.tables.delimited_text import DelimitedText, delimited_text
 from synth.tables.table_file import TableFile, table_file
 

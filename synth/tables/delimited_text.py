@@ -15,9 +15,9 @@ from functools import partial
 from typing import BinaryIO
 
 from synth.errors import Described, InputError
-from synth.input_limits import INPUT_LIMITS
 from synth.tables.encodings import MARKS, NAMES, decoded
 from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
+from synth.text.input_limits import INPUT_LIMITS
 
 DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 SAMPLE = 200  # lines by which delimiters are compared

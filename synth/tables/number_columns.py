@@ -9,8 +9,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synth.csv_style import BLANKS, DOUBTFUL, NUMBER, with_point, without_blanks
 from synth.errors import InputError
+from synth.folders.csv_style import BLANKS, DOUBTFUL, NUMBER, with_point, without_blanks
 
 GROUPED = re.compile(rf"\d{{1,3}}(?:[.{BLANKS}]\d{{3}})+,\d+")
 PLAIN = re.compile(r"\d+,\d+")

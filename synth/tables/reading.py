@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.errors import Described, InputError, at
-from synth.files import csv_text, read_bytes
+from synth.folders.files import csv_text, read_bytes
 from synth.tables.csv_file import read_csv_bytes, read_csv_file
 from synth.tables.encodings import decoded
 from synth.tables.number_columns import DESIGNATION

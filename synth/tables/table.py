@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.plain_text import as_meant
-from synth.row_cells import CODE_OF, ELSE, text_code
 from synth.tables.schema import Column
+from synth.text.plain_text import as_meant
+from synth.text.row_cells import CODE_OF, ELSE, text_code
 from synth.units import from_si
 
 if TYPE_CHECKING:

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import Described, InputError
-from synth.files import read_bytes
-from synth.input_limits import INPUT_LIMITS
-from synth.plain_text import as_meant, counted
+from synth.folders.files import read_bytes
 from synth.tables.number_columns import PLAIN_NUMBERS, NumberColumn, WrittenNumbers, written_numbers
 from synth.tables.table_file import VISIBLE, table_file
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.plain_text import as_meant, counted
 
 TAGS = re.compile(rb"<(?:\w+:)?(row|mergeCell)\s([^>]*)>")
 ROW = re.compile(rb"<((?:\w+:)?row)\s([^>]*?)(?:/>|>.*?</\1>)", re.DOTALL)

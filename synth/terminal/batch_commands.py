@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from synth.csv_style import CsvStyle, csv_style
 from synth.errors import InputError, whole_number
-from synth.input_limits import INPUT_LIMITS
-from synth.interrupts import heard_again
-from synth.output_folder import BATCH
+from synth.folders.csv_style import CsvStyle, csv_style
+from synth.folders.output_folder import BATCH
+from synth.system.interrupts import heard_again
 from synth.tables.table_file import read_as
 from synth.terminal.options import (
     Csv,
@@ -39,6 +38,7 @@ from synth.terminal.session import (
     rows_folder,
     tell,
 )
+from synth.text.input_limits import INPUT_LIMITS
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob
@@ -193,7 +193,7 @@ def _tell_no_room(error: OSError | InputError) -> None:
 
 
 def _processes(workers: int | None) -> int:
-    from synth.operating_system import cores
+    from synth.system.operating_system import cores
 
     return cores() if workers is None else workers
 

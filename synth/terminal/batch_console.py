@@ -14,11 +14,11 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from synth.errors import shortened
 from synth.jobs.outputs import RowOutcome, row_outcomes
-from synth.plain_text import counted
 from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
 from synth.terminal.console import column_heading, console_on, in_common, made_of, output, plain_table, print_wrapped
 from synth.terminal.session import say, tell, tell_written
 from synth.text.numbers import column_texts, number_text, thousands
+from synth.text.plain_text import counted
 
 if TYPE_CHECKING:
     from synth.jobs.batch import BatchJob

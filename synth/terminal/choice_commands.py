@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from synth.csv_style import CsvStyle, csv_style
 from synth.errors import derived
-from synth.output_folder import EXPLANATION_TEXT, FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
+from synth.folders.csv_style import CsvStyle, csv_style
+from synth.folders.output_folder import EXPLANATION_TEXT, FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
 from synth.results.drawings import PLOT
 from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, Seed, TimeLimit
 from synth.terminal.session import (

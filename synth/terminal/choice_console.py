@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from synth.plain_text import counted, words
 from synth.results.drawings import report
 from synth.results.rating_tables import robust_sentence
 from synth.studies.prices.price_list import NOTHING
-from synth.study_limits import COMPARING
+from synth.studies.settings import COMPARING
 from synth.terminal.console import explanation_text, named_file, plain_table, print_wrapped
 from synth.terminal.plots import show_plot
 from synth.text.numbers import column_texts, percent, signed, typed_number
+from synth.text.plain_text import counted, words
 from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:

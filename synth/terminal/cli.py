@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
-from synth.csv_style import csv_style
 from synth.errors import DeclarationError, InputError, RefusedError, derived
-from synth.files import frame_csv
-from synth.interrupts import taken_alike
-from synth.notices import listening
-from synth.operating_system import reader_has_gone
-from synth.output_folder import EXPLANATION, EXPLANATION_TEXT, FRONT, save_files, save_result
-from synth.plain_text import plain_streams
+from synth.folders.csv_style import csv_style
+from synth.folders.files import frame_csv
+from synth.folders.output_folder import EXPLANATION, EXPLANATION_TEXT, FRONT, save_files, save_result
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import PLOT, report
+from synth.system.interrupts import taken_alike
+from synth.system.operating_system import reader_has_gone
 from synth.terminal import batch_commands as batches
 from synth.terminal import (
     choice_commands,
@@ -75,6 +73,8 @@ from synth.terminal.session import (
     tell_readings,
     tell_written,
 )
+from synth.text.notices import listening
+from synth.text.plain_text import plain_streams
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem

@@ -20,13 +20,13 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from synth.feasibility import most_used
-from synth.files import csv_text
-from synth.margins import MARGINS
-from synth.plain_text import PlainStream, printable, words, wrapped
+from synth.folders.files import csv_text
+from synth.order.feasibility import most_used
+from synth.order.margins import MARGINS
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.text.numbers import FULL_DIGITS, number_text, percent, thousands, used_share
+from synth.text.plain_text import PlainStream, printable, words, wrapped
 from synth.units import from_si, in_words, miss_text, quantity_text, split_header, unit_text
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from synth.errors import InputError
-from synth.files import write_atomically
+from synth.folders.files import write_atomically
 from synth.terminal.options import Family
 from synth.terminal.session import pair, tell
 

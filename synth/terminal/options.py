@@ -7,7 +7,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from synth.notices import ignore_notices
+from synth.text.notices import ignore_notices
 
 T = TypeVar("T")
 

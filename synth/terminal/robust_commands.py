@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from synth.csv_style import csv_style
 from synth.errors import InputError
-from synth.output_folder import RATING
+from synth.folders.csv_style import csv_style
+from synth.folders.output_folder import RATING
 from synth.terminal.options import Csv, Folder, Quiet, TimeLimit
 from synth.terminal.session import (
     INFEASIBLE,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from synth.errors import InputError
-from synth.operating_system import private_folder
+from synth.system.operating_system import private_folder
 from synth.terminal.batch_commands import jobs_app
 from synth.terminal.session import INTERNAL, tell
 from synth.text.numbers import typed_number

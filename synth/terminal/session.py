@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from synth.errors import DerivedFileWarning, InputError
-from synth.files import frame_csv
-from synth.output_folder import ResultKind, check_kind, check_not_held, claimed
-from synth.plain_text import wrapped
+from synth.folders.files import frame_csv
+from synth.folders.output_folder import ResultKind, check_kind, check_not_held, claimed
 from synth.results.drawings import report
 from synth.tables.table_file import table_file
+from synth.text.plain_text import wrapped
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from synth.csv_style import csv_style
-from synth.output_folder import SIZE_RANGE, save_result
+from synth.folders.csv_style import csv_style
+from synth.folders.output_folder import SIZE_RANGE, save_result
 from synth.results.drawings import report
 from synth.tables.table_file import read_as
 from synth.terminal.batch_commands import Database, Workers, batch_job, finish

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import counted
 from synth.terminal.console import output, plain_table
 from synth.text.numbers import gap_text, number_text
+from synth.text.plain_text import counted
 
 if TYPE_CHECKING:
     from synth.variants.size_range import SizeRange

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from synth.analysis.design_spec import must_be_a_question, must_be_one_family
-from synth.csv_style import csv_style
 from synth.errors import InputError
-from synth.output_folder import STUDY
+from synth.folders.csv_style import csv_style
+from synth.folders.output_folder import STUDY
 from synth.terminal.options import Csv, Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
 from synth.terminal.session import (
     INFEASIBLE,

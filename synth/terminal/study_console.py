@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from synth.plain_text import words
 from synth.question.uncertainty import RATE
 from synth.results.rating_tables import robust_sentence, taken_off, yield_text
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.terminal.console import in_common, made_of, named_file, plain_table, print_wrapped
 from synth.text.numbers import column_texts
+from synth.text.plain_text import words
 from synth.units import finite_from_si, in_words, unit_text
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from typing import Annotated
 import typer
 
 from synth.errors import whole_number
-from synth.input_limits import INPUT_LIMITS
-from synth.operating_system import ENDING, cores
+from synth.system.operating_system import ENDING, cores
 from synth.terminal.batch_commands import DATABASE_VARIABLE
 from synth.terminal.session import tell
+from synth.text.input_limits import INPUT_LIMITS
 
 Served = Annotated[
     str,

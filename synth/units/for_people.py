@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from synth.plain_text import words
 from synth.text.numbers import LARGEST_FACTOR, LARGEST_IN_PER_CENT, RAISED, UNKNOWN, number_text, percent, times
+from synth.text.plain_text import words
 from synth.units.grammar import parse_unit
 from synth.units.quantity import finite_from_si
 

@@ -9,8 +9,8 @@ from fractions import Fraction
 from functools import lru_cache
 
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
-from synth.notices import notice
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.notices import notice
 from synth.units.spellings import FORCES, SPACES, WORDS, readings
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
+from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import FULL_DIGITS, shown, typed_number
 from synth.units.grammar import RefusedUnit, Unit, is_unit, parse_unit, resolve
 from synth.units.spellings import SPACES

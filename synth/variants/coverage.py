@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.feasibility import missed_share, most_used
-from synth.margins import MARGINS, within
 from synth.model.model import DataInput, Evaluation, Model
 from synth.model.problem import DesignProblem
 from synth.model.program import InputValue
+from synth.order.feasibility import missed_share, most_used
+from synth.order.margins import MARGINS, within
 from synth.question.inputs import inputs_of, part_value
 from synth.question.instance import Instance
 from synth.question.request import Request

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError, whole_number
-from synth.files import csv_text, frame_csv
-from synth.input_limits import INPUT_LIMITS
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text, frame_csv
+from synth.folders.output_folder import SIZE_RANGE, save_result
 from synth.jobs.batch import BatchResult
 from synth.jobs.batch_folder import job_of_folder, opened_batch
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.store import Store
 from synth.model.model import Model
 from synth.model.registry import load
-from synth.output_folder import SIZE_RANGE, save_result
 from synth.question.catalogs import as_catalogs
 from synth.results import shown_value
+from synth.text.input_limits import INPUT_LIMITS
 from synth.units import header
 from synth.variants.coverage import ServedQuestion, SharedModel, Variant, objective_of_pairs, pinned_by_all
 from synth.variants.p_median import Chooser, Medians

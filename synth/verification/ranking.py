@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.proof_limits import ProofLimits
+from synth.proof.settings import ProofLimits
 from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:

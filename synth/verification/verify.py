@@ -6,7 +6,7 @@ generated evaluator of the model, limits are read here, and the claim is proven 
 there is not found here: the reading of units, tables, options and declarations into the question
 (``synth.question.instance``, with requirement values, bounds, grids and the combinations that are allowed), the
 recorded formulas (``synth.model.program``, ``synth.special``) and the tolerance at which a limit holds
-(``synth.feasibility``). Elasticities, statistics and explanations are only covered by the checksum of the file.
+(``synth.order.feasibility``). Elasticities, statistics and explanations are only covered by the checksum of the file.
 
 On purpose limits are read a second time, here and in ``synth.proof.tree``: sides, scales, guards and what makes a limit
 void come from the declaration itself, not from the constraints that everything else reads. Of what a user limits both
@@ -29,17 +29,16 @@ import casadi as ca
 import numpy as np
 
 from synth.analysis.restate import asked_again, problem_of, table_differences
-from synth.csv_style import STYLES
 from synth.errors import InputError
-from synth.feasibility import TOLERANCE, Status, holds, residual, utilisation
-from synth.files import read_bytes
+from synth.folders.csv_style import STYLES
+from synth.folders.files import read_bytes
 from synth.model.problem import DesignProblem
 from synth.model.program import Node, Program
-from synth.plain_text import counted
+from synth.order.feasibility import TOLERANCE, Status, holds, residual, utilisation
 from synth.proof.levels import prove_regions
 from synth.proof.questions import Point, ProofOutcome
+from synth.proof.settings import PROOF, ProofLimits
 from synth.proof.tree import ProofTree, moved_limits, void_without
-from synth.proof_limits import PROOF, ProofLimits
 from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
 from synth.results.calculation import CALCULATION, load_calculation
@@ -47,6 +46,7 @@ from synth.results.front_record import changed
 from synth.results.verification import Verification
 from synth.special import expanded
 from synth.text.numbers import gap_text, percent, typed_number
+from synth.text.plain_text import counted
 from synth.units import typed_quantity
 from synth.verification.contradictions import contradiction
 from synth.verification.pareto_regions import uncovered

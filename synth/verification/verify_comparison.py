@@ -17,10 +17,10 @@ import numpy as np
 
 from synth.analysis.evaluate import evaluate
 from synth.errors import InputError
-from synth.files import read_json
+from synth.folders.files import read_json
+from synth.folders.output_folder import settle
 from synth.model.registry import load
-from synth.output_folder import settle
-from synth.proof_limits import PROOF
+from synth.proof.settings import PROOF
 from synth.question.spec import read_spec
 from synth.results import ParetoFront
 from synth.results.loading import COMPARISON, unchecked_front

@@ -27,7 +27,7 @@ from typing import Any
 import httpx
 import yaml
 
-from synth.operating_system import resident
+from synth.system.operating_system import resident
 from tests.benchmarks.tables import Report
 
 ROOT = Path(__file__).parents[2]

@@ -6,8 +6,8 @@ import pytest
 from scipy.special import erf
 
 from synth.bounds.intervals import BACKWARD, FORWARD, backward, loosened
-from synth.feasibility import SLACK
 from synth.model.program import TEMPLATES
+from synth.order.feasibility import SLACK
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-13
 DOMAIN = {

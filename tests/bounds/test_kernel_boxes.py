@@ -22,9 +22,9 @@ from synth.bounds.kernel_boxes import MOST, BoxKernel, KernelList, Verdicts, box
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.bounds.root_propagation import Leaves, propagated_root
 from synth.kernels.loading import LEVELS, best_variant, processor_level, variant
-from synth.margins import above
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, TEMPLATES, Program
+from synth.order.margins import above
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
 from synth.search.makeable_values import MakeableValues

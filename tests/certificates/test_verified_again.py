@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from synth.proof_limits import PROOF
+from synth.proof.settings import PROOF
 from synth.verification.verify import checked
 from tests.certificates.structures import STRUCTURES, make
 from tests.certificates.test_global_claims import run

@@ -12,8 +12,7 @@ import yaml
 
 import synth
 from synth.bounds.kernel_boxes import listed_code
-from synth.files import read_bytes
-from synth.input_limits import INPUT_LIMITS
+from synth.folders.files import read_bytes
 from synth.nlp.ipopt import Task
 from synth.nlp.kernel_solver import fits
 from synth.nlp.row_functions import RowFunctions
@@ -21,10 +20,11 @@ from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
 from synth.results.front import front_record
 from synth.results.front_record import record_text
-from synth.row_cells import named_column
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.row_cells import named_column
 from synth.units import parse_unit
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, OF_SHAFTS, answer, front_of, question, question_to

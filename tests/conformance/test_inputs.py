@@ -14,7 +14,7 @@ from synth.model.model import DataInput
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.results import Design
-from synth.row_cells import cell_value
+from synth.text.row_cells import cell_value
 from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
 from tests.conformance.cases import CASES, STRUCTURES, question
 

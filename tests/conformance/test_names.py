@@ -11,7 +11,7 @@ import pytest
 
 import synth
 from synth.question.catalogs import as_catalogs
-from synth.row_cells import CODE_OF
+from synth.text.row_cells import CODE_OF
 from synth.units import from_si, parse_unit
 from tests.conformance.cases import CASES, question
 from tests.shipped import FAMILIES

@@ -4,8 +4,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.feasibility import TOLERANCE
 from synth.nlp.ipopt import Task
+from synth.order.feasibility import TOLERANCE
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded

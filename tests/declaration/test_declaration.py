@@ -20,8 +20,8 @@ from synth.declaration import (
     Variable,
     grid_values,
 )
-from synth.feasibility import SMALLEST
 from synth.model.numbers import number
+from synth.order.feasibility import SMALLEST
 from synth.special import recorded
 from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of

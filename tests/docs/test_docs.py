@@ -295,7 +295,7 @@ def test_every_column_of_the_results_is_documented() -> None:
     page = text_of("docs/results.md")
     for column in ("rank", "score", "status", "gap", "note", "alternatives", "utilisation"):
         assert f"`{column}" in page
-    for status in synth.feasibility.Status:
+    for status in synth.order.feasibility.Status:
         assert f"`{status.value}`" in page
     for kind in ("global", "exhaustive", "heuristic"):
         assert f"`{kind}`" in page
@@ -392,7 +392,7 @@ def test_the_own_problem_is_short_and_reaches_the_known_optimum() -> None:
     front = module["front"]
     assert isinstance(front, synth.ParetoFront)
     (best,) = front.designs
-    assert best.status == synth.feasibility.Status.OPTIMAL
+    assert best.status == synth.order.feasibility.Status.OPTIMAL
     assert front.certificate.kind == "global"
     # J. Golinski; best known 2994.471066 with 7.3 <= l1, l2 <= 8.3 (many later authors).
     assert best.values["weight"] == pytest.approx(2994.471066, rel=1e-6)

@@ -40,7 +40,7 @@ OF_POSIX = {
     },
 }
 WATCHED = "CLUTCHSYNTH_WATCHED"  # the folder in which files that are open stay
-# What synth.operating_system imports: it must be there before, as it would take this for Windows.
+# What synth.system.operating_system imports: it must be there before, as it would take this for Windows.
 PRELOADED = (wintypes, functools, platform, shutil, subprocess)
 BUSY = 33  # ERROR_LOCK_VIOLATION
 
@@ -105,7 +105,7 @@ class _Loader(importlib.machinery.SourceFileLoader):
 
     def exec_module(self, module: types.ModuleType) -> None:
         real = {name: sys.modules.get(name) for name in self.seen}
-        if module.__name__ == "synth.operating_system":
+        if module.__name__ == "synth.system.operating_system":
             before = sys.platform
             sys.platform = "win32"
             sys.modules.update(self.seen)

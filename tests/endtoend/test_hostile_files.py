@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.plain_text import UNSAFE
 from synth.results import ParetoFront
+from synth.text.plain_text import UNSAFE
 from tests.endtoend.test_kept_results import BATCH, rows
 from tests.terminal.entry import at_once
 from tests.terminal.test_cli import SMALL, refused

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ground.test_output_folder import small_disk
+from tests.folders.test_output_folder import small_disk
 from tests.terminal.entry import COMMAND, at_once, clutchsynth, in_process
 from tests.terminal.test_choice_commands import SEVERAL
 from tests.terminal.test_cli import HOIST, SMALL, refused

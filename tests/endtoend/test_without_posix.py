@@ -112,10 +112,10 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 ASKED = """
-import synth.file_locks, synth.interrupts, synth.operating_system as system
+import synth.system.file_locks, synth.system.interrupts, synth.system.operating_system as system
 from pathlib import Path
 print(system.ENDING[-1].name, system.cache_home())
-for line in ("synth.file_locks.os.kill(1, 0)", "system.os.fork()", "synth.interrupts.signal.SIGKILL"):
+for line in ("synth.system.file_locks.os.kill(1, 0)", "system.os.fork()", "synth.system.interrupts.signal.SIGKILL"):
     try:
         eval(line)
     except AttributeError as error:

@@ -12,10 +12,10 @@ import pytest
 import synth
 from synth.declaration import Declaration
 from synth.errors import InputError, UnknownOptionError, at, shortened, whole_number
-from synth.input_limits import INPUT_LIMITS
 from synth.question.catalogs import as_catalogs
 from synth.question.spec import read_spec, spec_from_mapping
 from synth.studies.families.requirement_sheet import applicants, sheet_of
+from synth.text.input_limits import INPUT_LIMITS
 from tests.asking import instance_of, steps_of
 
 HUGE = ("x" * 100_000, "x " * 50_000, "5 " + "N" * 100_000)

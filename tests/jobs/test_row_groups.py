@@ -16,8 +16,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import synth
-from synth import deadline
-from synth.deadline import Stopped
 from synth.jobs import runner
 from synth.jobs.database import digest
 from synth.jobs.executors import Processes
@@ -29,6 +27,8 @@ from synth.jobs.solve import ALONE, GROUP, Shared, answered_together, is_group, 
 from synth.jobs.store import Outcome, Store
 from synth.jobs.warm_starts import place
 from synth.parametric.joint_search import JointSearch
+from synth.system import deadline
+from synth.system.deadline import Stopped
 from tests.jobs.asked import batch
 from tests.sample_problems.rod import Rod
 from tests.waiting import PATIENCE

@@ -11,9 +11,9 @@ import pandas as pd
 import pytest
 
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
 from synth.jobs.cells import read_fix, read_limits, read_options, read_parts
 from synth.jobs.row_table import RowTable, read_table, text_of
+from synth.text.input_limits import INPUT_LIMITS
 
 
 def written(folder: Path, text: str | bytes) -> RowTable:

@@ -39,7 +39,7 @@ from synth.jobs.models import Job, JobRecord, WorkUnit
 from synth.jobs.shelf import Shelf
 from synth.jobs.store import Store
 from synth.jobs.worker import Worker
-from synth.operating_system import processor_time
+from synth.system.operating_system import processor_time
 from tests.jobs.test_migrations import hoists
 from tests.waiting import PATIENCE, until
 

@@ -11,8 +11,8 @@ from functools import partial
 
 import pytest
 
-from synth import deadline
 from synth.kernels.threads import SideBySide, side_by_side
+from synth.system import deadline
 from tests.waiting import PATIENCE
 
 

@@ -8,10 +8,10 @@ import pytest
 
 import synth
 from synth.declaration import Origin
-from synth.feasibility import SMALLEST, holds, size_of_miss
 from synth.model.constraint import SIGNS, Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
+from synth.order.feasibility import SMALLEST, holds, size_of_miss
 from synth.proof.questions import Point
 from synth.proof.tree import void_without
 from synth.question.catalogs import as_catalogs, catalogs_for

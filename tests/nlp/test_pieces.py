@@ -12,7 +12,6 @@ import pytest
 import yaml
 
 import synth
-from synth.feasibility import residual
 from synth.kernels.loading import best_variant
 from synth.model.constraint import Goal, NodeConstraint, void_limits
 from synth.model.program import Program
@@ -20,6 +19,7 @@ from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
+from synth.order.feasibility import residual
 from synth.tuning import TUNING
 from tests.asking import pose
 from tests.regimes import best_in_any_regime, referee

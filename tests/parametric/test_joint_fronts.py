@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import synth
-from synth.deadline import Stopped
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.parametric.joint_fronts import JointFrontSearch, joint_answers, joint_groups
 from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
 from synth.search.question import Question
+from synth.system.deadline import Stopped
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
 from tests.asking import pose

@@ -17,9 +17,8 @@ from hypothesis import strategies as st
 
 import synth
 from synth.bounds import question_bounds
-from synth.deadline import Stopped
-from synth.feasibility import Status
 from synth.model.problem import DesignProblem
+from synth.order.feasibility import Status
 from synth.parametric.joint_groups import groups_of
 from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
@@ -29,6 +28,7 @@ from synth.search.joint import joint_optima
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different
 from synth.search.question import Question
+from synth.system.deadline import Stopped
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
 from tests.asking import pose

@@ -10,8 +10,8 @@ import pytest
 import synth
 from synth.proof.levels import prove_regions
 from synth.proof.questions import Point
+from synth.proof.settings import ProofLimits
 from synth.proof.tree import ProofTree
-from synth.proof_limits import ProofLimits
 from synth.question.catalogs import as_catalogs
 from synth.special import special
 from tests.asking import instance_of

@@ -9,8 +9,8 @@ import pytest
 import synth
 from synth.proof.clusters import Clusters
 from synth.proof.questions import Point
+from synth.proof.settings import PROOF, ProofLimits
 from synth.proof.tree import ProofTree
-from synth.proof_limits import PROOF, ProofLimits
 from synth.question.catalogs import as_catalogs
 from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of

@@ -13,7 +13,7 @@ from synth.reports.drawing.paper import overlap
 from synth.reports.drawing.svg import drawing_svg
 
 from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, disc, rectangle
-from synth.plain_text import one_line
+from synth.text.plain_text import one_line
 
 HOSTILE = (
     "<script>alert(1)</script>",

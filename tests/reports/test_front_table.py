@@ -10,7 +10,7 @@ from rich.console import Console
 from synth.reports.reasons import why
 from synth.reports.table import print_front
 
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.results import Certificate, Design, Frame, ParetoFront
 
 FRAME = Frame(

@@ -16,7 +16,7 @@ from synth.reports.workbook_limits import HOLDS, NOT_GIVEN, NOT_TOLD, USED, VERD
 
 from synth.analysis.calculation import calculation_of
 from synth.analysis.designs import make_design, make_frame, part_row
-from synth.feasibility import residual
+from synth.order.feasibility import residual
 from synth.question.objectives import chosen_objectives
 from synth.results import Design
 from synth.results.calculation import CalculatedDesign, Calculation

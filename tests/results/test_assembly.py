@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import synth
-from synth.pareto import rank
+from synth.order.pareto import rank
 from synth.results import ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.results.statistics import SearchStatistics

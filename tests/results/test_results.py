@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 import synth
-from synth.files import write_atomically
+from synth.folders.files import write_atomically
 from synth.results import Certificate
 from synth.results.front_record import FRONT_FORMAT
 from synth.tables.reading import OF_RECORD

@@ -11,7 +11,7 @@ from rich.console import Console
 from scipy.optimize import minimize
 
 import synth
-from synth.feasibility import SMALLEST, TOLERANCE
+from synth.order.feasibility import SMALLEST, TOLERANCE
 from synth.results.rating_tables import robust_sentence
 from synth.results.ratings import DesignRating
 from synth.terminal.robust_console import print_ratings

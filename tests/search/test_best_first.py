@@ -9,7 +9,6 @@ import pytest
 
 import synth
 from synth.bounds.boxes import Boxes
-from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.best_first import OpenBoxes, Progress, best_first
 from synth.search.branch_and_bound import best, branch_and_bound, cover_of_one
@@ -17,6 +16,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.proven_gap import Bound, least_gap
 from synth.search.pruning import EpsilonCover
+from synth.system.deadline import Stopped
 from synth.tuning import TUNING, SearchEffort
 from tests.asking import instance_of
 from tests.sample_problems.spring import OPTIMUM, TensionSpring

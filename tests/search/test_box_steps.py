@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from synth.bounds.boxes import Boxes
-from synth.deadline import Stopped
 from synth.kernels.loading import best_variant
 from synth.search.archive import Archive
 from synth.search.box_steps import BoxStep
@@ -12,6 +11,7 @@ from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover
+from synth.system.deadline import Stopped
 from synth.tuning import TUNING
 from tests.sample_problems.strut import designs_of, lost, strut_form
 from tests.tuned import tuned

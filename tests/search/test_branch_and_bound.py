@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Archive, Candidate, distinct
 from synth.search.branch_and_bound import best, branch_and_bound, cover_of_one
@@ -17,6 +16,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import spread_choice
 from synth.search.pruning import EpsilonCover, NonImprovement
+from synth.system.deadline import Stopped
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut, feasible_candidates

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.pareto import non_dominated
+from synth.order.pareto import non_dominated
 from synth.search.front_search import find_designs
 from synth.search.front_state import FrontState
 from synth.search.stages.choosing import _look_for_more, choose_designs

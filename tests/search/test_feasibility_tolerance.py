@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.feasibility import TOLERANCE
+from synth.order.feasibility import TOLERANCE
 
 CLOSE = 1e-8
 

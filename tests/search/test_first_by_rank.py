@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.pareto import NEAR, rank, signs_of
+from synth.order.pareto import NEAR, rank, signs_of
 from synth.question.spec import read_spec
 from synth.search.front_state import FrontState
 from synth.search.stages.first_by_rank import find_first

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 import synth.question.instance
-from synth.deadline import Stopped
-from synth.file_locks import alone
 from synth.question.catalogs import catalogs_for
 from synth.search import part_sampling as outer
 from synth.search.archive import Archive
@@ -17,6 +15,8 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
 from synth.search.pruning import EpsilonCover
+from synth.system.deadline import Stopped
+from synth.system.file_locks import alone
 from synth.tuning import PartSampling, SearchEffort
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut
@@ -134,7 +134,7 @@ def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, 
 PROCESS = """
 import sys
 from pathlib import Path
-from synth.file_locks import alone
+from synth.system.file_locks import alone
 with alone(Path(sys.argv[1])) as own:
     print(own, flush=True)
     sys.stdin.read()

@@ -13,7 +13,7 @@ import pytest
 
 import synth
 from synth import DesignProblem
-from synth.pareto import non_dominated
+from synth.order.pareto import non_dominated
 from tests.repetitions import repetitions
 
 COLUMNS = ("a", "b", "c")  # a without an empty cell is needed; b and c may be empty, c may be zero or negative

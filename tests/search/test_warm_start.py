@@ -84,6 +84,6 @@ def test_a_search_that_begins_with_ideas_proves_the_same(designs: list[Design]) 
 def test_bad_ideas_do_no_harm(designs: list[Design]) -> None:
     # Nothing of a light bar holds four times the load at that mass; nor is a problem without variables in the way.
     front = question("80 kN", limits={"mass": "<= 0.5 kg"}, parts={"material": ["soft", "hard"]}).answer(known=designs)
-    assert front.status == synth.feasibility.Status.INFEASIBLE
+    assert front.status == synth.order.feasibility.Status.INFEASIBLE
     pinned = question(fix={"width": "60 mm", "length": "200 mm"})
     assert pinned.answer(known=designs).certificate.kind == "global"

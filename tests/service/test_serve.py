@@ -19,12 +19,12 @@ import httpx
 import pytest
 
 from synth.errors import InputError
-from synth.file_locks import is_taken
 from synth.jobs.accounts import Accounts
 from synth.jobs.store import Store
 from synth.service.serve import address_of, file_of, listening, only_server, serve
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor
+from synth.system.file_locks import is_taken
 from tests.terminal.entry import COMMAND, ROOT, at_once
 from tests.waiting import PATIENCE, until
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.pareto import rank
+from synth.order.pareto import rank
 from synth.studies.whatif.study import Study
 from synth.studies.whatif.study_answers import Break
 from synth.tables.catalogs import Catalogs

@@ -14,12 +14,12 @@ import synth.robust.robust_front
 import synth.studies.families.compare
 import synth.studies.families.competitor
 from synth import DesignProblem
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.question.settings import SearchSettings
 from synth.search.stages.challenge import Challenge
 from synth.studies.families.compare import compare
 from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
-from synth.study_limits import COMPARING
+from synth.studies.settings import COMPARING
 from synth.tables.catalogs import Catalogs
 from synth.terminal.choice_console import how_long, print_comparison
 from synth.tuning import TUNING

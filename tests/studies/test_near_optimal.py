@@ -10,7 +10,7 @@ import synth
 from synth.question.settings import SearchSettings
 from synth.studies import near_optimal as near
 from synth.studies.near_optimal import near_equals
-from synth.study_limits import NearLimits
+from synth.studies.settings import NearLimits
 
 METALS = pd.DataFrame(
     {

@@ -13,7 +13,7 @@ import synth
 from synth.question.settings import SearchSettings
 from synth.studies.prices import run as pricing
 from synth.studies.prices.price_list import PriceStore
-from synth.study_limits import PriceLimits
+from synth.studies.settings import PriceLimits
 from tests.sample_problems.strut import RODS, Strut
 from tests.search.test_sensitivity import Followed, Hung
 

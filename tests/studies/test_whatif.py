@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import synth
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.results import Design, ParetoFront
 from synth.studies.whatif.study import Study
 from synth.studies.whatif.vary import Varied

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.csv_style import GERMAN, unstyled
+from synth.folders.csv_style import GERMAN, unstyled
 from synth.jobs.batch import BatchResult
 from synth.jobs.row_table import read_table
 from tests.terminal.entry import at_once, in_process

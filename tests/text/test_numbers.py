@@ -87,7 +87,7 @@ NOT_FOR_PEOPLE = {
     "synth/analysis/spec_template.py": "a spec",
     "synth/jobs/database.py": "a setting of SQLite",
     "synth/jobs/outputs.py": "a CSV file",
-    "synth/operating_system.py": "arguments of commands",
+    "synth/system/operating_system.py": "arguments of commands",
     "synth/question/combinations.py": "a key",
     "synth/question/requirement_values.py": "a value of a spec",
     "synth/search/resolution.py": "a rounded number",

@@ -15,7 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
-from synth.notices import listening
+from synth.text.notices import listening
 from synth.units import (
     check_number,
     from_si,

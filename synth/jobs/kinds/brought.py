@@ -15,13 +15,13 @@ from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.jobs.row_table import RowTable
 from synth.model.registry import every_declaration
-from synth.plain_text import printable
 from synth.question.catalogs import as_catalogs, meant_by, needed_columns
 from synth.tables.catalogs import Catalogs, must_have_designation
 from synth.tables.delimited_text import DelimitedText, delimited_text, first_lines
 from synth.tables.reading import csv_of_file
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, schema_of_text
 from synth.tables.table_text import TableText
+from synth.text.plain_text import printable
 from synth.units import split_header
 
 OF_ROWS = ("source", "confidence")  # that every row has, in any table

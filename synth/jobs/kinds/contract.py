@@ -10,8 +10,8 @@ from typing import Any
 
 from synth.errors import shortened
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
-from synth.plain_text import one_line
 from synth.tables.table_text import TableText
+from synth.text.plain_text import one_line
 
 Tell = Callable[[Mapping[str, Any]], None]  # told how far the work is, in mappings that JSON can hold
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from synth.analysis.settings import WAYS_OUT
 from synth.errors import InputError
-from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
     by_name,
     digests,
@@ -23,11 +23,11 @@ from synth.jobs.kinds.asked import (
     told,
 )
 from synth.jobs.kinds.contract import QUESTION, Posed, Record, Sources, Tell
+from synth.order.feasibility import Status
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.studies.infeasibility.explain import explanation_of
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
-from synth.study_limits import WAYS_OUT
 
 MAIN = "explanation.json"
 PHYSICS = "physics"

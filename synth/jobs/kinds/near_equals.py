@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from synth.errors import whole_number
-from synth.feasibility import Status
-from synth.input_limits import INPUT_LIMITS
 from synth.jobs.kinds.asked import (
     FAMILY,
     OF,
@@ -23,7 +21,9 @@ from synth.jobs.kinds.asked import (
 )
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.request_schemas import keys_of
+from synth.order.feasibility import Status
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
+from synth.text.input_limits import INPUT_LIMITS
 
 MAIN = "near_equals.json"
 KEYS = keys_of("near_equals")

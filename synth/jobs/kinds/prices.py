@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
     FAMILY,
     OF,
@@ -20,6 +19,7 @@ from synth.jobs.kinds.asked import (
 )
 from synth.jobs.kinds.contract import QUESTION, Posed, Record, Sources, Tell
 from synth.jobs.kinds.request_schemas import keys_of
+from synth.order.feasibility import Status
 from synth.studies.prices.run import chosen_designs, prices, read_step
 
 MAIN = "prices.json"

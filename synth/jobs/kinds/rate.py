@@ -8,7 +8,6 @@ from typing import Any
 
 from synth.analysis.design_spec import given_design, must_be_a_design
 from synth.errors import InputError
-from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
     FAMILY,
     OF,
@@ -28,6 +27,7 @@ from synth.jobs.kinds.asked import (
 from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.request_schemas import DESIGN, RATED
 from synth.model.problem import DesignProblem
+from synth.order.feasibility import Status
 from synth.question.spec import spec_from_mapping
 from synth.question.uncertainty import read_block
 from synth.results import Design, Frame

@@ -11,7 +11,6 @@ from typing import Any
 from synth.analysis.reporting import report as write_report
 from synth.analysis.reporting import report_comparison
 from synth.errors import ExtraNeededError, InputError, at, whole_number
-from synth.input_limits import INPUT_LIMITS
 from synth.jobs.kinds.asked import (
     FAMILY,
     OF,
@@ -36,6 +35,7 @@ from synth.question.spec_keys import shown_kind
 from synth.results import named_designs
 from synth.results.drawings import EXTRAS, can_make
 from synth.results.loading import load_front
+from synth.text.input_limits import INPUT_LIMITS
 
 MAIN = "report.json"  # which files there are, and what else is to be told
 KEYS = keys_of("report")

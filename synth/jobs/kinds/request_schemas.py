@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from synth.input_limits import INPUT_LIMITS
 from synth.plugins import family_names
 from synth.question.spec_keys import LARGEST_GAP, LEAST_GAP, OF_A_DESIGN, OWN
+from synth.text.input_limits import INPUT_LIMITS
 
 Schema = Mapping[str, Any]
 

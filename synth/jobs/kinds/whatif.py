@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from synth.errors import InputError, at
-from synth.feasibility import Status
 from synth.jobs.kinds.asked import (
     OF,
     SPEC,
@@ -38,6 +37,7 @@ from synth.jobs.kinds.contract import Posed, Record, Sources, Tell
 from synth.jobs.kinds.kind_settings import KIND_SETTINGS
 from synth.jobs.kinds.request_schemas import VARIED_ENDS as ENDS
 from synth.model.model import Model
+from synth.order.feasibility import Status
 from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.settings import SearchSettings

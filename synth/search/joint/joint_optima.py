@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.feasibility import SLACK
+from synth.order.feasibility import SLACK
 from synth.question.instance import Instance
 from synth.question.settings import SearchSettings
 from synth.search.archive import Candidate, rows_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from synth.bounds.branching import BranchingStatistics
-from synth.pareto import spread_subset
+from synth.order.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
 from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, PosedQuestion, SharedBounds

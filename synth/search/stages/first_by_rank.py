@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.pareto import Scale, nearly
+from synth.order.pareto import Scale, nearly
 from synth.search.archive import Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState

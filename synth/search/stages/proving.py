@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.pareto import spread_subset
+from synth.order.pareto import spread_subset
 from synth.search.archive import Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.pareto import extremes, spread_subset
+from synth.order.pareto import extremes, spread_subset
 from synth.search.archive import Candidate, distinct
 from synth.search.front_state import FrontState
 from synth.search.resolution import ROOM

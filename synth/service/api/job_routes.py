@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from synth.files import yaml_text
+from synth.folders.files import yaml_text
 from synth.jobs.engine_tasks import CHANGED_TASK
 from synth.jobs.job_table import LIVE
 from synth.jobs.kinds import KINDS

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from synth.margins import MARGINS
-from synth.pareto import signs_of, spread_subset
+from synth.order.margins import MARGINS
+from synth.order.pareto import signs_of, spread_subset
 from synth.results import Design
 from synth.studies.families.competitor import Competitor
 

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.deadline import Stopped, until
 from synth.errors import InputError
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.question.settings import LEAST_SECONDS, Progress, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import Certificate, ParetoFront
@@ -40,7 +39,8 @@ from synth.studies.families.requirement_sheet import (
     refuse_all,
     sheet_of,
 )
-from synth.study_limits import COMPARING, ComparisonLimits
+from synth.studies.settings import COMPARING, ComparisonLimits
+from synth.system.deadline import Stopped, until
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING, Tuning
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.csv_style import ENGLISH, CsvStyle
-from synth.feasibility import Status
-from synth.files import csv_text
-from synth.output_folder import FRONT, save_result
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text
+from synth.folders.output_folder import FRONT, save_result
+from synth.order.feasibility import Status
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.results.assembly import without_design
 from synth.results.certificate import all_of, none_of

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from synth.deadline import Stopped
 from synth.question.instance import Instance
 from synth.question.settings import Progress
 from synth.question.uncertainty import RATE
@@ -17,6 +16,7 @@ from synth.search.front_state import FrontState
 from synth.search.question import Question
 from synth.search.warm_start import WarmStart
 from synth.studies.families.requirement_sheet import Applicant
+from synth.system.deadline import Stopped
 from synth.tuning import Tuning
 
 

@@ -15,7 +15,6 @@ from typing import Any
 
 from synth.declaration import Declaration
 from synth.errors import InputError, at
-from synth.input_limits import INPUT_LIMITS
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_declaration, every_family, load, skipping_faulty_families
 from synth.question import request, uncertainty
@@ -23,6 +22,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.names import as_mapping, refuse_power
 from synth.question.request import Request
 from synth.tables.catalogs import Catalogs
+from synth.text.input_limits import INPUT_LIMITS
 from synth.units import parse_unit
 
 ANY = "any"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from synth.feasibility import most_used
+from synth.order.feasibility import most_used
 from synth.results import Design
 from synth.studies.infeasibility.least_amount import Giving, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from synth.analysis.fired_guards import fired_guards
-from synth.deadline import Stopped, until
+from synth.analysis.settings import WAYS_OUT
 from synth.model.problem import DesignProblem
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -20,7 +20,7 @@ from synth.studies.infeasibility.least_amount import Giving, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT
 from synth.studies.infeasibility.single_ways import CHOICE, SingleWays, trials
-from synth.study_limits import WAYS_OUT
+from synth.system.deadline import Stopped, until
 
 
 def explain(

@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.analysis.fired_guards import FiredGuard
-from synth.csv_style import ENGLISH, CsvStyle
+from synth.analysis.settings import WAYS_OUT
 from synth.errors import InputError
-from synth.files import frame_csv
-from synth.output_folder import EXPLANATION, save_result
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import frame_csv
+from synth.folders.output_folder import EXPLANATION, save_result
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.results.notebook import notebook_html
-from synth.study_limits import WAYS_OUT
 from synth.units import from_si, outward, parse_unit, written_quantity
 
 if TYPE_CHECKING:

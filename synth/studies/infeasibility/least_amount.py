@@ -7,7 +7,7 @@ import time
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from synth.deadline import Stopped
+from synth.analysis.settings import WAYS_OUT, WayOutLimits
 from synth.errors import RefusedError
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings
@@ -15,7 +15,7 @@ from synth.results import Design
 from synth.search.question import one_best
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
 from synth.studies.infeasibility.relaxation import AMOUNT, LIMIT, Relaxed
-from synth.study_limits import WAYS_OUT, WayOutLimits
+from synth.system.deadline import Stopped
 
 
 @dataclass(frozen=True)

@@ -15,15 +15,15 @@ import casadi as ca
 import numpy as np
 
 from synth.analysis.fired_guards import wanted
+from synth.analysis.settings import WAYS_OUT
 from synth.declaration import Limit, Objective, Refusal, VariableRecord
-from synth.feasibility import SMALLEST
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.slot_comparison import SlotComparison
+from synth.order.feasibility import SMALLEST
 from synth.question.instance import Instance
 from synth.special import expanded
-from synth.study_limits import WAYS_OUT
 from synth.tables.catalogs import Catalogs
 
 AMOUNT = "relaxation"

@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.csv_style import ENGLISH, CsvStyle
 from synth.errors import InputError
-from synth.files import csv_text, read_json, write_atomically
-from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text, read_json, write_atomically
+from synth.folders.output_folder import PRICES, loses_nothing, save_files, save_result, settle
 from synth.results import Frame
-from synth.study_limits import PRICES as LIMITS
+from synth.studies.settings import PRICES as LIMITS
 from synth.text.numbers import percent
 
 if TYPE_CHECKING:

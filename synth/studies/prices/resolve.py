@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.errors import InputError
-from synth.feasibility import holds, residual
 from synth.model.constraint import Constraint
 from synth.model.program import InputValue
 from synth.nlp.batch import Solutions
+from synth.order.feasibility import holds, residual
 from synth.question.instance import Instance
 from synth.question.refusals import allowed_rows, refuse_requirements
 from synth.question.requirement_values import RequirementValues
@@ -20,7 +20,7 @@ from synth.search.formulation import Formulation
 from synth.search.goals import goals_of
 from synth.search.refused_cells import not_refused
 from synth.search.sensitivity import held, requirement_positions, sides
-from synth.study_limits import PRICES, PriceLimits
+from synth.studies.settings import PRICES, PriceLimits
 from synth.text.numbers import typed_number
 
 

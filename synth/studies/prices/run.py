@@ -18,11 +18,10 @@ from typing import Any
 import numpy as np
 
 from synth.analysis.restate import question_of
-from synth.deadline import Stopped, until
 from synth.errors import InputError, at
+from synth.folders.output_folder import claimed
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
-from synth.output_folder import claimed
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront
@@ -42,7 +41,8 @@ from synth.studies.prices.price_list import (
     told,
 )
 from synth.studies.prices.resolve import Move, Resolver
-from synth.study_limits import PRICES, PriceLimits
+from synth.studies.settings import PRICES, PriceLimits
+from synth.system.deadline import Stopped, until
 from synth.text.numbers import more_or_less, number_text, percent
 from synth.units import parse_quantity
 

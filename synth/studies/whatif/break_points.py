@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from typing import Any, Protocol
 
-from synth.deadline import Stopped
 from synth.errors import InputError
 from synth.parametric.joint_groups import groups_of, joint_key
 from synth.parametric.joint_search import JointSearch
@@ -21,10 +20,11 @@ from synth.results import Design, ParetoFront
 from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.joint_question import different
 from synth.search.question import Question
+from synth.studies.settings import BREAKS, BreakLimits
 from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.studies.whatif.vary import Value
-from synth.study_limits import BREAKS, BreakLimits
+from synth.system.deadline import Stopped
 from synth.text.numbers import typed_number
 
 UNPROVEN = "the search on one side did not finish"

@@ -11,9 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from synth.deadline import Stopped, until
+from synth.folders.output_folder import claimed
 from synth.model.problem import DesignProblem
-from synth.output_folder import claimed
 from synth.parametric.joint_fronts import joint_answers, joint_groups
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -32,6 +31,7 @@ from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study import Study
 from synth.studies.whatif.study_answers import Break, StudyStep
 from synth.studies.whatif.weight_breaks import weight_breaks
+from synth.system.deadline import Stopped, until
 from synth.tuning import TUNING, Tuning
 
 INTERRUPTED = "interrupted"

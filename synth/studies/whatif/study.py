@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.csv_style import ENGLISH, CsvStyle
-from synth.files import csv_text
-from synth.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
+from synth.folders.csv_style import ENGLISH, CsvStyle
+from synth.folders.files import csv_text
+from synth.folders.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
 from synth.results.drawings import report
 from synth.results.notebook import notebook_html
 from synth.studies.study_store import STEPS, StudyStore

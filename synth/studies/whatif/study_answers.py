@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from synth.feasibility import Status
+from synth.order.feasibility import Status
 from synth.results import Design, ParetoFront
 from synth.robust.robust_front import NOTHING_STANDS
+from synth.studies.settings import STUDY_TEXTS
 from synth.studies.whatif.vary import Value, Varied
-from synth.study_limits import STUDY_TEXTS
 from synth.units import header, miss_text
 
 NOT_REACHED = "not reached"

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from synth.plain_text import words
 from synth.results import Design
+from synth.studies.settings import STUDY_TEXTS
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep, best_design
 from synth.studies.whatif.vary import Value, Varied
-from synth.study_limits import STUDY_TEXTS
+from synth.text.plain_text import words
 from synth.units import finite_from_si, header
 
 if TYPE_CHECKING:

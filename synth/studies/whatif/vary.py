@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth.errors import InputError, at, shortened
-from synth.input_limits import INPUT_LIMITS
-from synth.margins import MARGINS
 from synth.model.model import Model
-from synth.plain_text import listed, words
+from synth.order.margins import MARGINS
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
+from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import number_text, typed_number
+from synth.text.plain_text import listed, words
 from synth.units import as_decimal, parse_quantity, parse_unit
 
 DIGITS = 12

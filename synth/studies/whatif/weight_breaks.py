@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.pareto import rank
+from synth.order.pareto import rank
 from synth.results import Design, ParetoFront
+from synth.studies.settings import BREAKS, BreakLimits
 from synth.studies.whatif.break_points import neighbours, other_values
 from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep
 from synth.studies.whatif.vary import Value
-from synth.study_limits import BREAKS, BreakLimits
 
 Leader = Callable[[float], Design | None]
 

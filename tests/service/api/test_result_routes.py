@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from synth.csv_style import GERMAN, unstyled
 from synth.errors import ExtraNeededError
+from synth.folders.csv_style import GERMAN, unstyled
 from synth.jobs.engine_process import Engines
 from synth.jobs.engine_tasks import RENDER_TASK
 from tests.service.calling import Service, code_of

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from synth.files import yaml_text
+from synth.folders.files import yaml_text
 from tests.reports.browser import needs_chromium
 from tests.service.pages.visiting import Site, Tenant, in_all_forms, visit
 from tests.service.working import DUTY, FAMILY, FRONT, QUICK

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.jobs.batch import batch
-from synth.plain_text import as_list, listed
+from synth.text.plain_text import as_list, listed
 
 names = st.text('ab,"/ 3').map(str.strip).filter(bool)
 

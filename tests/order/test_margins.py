@@ -5,7 +5,7 @@ import pytest
 
 import synth
 from synth.kernels.loading import best_variant
-from synth.margins import above, below, within
+from synth.order.margins import above, below, within
 from synth.question.catalogs import catalogs_for
 from synth.question.settings import SearchSettings
 from synth.search.formulation import Formulation

@@ -14,11 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import synth
-from synth.files import csv_text, frame_csv, yaml_text
+from synth.folders.files import csv_text, frame_csv, yaml_text
+from synth.folders.output_folder import save_files
 from synth.jobs.row_table import read_table
-from synth.output_folder import save_files
-from synth.plain_text import FORMULA, NUMBER, UNSAFE, PlainStream, as_meant, defused, escaped, printable
 from synth.terminal.console import console_on, plain_table
+from synth.text.plain_text import FORMULA, NUMBER, UNSAFE, PlainStream, as_meant, defused, escaped, printable
 from tests.sample_problems.rod import Rod
 
 ACTS = "\x1b[2J", "\x9b31m", "\x1b]0;title\x07", "a\rb", "\u202egnp.exe", "\u2066x\u2069", "\x7f", "\ud800", "a\u2028b"

@@ -21,11 +21,11 @@ from pathlib import Path, PureWindowsPath
 from typing import TextIO
 
 from synth.errors import InputError
-from synth.file_locks import is_at, unlock
-from synth.files import read_json
-from synth.interrupts import held_back
-from synth.operating_system import OPEN_FILES_CAN_GO, SAFELY, is_held, lock, put_in_place, sync_folder
-from synth.plain_text import file_text
+from synth.folders.files import read_json
+from synth.system.file_locks import is_at, unlock
+from synth.system.interrupts import held_back
+from synth.system.operating_system import OPEN_FILES_CAN_GO, SAFELY, is_held, lock, put_in_place, sync_folder
+from synth.text.plain_text import file_text
 
 LOCK = ".clutchsynth.lock"  # who works for the folder
 MOVING = ".clutchsynth.moving.lock"  # who exchanges its files at the moment

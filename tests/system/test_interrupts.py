@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 
 import synth
-from synth.interrupts import heard_again, held_back, taken_alike
+from synth.system.interrupts import heard_again, held_back, taken_alike
 from synth.tables.catalogs import Catalogs
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from synth import operating_system
-from synth.operating_system import SAFELY, lock
+from synth.system import operating_system
+from synth.system.operating_system import SAFELY, lock
 
 
 @contextmanager

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth import output_folder
-from synth.output_folder import (
+from synth.folders import output_folder
+from synth.folders.output_folder import (
     FRONT,
     MANIFEST,
     NEAR_EQUALS,
@@ -137,7 +137,7 @@ def test_nothing_is_written_outside_of_the_folder(tmp_path: Path, name: str) -> 
 WRITER = """
 import json, os, signal, sys
 from pathlib import Path
-from synth.output_folder import FRONT, save_result
+from synth.folders.output_folder import FRONT, save_result
 
 place, old, fresh = Path(sys.argv[1]), json.loads(sys.argv[2]), json.loads(sys.argv[3])
 
@@ -243,7 +243,7 @@ def test_a_full_disk_keeps_the_earlier_result(tmp_path: Path) -> None:
 HOLDER = """
 import sys, time
 from pathlib import Path
-from synth.output_folder import claimed
+from synth.folders.output_folder import claimed
 with claimed(Path(sys.argv[1]), sys.argv[2]):
     print("held", flush=True)
     time.sleep(60)
@@ -313,7 +313,7 @@ def test_ctrl_c_waits_until_all_is_saved(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="only root can be somebody else")
 def test_what_somebody_else_has_left_is_in_nobodys_way() -> None:
     program = (
-        "import json, os, sys\nfrom pathlib import Path\nfrom synth.output_folder import FRONT, save_result\n"
+        "import json, os, sys\nfrom pathlib import Path\nfrom synth.folders.output_folder import FRONT, save_result\n"
         "os.setuid(65534)\nsave_result(Path(sys.argv[1]), json.loads(sys.argv[2]), FRONT, False)"
     )
     with tempfile.TemporaryDirectory() as name:  # pytest's own folders are for one user

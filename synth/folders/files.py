@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from synth.errors import InputError
-from synth.input_limits import INPUT_LIMITS
-from synth.operating_system import AS_BYTES, NO_WAIT, put_in_place
-from synth.plain_text import UNSAFE, csv_cell, escaped, file_text
+from synth.system.operating_system import AS_BYTES, NO_WAIT, put_in_place
+from synth.text.input_limits import INPUT_LIMITS
+from synth.text.plain_text import UNSAFE, csv_cell, escaped, file_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.feasibility import TOLERANCE, Status, binds, holds, missed_share, most_used, residual, utilisation
+from synth.order.feasibility import TOLERANCE, Status, binds, holds, missed_share, most_used, residual, utilisation
 
 SENSES = ("at_most", "at_least", "equal")
 NUMBERS = st.floats(-1e9, 1e9, allow_nan=False)

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.csv_style import ENGLISH, GERMAN, NUMBER, csv_style, with_comma, with_point
 from synth.errors import InputError
-from synth.files import csv_text
+from synth.folders.csv_style import ENGLISH, GERMAN, NUMBER, csv_style, with_comma, with_point
+from synth.folders.files import csv_text
 from synth.tables.delimited_text import delimited_text
 
 numbers = st.floats(-1e9, 1e9, allow_nan=False).map(lambda x: x + 0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from synth.feasibility import TOLERANCE
+from synth.order.feasibility import TOLERANCE
 
 
 @dataclass(frozen=True, kw_only=True)

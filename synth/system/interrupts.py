@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from synth.operating_system import ENDING
+from synth.system.operating_system import ENDING
 
 TWICE = 1.0  # seconds; what comes from a terminal, and again from whoever started the program, is one wish
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from synth import operating_system as system
 from synth.errors import InputError
-from synth.output_folder import FRONT, READY, _is_inside, check_not_held, save_result, settle
+from synth.folders.output_folder import FRONT, READY, _is_inside, check_not_held, save_result, settle
+from synth.system import operating_system as system
 from tests.waiting import until
 
 SLEEP = "import time; time.sleep(600)"
@@ -76,8 +76,8 @@ def test_a_result_with_a_table_that_is_open_elsewhere_changes_as_a_whole_or_not(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     save_result(tmp_path, OLD, FRONT, stopped=False)
-    monkeypatch.setattr("synth.output_folder.OPEN_FILES_CAN_GO", False)
-    monkeypatch.setattr("synth.output_folder.is_held", lambda path: path.name == "designs.csv")
+    monkeypatch.setattr("synth.folders.output_folder.OPEN_FILES_CAN_GO", False)
+    monkeypatch.setattr("synth.folders.output_folder.is_held", lambda path: path.name == "designs.csv")
     with pytest.raises(InputError, match=r"designs\.csv.*no other program has open"):
         check_not_held(tmp_path, FRONT)  # before a search
     with pytest.raises(InputError, match=rf"designs\.csv.*complete in {READY}"):

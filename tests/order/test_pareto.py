@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.pareto import Scale, knee_of, non_dominated, rank, signs_of, spread_subset
+from synth.order.pareto import Scale, knee_of, non_dominated, rank, signs_of, spread_subset
 
 
 def dominated_by_hand(phi):

@@ -1,0 +1,1 @@
+"""Files that are read, and folders of results that are written."""

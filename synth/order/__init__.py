@@ -1,0 +1,1 @@
+"""When values are equal, limits hold and designs dominate."""

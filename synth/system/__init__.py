@@ -1,0 +1,1 @@
+"""What differs between operating systems, and how processes wait, lock and are interrupted."""
