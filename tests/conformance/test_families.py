@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import synth
-from synth.bounds.kernel_boxes import listed_code
+from synth.bounds import kernel_boxes
 from synth.folders.files import read_bytes
 from synth.nlp.ipopt import Task
 from synth.nlp.kernel_solver import fits
@@ -104,7 +104,7 @@ def test_kernels_have_room_for_it(traced):
     form = Formulation(instance, with_ties(instance.model, asked), len(asked))
     assert fits(RowFunctions(instance.model.program, form.n, form.continuous.rows))
     for every in (False, True):
-        assert listed_code(form.bounding.propagation.code(every, True)) is not None
+        assert kernel_boxes.fits(form.bounding.propagation.code(every, True))
 
 
 # -- numbers -----------------------------------------------------------------------------------------
