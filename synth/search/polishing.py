@@ -212,11 +212,9 @@ def break_ties(
 def _difference(instance: SearchSpace, combination: int, other: int) -> str:
     """Return in words in what another combination differs."""
     own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
-    words = []
-    for slot in own[0]:
-        if own[0][slot] != its[0][slot]:
-            table, row = its[0][slot]
-            words.append(f"{slot} {table.designations[row]}")
+    words = [
+        f"{slot} {table.designations[row]}" for slot, (table, row) in its[0].items() if own[0][slot] != its[0][slot]
+    ]
     words += [f"{n} {typed_number(its[1][n])}" for n in own[1] if own[1][n] != its[1][n]]
     words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
     return ", ".join(words)
