@@ -355,7 +355,7 @@ class Worker:
                     self.store.adopt(self.code, worker.alive)
                     self.store.prune()
             except (DBAPIError, OSError) as error:
-                self.say(f"the database does not answer ({type(error).__name__}); waiting for it")
+                self.say(f"the database does not answer ({getattr(error, 'strerror', type(error).__name__)}); waiting")
                 self.stopping.wait(worker.weigh)
 
     def _end_unwanted(self) -> None:

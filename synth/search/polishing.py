@@ -212,11 +212,9 @@ def break_ties(
 def _difference(instance: SearchSpace, combination: int, other: int) -> str:
     """Return in words in what another combination differs."""
     own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
-    words = []
-    for slot in own[0]:
-        if own[0][slot] != its[0][slot]:
-            table, row = its[0][slot]
-            words.append(f"{slot} {table.designations[row]}")
+    words = [
+        f"{slot} {table.designations[row]}" for slot, (table, row) in its[0].items() if own[0][slot] != its[0][slot]
+    ]
     words += [f"{n} {typed_number(its[1][n])}" for n in own[1] if own[1][n] != its[1][n]]
     words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
     return ", ".join(words)
@@ -227,7 +225,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     found: list[list[Candidate]] = [[] for _ in candidates]
     if not len(pool) or not candidates:
         return found
-    tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.polishing.ties
+    tie, limits = form.tuning.tolerances.tie, form.tuning.heuristics.polishing
     phi = np.array([c.phi for c in candidates])
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     cutoffs = np.full(phi.shape, np.inf)
@@ -236,25 +234,28 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
     cell[:, :apart] = form.boxes.cell_of(own)[:, :apart]
     questions = form.instance.combinations.digits(own)[:apart]
-    boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
-    tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    while len(boxes):
+
+    def take(whose: np.ndarray, every: np.ndarray) -> None:
+        # A cell may hold questions that are the same in all that counts: theirs are no other designs.
+        keep = np.ones(len(whose), dtype=bool)
+        for digit, its in zip(form.instance.combinations.digits(every)[:apart], questions, strict=True):
+            keep &= digit == its[whose]
+        same = _feasible(form, whose[keep], every[keep], points[whose[keep]])
+        for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= tie, axis=1)):
+            if len(found[same.whose[k]]) < limits.ties:
+                found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
+
+    waiting = [replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))]
+    while waiting:  # where millions tie, only as many boxes at a time as memory holds, and no more than are told
+        boxes = waiting.pop()
+        boxes = boxes.take(np.array([len(its) < limits.ties for its in found])[boxes.tag])
+        later, boxes = boxes.take(slice(limits.evaluated_at_once, None)), boxes.take(slice(limits.evaluated_at_once))
         boxes = form.boxes.contract(boxes, cutoffs[boxes.tag], passes=1)
         single = form.boxes.cells.single(boxes.cell)
-        numbers = _members(form, boxes.cell[single], most)
-        tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
-        combinations += numbers
+        numbers = _members(form, boxes.cell[single], limits.ties)
+        take(np.repeat(boxes.tag[single], [len(n) for n in numbers]), np.concatenate([own[:0], *numbers]))
         boxes, _ = form.boxes.split(boxes.take(~single))
-    whose, every = np.concatenate(tags), np.concatenate(combinations)
-    # A cell may hold questions that are the same in all that counts: theirs are no other designs.
-    keep = np.ones(len(whose), dtype=bool)
-    for digit, its in zip(form.instance.combinations.digits(every)[:apart], questions, strict=True):
-        keep &= digit == its[whose]
-    whose = whose[keep]
-    same = _feasible(form, whose, every[keep], points[whose])
-    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= tie, axis=1)):
-        if len(found[same.whose[k]]) < most:
-            found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
+        waiting += [batch for batch in (later, boxes) if len(batch)]
     return found
 
 

@@ -41,6 +41,7 @@ def register(app: typer.Typer) -> None:
 
 def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: Follow = False) -> None:
     """Work at the jobs of a database until stopped; any number of workers may, on any machines."""
+    from synth.jobs.database import refuse_damaged
     from synth.jobs.log_lines import follow_switch
     from synth.jobs.store import Store
     from synth.jobs.worker import Worker
@@ -50,6 +51,7 @@ def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: F
     if slots is not None:
         whole_number(slots, "--slots", INPUT_LIMITS.workers, path=("slots",))
     with Store(database, create=False) as store:
+        refuse_damaged(store.engine)
         serving = Worker(store, slots or cores(), spare=spare, say=tell)
         for number in (signal.SIGINT, *ENDING):
             signal.signal(number, lambda *_: serving.stop())

@@ -38,7 +38,7 @@ class _Settings:
 class _LimitOfRange:
     """How a limit stands the range of what scatters, as ``robust`` of a design tells it."""
 
-    holds: bool
+    holds: bool | None
     proof: str
     value: float | None
     limit: float | None
@@ -51,7 +51,7 @@ class _LimitOfRange:
 class _Robust:
     """How a design stands the range, as its ``robust`` tells it."""
 
-    holds: bool
+    holds: bool | None
     proof: str
     worst_limit: str | None
     worst_at: Mapping[str, float]

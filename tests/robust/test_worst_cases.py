@@ -127,6 +127,7 @@ def test_what_is_not_shown_stays_on_a_front():
     assert [d.robust["verdict"] for d in front.designs] == ["not shown"]
     assert front.statistics["robust"]["taken_off"] == 0
     assert robust_sentence(front.designs).startswith("not shown that the design keeps all limits")
+    assert front.verify().holds
 
 
 def test_designs_of_all_verdicts_are_counted_in_one_sentence():

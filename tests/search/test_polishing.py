@@ -1,5 +1,7 @@
 """What the best design in one objective leaves free is settled by the other objectives, makeable values included."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,11 +9,12 @@ import synth
 from synth import DesignProblem
 from synth.parametric.joint_search import JointSearch
 from synth.search.archive import Candidate
+from synth.search.box_operations import BoxOperations
 from synth.search.polishing import polish_discrete
 from synth.tuning import TUNING, PolishingLimits
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut, feasible_candidates
-from tests.tuned import tuned
+from tests.tuned import synthesize, tuned
 
 TIE = TUNING.tolerances.tie
 
@@ -166,3 +169,39 @@ def test_what_is_feasible_and_as_good_is_promising(which):
     assert len(good)
     assert keep.ravel()[good].all()
     assert keep.mean() < 0.5
+
+
+# -- ties --------------------------------------------------------------------------------------------
+
+
+class ManyTies(DesignProblem):
+    """A bar whose mass does not see how often it is marked, which a limit does that hardly excludes any of 240 000."""
+
+    name, title, sources = "many_ties", "Many ties", ("made up",)
+
+    def declare(self, d):
+        length = d.variable("length", "m", 1, 2)
+        marks = [d.count(f"marks_{k}", 1, 62) for k in range(3)]
+        d.at_most("marked", length * sum(marks), 185, "m")
+        d.derive("mass", "kg", 3 * length)
+        d.objective("mass")
+
+
+@pytest.mark.parametrize("at_once", [100, 65_536])
+def test_no_more_ties_are_sought_than_are_told_and_few_at_a_time(at_once, monkeypatch):
+    sizes: list[int] = []
+    contract = BoxOperations.contract
+
+    def watched(self, boxes, cutoffs=None, passes=None, **more):
+        if passes == 1:
+            sizes.append(len(boxes))
+        return contract(self, boxes, cutoffs, passes, **more)
+
+    monkeypatch.setattr(BoxOperations, "contract", watched)
+    limits = replace(TUNING.heuristics.polishing, evaluated_at_once=at_once)
+    tuning = tuned(heuristics={"polishing": limits})
+    (design,) = synthesize(tuning, ManyTies, {}, points=1).designs
+    assert len(design.alternatives) == limits.ties - 1
+    assert len({str(other) for other in design.alternatives}) == limits.ties - 1
+    assert max(sizes) <= at_once
+    assert sum(sizes) < 100_000

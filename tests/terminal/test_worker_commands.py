@@ -19,6 +19,17 @@ def test_a_worker_refuses_a_database_that_is_not_there(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_worker_refuses_a_damaged_database(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    with Store(file_url(file).render_as_string()) as store:
+        store.engine.connect().exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
+    content = bytearray(file.read_bytes())
+    content[8 * 4096 : 14 * 4096] = b"\x11" * (6 * 4096)
+    file.write_bytes(content)
+    done = CliRunner().invoke(app, ["worker", "--database", file_url(file).render_as_string()])
+    assert "a job database that is whole" in str(done.exception)
+
+
 def test_a_job_of_a_service_is_opened_again_for_its_workers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     url = file_url(tmp_path / "jobs.sqlite").render_as_string()
     with Store(url) as store:
