@@ -1,4 +1,4 @@
-# make demo, make check, make test, make thorough, make lint, make kernels, make mechanics, make picture, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make javascript, make kernels, make mechanics, make picture, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/system/operating_system.py
 
-.PHONY: demo check test thorough lint kernels mechanics picture gallery lock clean
+.PHONY: demo check test thorough lint javascript kernels mechanics picture gallery lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -37,6 +37,29 @@ lint: $(DEV)
 	$(BIN)/mypy
 	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32 --follow-imports skip $(DIFFERENT)
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin --follow-imports skip $(DIFFERENT)
+	@$(MAKE) --no-print-directory javascript
+
+# JavaScript: types, rules, tests. Where Node is missing or older, or no package comes from npm, one line says that
+# nothing was checked; a lock that does not fit package.json (EUSAGE) is a fault.
+NODE_MODULES := node_modules/.installed
+NPM_TOLD := build/npm_ci.txt
+FITTING_NODE := node -e 'const [a, b] = process.versions.node.split(".").map(Number); process.exit(a > 20 || (a === 20 && b >= 19) ? 0 : 1)'
+javascript:
+	@if ! command -v npm > /dev/null || ! $(FITTING_NODE) 2> /dev/null; then \
+		echo "JavaScript was not checked: that needs Node 20.19 or newer, with npm"; \
+	elif ! $(MAKE) --silent $(NODE_MODULES) 2> /dev/null; then \
+		if grep -q EUSAGE $(NPM_TOLD); then head -5 $(NPM_TOLD) >&2; exit 1; fi; \
+		echo "JavaScript was not checked: npm ci could not install the packages ($(NPM_TOLD) tells why)"; \
+	else \
+		set -e; for types in tsconfig.json tsconfig.pages.json tsconfig.scripts.json; do node_modules/.bin/tsc -p $$types; done; \
+		node_modules/.bin/eslint .; \
+		node --test --test-reporter=dot tests/ui/*.test.mjs; \
+	fi
+
+$(NODE_MODULES): package.json package-lock.json
+	@mkdir -p $(dir $(NPM_TOLD))
+	@npm ci --no-audit --no-fund --fetch-retries=1 --fetch-retry-mintimeout=1000 > $(NPM_TOLD) 2>&1
+	@touch $@
 
 # Headers of what Python and the C kernels must agree on; a test compares them.
 kernels: $(DEV)
@@ -85,5 +108,5 @@ lock: $(DEV)
 	$(COMPILE) --extra dev --output-file requirements-dev.lock
 
 clean:
-	rm -rf $(VENV) out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) node_modules out build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -57,21 +57,34 @@ def modules() -> dict[str, Path]:
 
 
 @cache
-def tree(text: str) -> ast.Module:
-    """Return what a source text says."""
-    return ast.parse(text)
-
-
-def imports(text: str, known: set[str]) -> set[str]:
-    """Modules that a source text imports, wherever the import stands, or names in a text to import them later."""
+def read(text: str) -> tuple[set[str], list[str]]:
+    """Return what a source text imports or names in a text to import it later, and the classes that it defines."""
     names: set[str] = set()
-    for node in ast.walk(tree(text)):
+    classes: list[str] = []
+    left: list[ast.AST] = [ast.parse(text)]
+    while left:
+        node = left.pop()
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and MODULE.fullmatch(node.value):
-            names.add(node.value.partition(":")[0])
+        elif isinstance(node, ast.Constant):
+            if isinstance(node.value, str) and MODULE.fullmatch(node.value):
+                names.add(node.value.partition(":")[0])
+        elif not isinstance(node, ast.Name):
+            if isinstance(node, ast.ClassDef):
+                classes.append(node.name)
+            for part in node.__dict__.values():
+                if isinstance(part, ast.AST):
+                    left.append(part)
+                elif isinstance(part, list):
+                    left += [inner for inner in part if isinstance(inner, ast.AST)]
+    return names, classes
+
+
+def imports(text: str, known: set[str]) -> set[str]:
+    """Modules that a source text imports, wherever the import stands, or names in a text to import them later."""
+    names = read(text)[0]
     found = set()
     for name in names:
         steps = name.split(".")
@@ -141,16 +154,15 @@ def test_what_proves_does_not_know_what_steers() -> None:
     own = {module for module in modules() if module.startswith("synth.bounds.")}
     assert {module.removeprefix("synth.bounds.") for module in own} == SOUND | STEERING | BOTH | OF_FORMULAS
     for name in SOUND:
-        read = imports(modules()[f"synth.bounds.{name}"].read_text(), own)
-        assert read <= {f"synth.bounds.{other}" for other in SOUND}, f"{name} imports what steers"
+        known = imports(modules()[f"synth.bounds.{name}"].read_text(), own)
+        assert known <= {f"synth.bounds.{other}" for other in SOUND}, f"{name} imports what steers"
 
 
 def test_no_class_name_stands_for_two_things() -> None:
     homes: dict[str, list[str]] = {}
     for module, path in modules().items():
-        for node in ast.walk(tree(path.read_text())):
-            if isinstance(node, ast.ClassDef):
-                homes.setdefault(node.name, []).append(module)
+        for name in read(path.read_text())[1]:
+            homes.setdefault(name, []).append(module)
     assert len(homes) > 100
     assert {name: found for name, found in homes.items() if len(found) > 1} == {}
 

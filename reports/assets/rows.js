@@ -4,14 +4,25 @@
   const place = document.getElementById("many-rows");
   const source = document.getElementById("all-rows");
   if (!place || !source) return;
-  const { whole: isWhole, rows, kind, most } = JSON.parse(source.textContent);
-  const find = (selector) => place.querySelector(selector);
-  const [tools, state, text, counted] = [".tools", "select", "input", ".counted"].map(find);
-  const [before, after, body] = [".before", ".after", "tbody"].map(find);
+  /** @typedef {string | number | null} Cell */
+  /** @type {{whole: boolean[], rows: Cell[][], kind: number, most: number}} */
+  const { whole: isWhole, rows, kind, most } = JSON.parse(source.textContent ?? "");
+  const [tools, counted] = /** @type {NodeListOf<HTMLElement>} */ (place.querySelectorAll(".tools, .counted"));
+  const [before, after] = /** @type {NodeListOf<HTMLButtonElement>} */ (place.querySelectorAll(".before, .after"));
+  const [state, text] = [place.querySelector("select"), place.querySelector("input")];
+  const [frame, body] = [place.querySelector("table"), place.querySelector("tbody")];
+  if (!state || !text || !frame || !body) return;
   const heads = [...place.querySelectorAll("thead th")];
   const kinds = heads.map((head) => head.className);
   const order = new Intl.Collator("en", { numeric: true });
-  const cellText = (value, k) => (typeof value === "string" || isWhole[k] ? String(value) : number(value));
+  const cellText = (/** @type {Cell} */ value, /** @type {number} */ k) =>
+    (typeof value === "string" || isWhole[k] ? String(value) : number(value));
+  /**
+   * @template {keyof HTMLElementTagNameMap} T
+   * @param {T} tag
+   * @param {string} words
+   * @param {Element} parent
+   */
   const make = (tag, words, parent) => {
     const node = document.createElement(tag);
     node.textContent = words;
@@ -19,15 +30,18 @@
     return node;
   };
   // What is searched: all cells of a row, in small letters; made when somebody first types.
+  /** @type {string[] | null} */
   let searched = null;
   let chosen = rows.map((_, k) => k);
-  let [column, down, first] = [-1, false, 0];
+  let column = -1;
+  let down = false;
+  let first = 0;
 
-  const compare = (a, b) => {
+  const compare = (/** @type {number} */ a, /** @type {number} */ b) => {
     const [x, y] = [rows[a][column], rows[b][column]];
     const [none, other] = [x === null || x === "", y === null || y === ""];
-    if (none || other) return none - other || a - b; // what is empty stands last, whatever the direction
-    const way = typeof x === "number" && typeof y === "number" ? x - y : order.compare(x, y);
+    if (none || other) return Number(none) - Number(other) || a - b; // what is empty stands last, whatever the direction
+    const way = typeof x === "number" && typeof y === "number" ? x - y : order.compare(String(x), String(y));
     return (down ? -way : way) || a - b;
   };
   const draw = () => {
@@ -52,22 +66,23 @@
     chosen = [];
     rows.forEach((row, k) => {
       if (state.value !== "" && row[kind] !== state.value) return;
-      if (words.every((word) => searched[k].includes(word))) chosen.push(k);
+      if (words.every((word) => searched?.[k].includes(word))) chosen.push(k);
     });
     if (column >= 0) chosen.sort(compare);
     first = 0;
     draw();
   };
-  const turn = (way) => {
+  const turn = (/** @type {1 | -1} */ way) => {
     first = Math.max(0, first + way * most);
     draw();
-    find("table").scrollIntoView({ block: "start" });
+    frame.scrollIntoView({ block: "start" });
   };
 
+  /** @type {Map<Cell, number>} */
   const counts = new Map();
   rows.forEach((row) => counts.set(row[kind], (counts.get(row[kind]) || 0) + 1));
   make("option", `all (${number(rows.length)})`, state).value = "";
-  [...counts].forEach(([word, count]) => { make("option", `${word} (${number(count)})`, state).value = word; });
+  [...counts].forEach(([word, count]) => { make("option", `${word} (${number(count)})`, state).value = String(word); });
   heads.forEach((head, k) => {
     const button = document.createElement("button");
     button.type = "button";
@@ -85,7 +100,7 @@
   text.addEventListener("input", choose);
   before.addEventListener("click", () => turn(-1));
   after.addEventListener("click", () => turn(1));
-  find(".hint").remove();
+  place.querySelector(".hint")?.remove();
   tools.hidden = false;
   draw();
 })();

@@ -6,7 +6,16 @@ import { amount } from "./numbers.js";
 
 const FIRST_CHIPS = 8;
 
-/** Return the title, what is said about the front, and a corner for the page. */
+/**
+ * @typedef {import("./explorer.js").Explorer} Explorer
+ * @typedef {import("./record.js").Asked} Asked
+ * @typedef {import("./record.js").Family} Family
+ */
+
+/**
+ * Return the title, what is said about the front, and a corner for the page.
+ * @param {Explorer} x
+ */
 export function heading(x) {
   const { record } = x.model;
   const actions = h("div", { class: "actions" });
@@ -27,12 +36,15 @@ export function heading(x) {
   );
 }
 
-/** Return what was asked, and on request what was assumed. */
+/**
+ * Return what was asked, and on request what was assumed.
+ * @param {Explorer} x
+ */
 export function chips(x) {
   const { asked, assumed } = x.model.record;
-  const told = (entry) => entry.words ?? amount(entry.value, entry.unit);
+  const told = (/** @type {Asked} */ entry) => entry.words ?? amount(entry.value, entry.unit);
   const before = x.other && [...x.other.record.asked, ...x.other.record.assumed];
-  const chip = (entry) => {
+  const chip = (/** @type {Asked} */ entry) => {
     const earlier = before?.find((other) => other.label === entry.label);
     const differs = before && (!earlier || told(earlier) !== told(entry));
     return h(
@@ -43,7 +55,7 @@ export function chips(x) {
       differs ? h("span", { class: "note" }, earlier ? ` in place of ${told(earlier)}` : " not asked before") : null,
     );
   };
-  const row = (entry) =>
+  const row = (/** @type {Asked} */ entry) =>
     h(
       "tr",
       { title: entry.text || null },
@@ -71,9 +83,20 @@ export function chips(x) {
   );
 }
 
-/** Return the card of the scatter: axes to choose, legend, filters, a strip for what-if. */
-export function frontCard(x) {
+/**
+ * Return the card of the scatter: axes to choose, legend, filters, a strip for what-if.
+ * @param {Explorer} x
+ * @param {{node: HTMLElement}} scatter
+ * @param {{node: HTMLElement}} legend
+ */
+export function frontCard(x, scatter, legend) {
   const { model, state } = x;
+  /**
+   * @param {"x" | "y" | "by"} name
+   * @param {string} label
+   * @param {import("./record.js").Column[]} columns
+   * @param {string} [none]
+   */
   const choose = (name, label, columns, none) =>
     h(
       "label",
@@ -83,7 +106,7 @@ export function frontCard(x) {
         "select",
         {
           "data-field": name,
-          onchange: (event) => {
+          onchange: (/** @type {import("./elements.js").EventOf<HTMLSelectElement>} */ event) => {
             state[name] = event.target.value;
             x.cache = null;
             x.draw();
@@ -112,17 +135,24 @@ export function frontCard(x) {
       h("span", { class: "grow" }),
       x.count,
     ),
-    x.scatter.node,
-    x.legend.node,
+    scatter.node,
+    legend.node,
     x.filters,
     x.strip,
   );
 }
 
-/** Return the card of all attributes. */
-export function parallelCard(x) {
-  const same = x.parallel.same();
-  x.fields = h("details", { class: "ranges" }, h("summary", null, "Ranges by number"));
+/** Return the place for fields to type ranges into. */
+export const rangeFields = () => h("details", { class: "ranges" }, h("summary", null, "Ranges by number"));
+
+/**
+ * Return the card of all attributes.
+ * @param {Explorer} x
+ * @param {{node: HTMLElement, same: () => string[]}} parallel
+ * @param {HTMLElement} fields
+ */
+export function parallelCard(x, parallel, fields) {
+  const same = parallel.same();
   return h(
     "section",
     { class: "card parallels", "aria-labelledby": `${x.id}-all` },
@@ -132,14 +162,18 @@ export function parallelCard(x) {
       h("h2", { id: `${x.id}-all` }, "All attributes"),
       h("p", { class: "note pointer" }, "drag along an axis to keep a range, press it to drop the range"),
     ),
-    x.parallel.node,
+    parallel.node,
     same.length ? h("p", { class: "note same" }, `The same in all: ${same.join("; ")}.`) : null,
-    x.fields,
+    fields,
   );
 }
 
-/** Return the card of the table. */
-export function tableCard(x) {
+/**
+ * Return the card of the table.
+ * @param {Explorer} x
+ * @param {{node: HTMLElement, chooser: HTMLElement}} table
+ */
+export function tableCard(x, table) {
   return h(
     "section",
     { class: "card table", "aria-labelledby": `${x.id}-table` },
@@ -150,17 +184,21 @@ export function tableCard(x) {
       h("p", { class: "note pointer" }, x.model.count > 1 ? "arrow keys move, space compares" : ""),
       h("span", { class: "grow" }),
       h("button", { type: "button", class: "small", onclick: () => saveTable(x) }, "CSV"),
-      h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), x.table.chooser),
+      h("details", { class: "columns-menu" }, h("summary", { class: "button small" }, "Columns"), table.chooser),
     ),
-    x.table.node,
+    table.node,
   );
 }
 
+/** @type {Record<string, string>} */
 const TONES = { listed: "good", beaten: "", infeasible: "bad", not_found: "bad", stopped: "open" };
 
-/** Return the card of the families that were asked the same. */
+/**
+ * Return the card of the families that were asked the same.
+ * @param {Explorer} x
+ */
 export function familiesCard(x) {
-  const row = (family) => {
+  const row = (/** @type {Family} */ family) => {
     const file = localAddress(family.file);
     return h(
       "tr",
@@ -171,7 +209,7 @@ export function familiesCard(x) {
     );
   };
   const order = Object.keys(TONES);
-  const rank = (family) => (order.includes(family.outcome) ? order.indexOf(family.outcome) : order.length);
+  const rank = (/** @type {Family} */ { outcome }) => (order.includes(outcome) ? order.indexOf(outcome) : order.length);
   return h(
     "section",
     { class: "card outcomes", "aria-labelledby": `${x.id}-families` },
@@ -179,7 +217,7 @@ export function familiesCard(x) {
     h(
       "table",
       null,
-      h("tbody", null, [...x.model.record.families].sort((a, b) => rank(a) - rank(b)).map(row)),
+      h("tbody", null, [...(x.model.record.families ?? [])].sort((a, b) => rank(a) - rank(b)).map(row)),
     ),
   );
 }

@@ -11,7 +11,7 @@ const ICONS = {
 
 /**
  * Return the banner that says how far the front is proven.
- * @param {object} record
+ * @param {import("./record.js").FrontRecord} record
  */
 export function certificateBanner(record) {
   const c = record.certificate;
@@ -61,8 +61,12 @@ export function certificateBanner(record) {
   );
 }
 
-/** Return how the combinations were dealt with, as a bar and in figures. */
+/**
+ * Return how the combinations were dealt with, as a bar and in figures.
+ * @param {import("./record.js").Certificate} c
+ */
 function flow(c) {
+  /** @type {[name: string, count: number, text: string][]} */
   const shares = [
     ["excluded", c.excluded, "excluded by a bound that holds for all their sizes"],
     ["solved", c.solved, "solved in full"],

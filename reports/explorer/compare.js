@@ -1,9 +1,11 @@
 // Up to four designs side by side, differences marked.
 
-import { h, hidden } from "./dom.js";
+import { focusOn, h, hidden } from "./dom.js";
 import { amount, number, usedShare } from "./numbers.js";
 
 export const MOST_PINS = 4;
+
+/** @typedef {{label: string, kind: string, told: string[], best: boolean[] | null}} Row */
 
 /**
  * Make the comparison.
@@ -38,7 +40,7 @@ export function compareView(x) {
               onclick: () => {
                 folded = !folded;
                 draw();
-                node.querySelector(".fold").focus();
+                focusOn(node, ".fold");
               },
             },
             folded ? "Unfold" : "Fold",
@@ -51,10 +53,10 @@ export function compareView(x) {
             h("input", {
               type: "checkbox",
               checked: every,
-              onchange: (e) => {
+              onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ e) => {
                 every = e.target.checked;
                 draw();
-                node.querySelector("input").focus();
+                focusOn(node, "input");
               },
             }),
             "all rows",
@@ -82,29 +84,32 @@ export function compareView(x) {
       );
   }
 
+  /** @param {number[]} pins */
   function table(pins) {
     const { model } = x;
+    /** @type {Row[]} */
     const rows = model.columns.map((c) => ({
       label: c.label,
       kind: c.kind,
-      values: pins.map((i) => c.values[i]),
       told: pins.map((i) => (c.kind === "word" ? c.values[i] : amount(c.values[i], c.unit))),
       best: best(c, pins),
     }));
+    /** @type {Row[]} */
     const used = model.record.limits
-      .map((limit, k) => ({
-        label: `used of ${limit.label}`,
+      .map((limit, k) => ({ limit, used: pins.map((i) => model.record.designs[i].used[k]) }))
+      .filter((row) => row.used.some((share) => (share ?? 0) >= 0.9))
+      .map((row) => ({
+        label: `used of ${row.limit.label}`,
         kind: "used",
-        told: pins.map((i) => usedShare(model.record.designs[i].used[k])),
-        hot: pins.map((i) => model.record.designs[i].used[k] >= 0.9),
-      }))
-      .filter((row) => row.hot.some(Boolean));
+        told: row.used.map((share) => usedShare(share)),
+        best: null,
+      }));
     const kept = [...rows, ...used]
       .map((row) => ({ ...row, differs: new Set(row.told).size > 1 }))
       .filter((row) =>
         row.differs ? row.kind !== "derived" || every || model.derived.length < 8 : every || row.kind === "objective",
       );
-    const line = (row) =>
+    const line = (/** @type {Row & {differs: boolean}} */ row) =>
       h(
         "tr",
         { class: row.differs ? "differs" : null },
@@ -113,7 +118,7 @@ export function compareView(x) {
           h("td", null, text, row.best?.[k] ? h("span", { class: "badge good" }, "best") : null),
         ),
       );
-    const button = (i) =>
+    const button = (/** @type {number} */ i) =>
       h(
         "button",
         { type: "button", class: "link", onclick: () => x.select(i) },
@@ -143,9 +148,14 @@ export function compareView(x) {
     );
   }
 
+  /**
+   * Return which of the designs are the best in a column.
+   * @param {import("./record.js").Column} column
+   * @param {number[]} pins
+   */
   function best(column, pins) {
     const sense = x.model.record.objectives[column.key];
-    if (!sense) return null;
+    if (!sense || column.kind === "word") return null;
     const values = pins.map((i) => column.values[i] ?? (sense === "min" ? Infinity : -Infinity));
     const top = (sense === "min" ? Math.min : Math.max)(...values);
     return new Set(values.map((v) => number(v))).size > 1 ? values.map((v) => v === top) : null;

@@ -11,17 +11,18 @@ const TURNING =
  * @returns {string}
  */
 export function plain(text) {
-  const code = (found) => `[U+${found.charCodeAt(0).toString(16).toUpperCase().padStart(4, "0")}]`;
+  const code = (/** @type {string} */ found) => `[U+${found.charCodeAt(0).toString(16).toUpperCase().padStart(4, "0")}]`;
   return String(text ?? "").replace(TURNING, code);
 }
 
 /**
- * @typedef {Node | string | number | null | undefined | false | Child[]} Child
- * @typedef {Record<string, unknown>} Attributes names of attributes; `onclick` and the like take functions
+ * @typedef {import("./elements.js").Child} Child
+ * @typedef {import("./elements.js").Attributes} Attributes
  */
 
 /**
- * @param {Element} node
+ * @template {Element} E
+ * @param {E} node
  * @param {Attributes | null} attributes
  * @param {Child[]} children
  */
@@ -31,7 +32,7 @@ function filled(node, attributes, children) {
     if (typeof value === "function") node.addEventListener(name.slice(2), value);
     else node.setAttribute(name, value === true ? "" : plain(value));
   }
-  for (const child of children.flat(Infinity)) {
+  for (const child of /** @type {Exclude<Child, Child[]>[]} */ (/** @type {unknown[]} */ (children).flat(Infinity))) {
     if (child === null || child === undefined || child === false) continue;
     node.append(child instanceof Node ? child : document.createTextNode(plain(child)));
   }
@@ -40,19 +41,19 @@ function filled(node, attributes, children) {
 
 /**
  * Make an element of HTML.
- * @param {string} tag
+ * @template {keyof HTMLElementTagNameMap} T
+ * @param {T} tag
  * @param {Attributes | null} [attributes]
  * @param {...Child} children
- * @returns {HTMLElement}
  */
 export const h = (tag, attributes = null, ...children) => filled(document.createElement(tag), attributes, children);
 
 /**
  * Make an element of SVG.
- * @param {string} tag
+ * @template {keyof SVGElementTagNameMap} T
+ * @param {T} tag
  * @param {Attributes | null} [attributes]
  * @param {...Child} children
- * @returns {SVGElement}
  */
 export const s = (tag, attributes = null, ...children) =>
   filled(document.createElementNS(SVG, tag), attributes, children);
@@ -80,5 +81,28 @@ export function save(name, text, kind) {
   setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/** Words that only a screen reader tells. */
+/**
+ * Words that only a screen reader tells.
+ * @param {...Child} words
+ */
 export const hidden = (...words) => h("span", { class: "unseen" }, ...words);
+
+/**
+ * Return the element of an id, which the page has.
+ * @param {string} id
+ */
+export function byId(id) {
+  const node = document.getElementById(id);
+  if (!node) throw new Error(`the page has no element ${id}`);
+  return node;
+}
+
+/**
+ * Set the focus on the first element that fits a selector, if there is one.
+ * @param {ParentNode} place
+ * @param {string} selector
+ */
+export function focusOn(place, selector) {
+  const node = place.querySelector(selector);
+  if (node instanceof HTMLElement || node instanceof SVGElement) node.focus();
+}

@@ -1,88 +1,89 @@
 // The explorer: one state, draw() for what changes, mark() for what is pointed at, which never makes or removes a node.
 
-import { chips, familiesCard, frontCard, heading, parallelCard, tableCard } from "./cards.js";
+import { chips, familiesCard, frontCard, heading, parallelCard, rangeFields, tableCard } from "./cards.js";
 import { certificateBanner, nothingCard } from "./certificate.js";
 import { MOST_PINS, compareView } from "./compare.js";
-import { h } from "./dom.js";
+import { focusOn, h } from "./dom.js";
 import { legendView } from "./legend.js";
 import { emptyModel, grouping, modelOf } from "./model.js";
 import { amount } from "./numbers.js";
 import { panelView } from "./panel.js";
 import { parallelView } from "./parallel.js";
 import { scatterView } from "./scatter.js";
-import { readState, stateText } from "./state.js";
+import { CHOSEN, passes, readState, stateText } from "./state.js";
 import { tableView } from "./table.js";
 import { tipView } from "./tip.js";
 
 let mounted = 0;
 
 /**
- * @typedef {object} Download
- * @property {string} label
- * @property {string} [href] of the same host
- * @property {string} [download] name of the file
- * @property {(design: object) => void} [run] in place of an address
- */
-
-/**
- * What whoever mounts the explorer may say; all of it may be left out.
- * @typedef {object} Options
- * @property {(design: object) => Download[]} [downloads] what the panel offers beside DESIGN.yaml
- * @property {(design: object) => Promise<string>} [picture] the drawing of a design, as SVG, that the record does not hold
- * @property {(slot: HTMLElement, handle: Handle) => void} [whatIf] fills the strip below the scatter, once: it stays the
- *   same element whatever is shown
- * @property {(slot: HTMLElement, handle: Handle) => void} [ways] fills the place for ways out where nothing is feasible
- * @property {(slot: HTMLElement, handle: Handle) => void} [actions] fills the corner beside the title
- * @property {string} [state] text of an earlier state, as `onState` told it
- * @property {(text: string) => void} [onState] is told the state after every change, for an address
- * @property {(design: object | null) => void} [onSelect] is told which design is shown
- * @property {boolean} [heading] false where the page has a title of its own
- */
-
-/**
- * What a page holds in its hands.
- * @typedef {object} Handle
- * @property {(record: object) => void} update shows another record; axes, colours and the chosen parts stay
- * @property {(record: object | null) => void} compareWith draws the designs of another record as outlines; where the
- *   record that is shown has no design, on the axes of the other
- * @property {(rank: number) => void} select
- * @property {() => object | null} selected the design that is shown
- * @property {() => string} state
- * @property {() => void} destroy
+ * @typedef {import("./record.js").FrontRecord} FrontRecord
+ * @typedef {import("./record.js").Design} Design
+ * @typedef {import("./record.js").Model} Model
+ * @typedef {import("./record.js").Range} Range
+ * @typedef {import("./options.js").Options} Options what whoever mounts the explorer may say
+ * @typedef {import("./options.js").Handle} Handle what a page holds in its hands
+ * @typedef {{node: Element, draw: () => void, filter: () => void, mark: () => void}} View
  */
 
 /**
  * Show a front.
  * @param {HTMLElement} element
- * @param {object} record as reports/explorer/record.py makes it
+ * @param {FrontRecord} record as reports/explorer/record.py makes it
  * @param {Options} [options]
  * @returns {Handle}
  */
 export function mount(element, record, options = {}) {
-  const explorer = new Explorer(element, options);
-  explorer.show(record, options.state ?? "");
-  options.whatIf?.(explorer.strip, explorer.handle);
+  const explorer = new Explorer(element, record, options);
+  if (explorer.strip) options.whatIf?.(explorer.strip, explorer.handle);
   return explorer.handle;
 }
 
 export class Explorer {
   /**
    * @param {HTMLElement} element
+   * @param {FrontRecord} record
    * @param {Options} options
    */
-  constructor(element, options) {
+  constructor(element, record, options) {
     mounted += 1;
     this.id = `explorer-${mounted}`;
     this.options = options;
+    /** @type {Record<string, number | null>[]} */
     this.ghosts = [];
+    /** @type {Model | null} */
     this.other = null; // the model of what is drawn as outlines
     this.kept = ""; // the state of the last record with designs
     this.strip = options.whatIf ? h("div", { class: "what-if" }) : null;
     this.root = h("div", { class: "explorer" });
+    /** @type {View[]} */
     this.views = [];
+    this.count = h("p", { class: "count", role: "status" });
+    this.filters = h("div", { class: "filters" });
+    /** @type {import("./record.js").Groups | null} */
+    this.cache = null;
+    /** @type {HTMLDetailsElement | null} */
+    this.fields = null;
+    /** @type {ResizeObserver | null} */
+    this.watch = null;
+    /** @type {ReturnType<typeof scatterView> | null} */
+    this.scatter = null;
+    /** @type {ReturnType<typeof parallelView> | null} */
+    this.parallel = null;
+    /** @type {ReturnType<typeof tableView> | null} */
+    this.table = null;
+    /** @type {ReturnType<typeof tipView> | null} */
+    this.tip = null;
+    /** @type {ReturnType<typeof legendView> | null} */
+    this.legend = null;
+    /** @type {ReturnType<typeof panelView> | null} */
+    this.panel = null;
+    /** @type {ReturnType<typeof compareView> | null} */
+    this.compare = null;
     element.replaceChildren(this.root);
     this.onPrint = () => this.openForPrint();
     window.addEventListener("beforeprint", this.onPrint);
+    /** @type {Handle} */
     this.handle = {
       update: (record) => {
         const kept = this.text();
@@ -100,6 +101,9 @@ export class Explorer {
         this.root.remove();
       },
     };
+    this.model = modelOf(record);
+    this.state = readState(this.model, options.state ?? "");
+    this.begin(options.state ?? "");
   }
 
   /** Return the text of the state; of a record without designs that of the one before. */
@@ -110,35 +114,48 @@ export class Explorer {
   /** Return the text of the state with what another record might choose otherwise: axes and colours. */
   lasting() {
     const told = new URLSearchParams(this.text());
-    for (const name of ["x", "y", "by"]) if (!told.has(name)) told.set(name, this.state[name]);
+    for (const name of CHOSEN) if (!told.has(name)) told.set(name, this.state[name]);
     return told.toString();
   }
 
-  /** Show a record, with what can be kept of a state. */
+  /**
+   * Show a record, with what can be kept of a state.
+   * @param {FrontRecord} record
+   * @param {string} text
+   */
   show(record, text) {
     this.watch?.disconnect();
-    const before = this.model && this.model.record.designs[this.state.selected];
-    this.kept = text;
+    /** @type {Design | undefined} */
+    const before = this.model.record.designs[this.state.selected];
     this.model = record.designs.length || !this.other ? modelOf(record) : emptyModel(record, this.other);
     this.state = readState(this.model, text);
     if (before) {
-      const made = (d) => JSON.stringify([d.parts, d.choices]);
+      const made = (/** @type {Design} */ d) => JSON.stringify([d.parts, d.choices]);
       const alike = record.designs.filter((d) => made(d) === made(before));
       const same = alike.find((d) => d.rank === before.rank) ?? alike[0];
       if (same) this.state.selected = record.designs.indexOf(same);
     }
+    this.begin(text);
+  }
+
+  /**
+   * Build, draw and watch what the model has.
+   * @param {string} text of the state
+   */
+  begin(text) {
+    this.kept = text;
     this.cache = null;
     const typing = this.strip?.contains(document.activeElement) ? document.activeElement : null;
     this.build();
-    typing?.focus({ preventScroll: true });
+    if (typing instanceof HTMLElement) typing.focus({ preventScroll: true });
     this.draw();
     if (!this.views.length) return;
-    const charts = [this.scatter, this.parallel].filter(Boolean);
+    const charts = [this.scatter, this.parallel].filter((view) => view !== null);
     const wide = new Map(charts.map((view) => [view.node, view.node.clientWidth]));
     this.watch = new ResizeObserver(() => {
       for (const view of charts) {
         const now = view.node.clientWidth;
-        if (!now || Math.abs(now - wide.get(view.node)) < 2) continue;
+        if (!now || Math.abs(now - (wide.get(view.node) ?? now)) < 2) continue;
         wide.set(view.node, now);
         view.draw();
       }
@@ -149,14 +166,15 @@ export class Explorer {
   /** Print what must not be missed on paper: what the certificate does not speak of, and all designs. */
   openForPrint() {
     this.table?.all();
-    for (const each of this.root.querySelectorAll("details.certificate")) each.open = true;
+    const banners = /** @type {NodeListOf<HTMLDetailsElement>} */ (this.root.querySelectorAll("details.certificate"));
+    for (const each of banners) each.open = true;
   }
 
   /** Build what stays while one record is shown. */
   build() {
     const { model, options } = this;
     this.views = [];
-    this.scatter = this.parallel = this.table = this.tip = this.legend = null;
+    this.scatter = this.parallel = this.table = this.tip = this.legend = this.panel = this.compare = null;
     const head = options.heading === false ? [] : [heading(this)];
     const parts = [...head, chips(this), certificateBanner(model.record)];
     const families = model.record.families ? [familiesCard(this)] : [];
@@ -170,12 +188,12 @@ export class Explorer {
     const left = [];
     if (several) {
       this.tip = tipView(this);
-      this.scatter = scatterView(this);
-      this.legend = legendView(this);
-      left.push(frontCard(this));
+      const [scatter, legend] = [scatterView(this), legendView(this)];
+      [this.scatter, this.legend] = [scatter, legend];
+      left.push(frontCard(this, scatter, legend));
     } else if (this.strip) left.push(h("section", { class: "card front" }, this.strip));
     if (!model.count) {
-      this.views = [this.scatter].filter(Boolean);
+      this.views = this.scatter ? [this.scatter] : [];
       const columns = h("div", { class: "columns" }, h("div", { class: "left" }, left), nothingCard(this));
       this.root.replaceChildren(...parts, columns);
       return;
@@ -184,11 +202,12 @@ export class Explorer {
     this.compare = compareView(this);
     if (model.count > 1) {
       this.parallel = parallelView(this);
-      left.push(parallelCard(this));
+      this.fields = rangeFields();
+      left.push(parallelCard(this, this.parallel, this.fields));
     }
     this.table = tableView(this);
-    left.push(tableCard(this), ...families);
-    this.views = [this.scatter, this.parallel, this.table].filter(Boolean);
+    left.push(tableCard(this, this.table), ...families);
+    this.views = [this.scatter, this.parallel, this.table].filter((view) => view !== null);
     this.root.replaceChildren(
       ...parts,
       h("div", { class: several ? "columns" : "columns single" }, h("div", { class: "left" }, left), this.panel.node),
@@ -203,14 +222,12 @@ export class Explorer {
     return this.cache;
   }
 
-  /** Tell whether a design passes what is filtered. */
+  /**
+   * Tell whether a design passes what is filtered.
+   * @param {number} i
+   */
   shown(i) {
-    if (this.state.off.has(this.group().of[i])) return false;
-    for (const [key, [low, high]] of this.state.ranges) {
-      const value = this.model.column(key).values[i];
-      if (value === null || value < low || value > high) return false;
-    }
-    return true;
+    return passes(this, this.group(), i);
   }
 
   /** Draw all anew: another record, axis or colour. */
@@ -219,10 +236,9 @@ export class Explorer {
     this.legend?.draw();
     for (const view of this.views) view.draw();
     this.refilter();
-    if (!this.model.count) return this.tell();
-    this.panel.draw();
-    this.compare.draw();
-    return this.tell();
+    this.panel?.draw();
+    this.compare?.draw();
+    this.tell();
   }
 
   /** Show what the filters leave. */
@@ -231,7 +247,7 @@ export class Explorer {
     const { model, state } = this;
     const kept = model.record.designs.filter((_, i) => this.shown(i)).length;
     this.count.textContent = !model.count ? "no design" : kept === model.count ? `${model.count} designs` : `${kept} of ${model.count} designs`;
-    const drop = (words, run) =>
+    const drop = (/** @type {string} */ words, /** @type {() => void} */ run) =>
       h(
         "button",
         {
@@ -239,7 +255,7 @@ export class Explorer {
           class: "filter",
           onclick: () => {
             run();
-            this.root.querySelector(".scatter").focus();
+            focusOn(this.root, ".scatter");
           },
         },
         words,
@@ -247,7 +263,7 @@ export class Explorer {
         h("span", { class: "unseen" }, " drop this filter"),
       );
     const chips = [...state.ranges].map(([key, [low, high]]) => {
-      const c = model.column(key);
+      const c = model.axis(key);
       const words =
         low === -Infinity
           ? `${c.label} ≤ ${amount(high, c.unit)}`
@@ -272,9 +288,9 @@ export class Explorer {
         }),
       );
     this.filters.replaceChildren(...chips);
-    if (!this.fields) return;
+    if (!this.fields || !this.parallel) return;
     const typing = this.fields.contains(document.activeElement) && this.fields.open;
-    if (!typing) this.fields.replaceChildren(this.fields.firstChild, this.parallel.fields());
+    if (!typing) this.fields.replaceChildren(this.fields.firstChild ?? "", this.parallel.fields());
   }
 
   filtered() {
@@ -284,7 +300,10 @@ export class Explorer {
     this.tell();
   }
 
-  /** Keep ranges of attributes; null drops one. */
+  /**
+   * Keep ranges of attributes; null drops one.
+   * @param {[string, Range | null][]} ranges
+   */
   keep(ranges) {
     for (const [key, range] of ranges) {
       if (range) this.state.ranges.set(key, range);
@@ -293,13 +312,21 @@ export class Explorer {
     this.filtered();
   }
 
-  /** Show or hide a group. */
+  /**
+   * Show or hide a group.
+   * @param {number} group
+   */
   toggle(group) {
     if (!this.state.off.delete(group)) this.state.off.add(group);
     this.filtered();
   }
 
-  /** Point at a design; -1 for none. */
+  /**
+   * Point at a design; -1 for none.
+   * @param {number} i
+   * @param {number} [left]
+   * @param {number} [top]
+   */
   hover(i, left, top) {
     this.tip?.show(i, left, top);
     if (this.state.hovered === i) return;
@@ -307,16 +334,22 @@ export class Explorer {
     for (const view of this.views) view.mark();
   }
 
-  /** Show a design in the panel. */
+  /**
+   * Show a design in the panel.
+   * @param {number} i
+   */
   select(i) {
     if (i < 0 || i === this.state.selected) return;
     this.state.selected = i;
     for (const view of this.views) view.mark();
-    this.panel.draw();
+    this.panel?.draw();
     this.tell();
   }
 
-  /** Take a design for comparison, or no longer. */
+  /**
+   * Take a design for comparison, or no longer.
+   * @param {number} i
+   */
   pin(i) {
     const { pins } = this.state;
     const place = pins.indexOf(i);
@@ -328,22 +361,26 @@ export class Explorer {
   unpin() {
     this.state.pins.length = 0;
     this.pinned();
-    this.table.node.focus();
+    this.table?.node.focus();
   }
 
   pinned() {
     for (const view of this.views) view.mark();
-    this.compare.draw();
-    this.panel.draw();
+    this.compare?.draw();
+    this.panel?.draw();
     this.tell();
   }
 
+  /**
+   * Draw the designs of another record as outlines.
+   * @param {FrontRecord | null} record
+   */
   compareWith(record) {
     const other = record && modelOf(record);
     const few = this.model.count < 2;
     this.other = other;
     this.ghosts = other
-      ? record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]])))
+      ? other.record.designs.map((_, i) => Object.fromEntries(other.axes.map((c) => [c.key, c.values[i]])))
       : [];
     if (few) this.show(this.model.record, this.text()); // with a scatter, or without one
     this.scatter?.draw();

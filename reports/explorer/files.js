@@ -5,19 +5,24 @@ import { plain, save } from "./dom.js";
 const FORMULA = /^'*[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]/;
 const NUMBER = /^[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?$/;
 
-/** Return a value as YAML; what is JSON is YAML as well. */
+/**
+ * Return a value as YAML; what is JSON is YAML as well.
+ * @param {unknown} told
+ * @param {string} indent
+ * @returns {string}
+ */
 function value(told, indent) {
   if (told === null || typeof told !== "object") return ` ${JSON.stringify(told)}\n`;
   const entries = Object.entries(told);
   if (Array.isArray(told) || !entries.length) return ` ${JSON.stringify(told)}\n`;
-  const name = (key) => (/^[A-Za-z_]\w*$/.test(key) ? key : JSON.stringify(key));
+  const name = (/** @type {string} */ key) => (/^[A-Za-z_]\w*$/.test(key) ? key : JSON.stringify(key));
   const lines = entries.map(([key, inner]) => `${indent}${name(key)}:${value(inner, `${indent}  `)}`);
   return `\n${lines.join("")}`;
 }
 
 /**
  * Return the text of a DESIGN.yaml, as `clutchsynth check` reads it.
- * @param {object} record
+ * @param {import("./record.js").FrontRecord} record
  * @param {number} i
  */
 export function designText(record, i) {
@@ -27,6 +32,7 @@ export function designText(record, i) {
   return value({ ...spec, values: d.spec, parts }, "").slice(1);
 }
 
+/** @param {string | number | null | undefined} told */
 function cell(told) {
   if (told === null || told === undefined) return "";
   if (typeof told === "number") return String(told);
@@ -47,7 +53,11 @@ export function tableText(x) {
   return [head, ...kept].map((row) => row.map(cell).join(",")).join("\r\n") + "\r\n";
 }
 
-/** Hand over the design that is chosen. */
+/**
+ * Hand over the design that is chosen.
+ * @param {import("./explorer.js").Explorer} x
+ * @param {number} i
+ */
 export const saveDesign = (x, i) =>
   save(
     `design_${String(x.model.record.designs[i].rank).padStart(2, "0")}.yaml`,
@@ -55,5 +65,8 @@ export const saveDesign = (x, i) =>
     "text/yaml",
   );
 
-/** Hand over the table. */
+/**
+ * Hand over the table.
+ * @param {import("./explorer.js").Explorer} x
+ */
 export const saveTable = (x) => save("designs.csv", `\ufeff${tableText(x)}`, "text/csv");

@@ -9,6 +9,7 @@ import { glyph, shape } from "./marks.js";
  */
 export function legendView(x) {
   const node = h("div", { class: "legend" });
+  /** @type {HTMLButtonElement[]} */
   let buttons = [];
 
   function draw() {
@@ -30,7 +31,7 @@ export function legendView(x) {
         ),
         "the front as asked",
       );
-    node.replaceChildren(...[title, ...buttons, ghost].filter(Boolean));
+    node.replaceChildren(...[title, ...buttons, ghost].filter((one) => one instanceof Node));
     node.hidden = !buttons.length && !ghost;
     mark();
   }

@@ -2,6 +2,7 @@
 
 import { s } from "./dom.js";
 
+/** @type {((r: number) => string)[]} */
 const SHAPES = [
   (r) => `M${-r} 0a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0z`,
   (r) => {
@@ -37,7 +38,11 @@ const SHAPES = [
  */
 export const shape = (group, size) => SHAPES[group % SHAPES.length](size);
 
-/** Return the mark of a group for a line of text. */
+/**
+ * Return the mark of a group for a line of text.
+ * @param {number} group
+ * @param {number} rest
+ */
 export const glyph = (group, rest) =>
   s(
     "svg",
@@ -45,5 +50,9 @@ export const glyph = (group, rest) =>
     s("path", { d: shape(group, 5), class: colourClass(group, rest) }),
   );
 
-/** Return the class that gives a group its colour: others are grey, where there are no groups all is of one colour. */
+/**
+ * Return the class that gives a group its colour: others are grey, where there are no groups all is of one colour.
+ * @param {number} group
+ * @param {number} rest
+ */
 export const colourClass = (group, rest) => (group === rest ? "g g-rest" : rest === -2 ? "g g1" : `g g${group}`);

@@ -1,10 +1,11 @@
 // The page that is one file: the record stands in it, the state in its address, the theme is switched here.
 
-import { h } from "./dom.js";
+import { byId, h } from "./dom.js";
 import { mount } from "./explorer.js";
 
-const record = JSON.parse(document.getElementById("record").textContent);
+const record = JSON.parse(byId("record").textContent ?? "");
 
+/** @param {HTMLElement} slot */
 function themeSwitch(slot) {
   const root = document.documentElement;
   const dark = () =>
@@ -23,7 +24,7 @@ function themeSwitch(slot) {
 }
 
 const started = performance.now();
-mount(document.getElementById("explorer"), record, {
+mount(byId("explorer"), record, {
   actions: themeSwitch,
   state: location.hash.slice(1),
   onState: (text) => {

@@ -1,12 +1,23 @@
 // The panel of a design: what it is and is made of, how near its limits are, what a change costs, what to take along.
 
-import { h, localAddress, s } from "./dom.js";
+import { focusOn, h, localAddress, s } from "./dom.js";
 import { saveDesign } from "./files.js";
 import { colourClass, shape } from "./marks.js";
-import { FULL_DIGITS, amount, number, percent, signed, usedShare } from "./numbers.js";
+import { FULL_DIGITS, amount, number, percent, usedShare } from "./numbers.js";
+import { pricesOf } from "./slopes.js";
 
 const FIRST_LIMITS = 7;
 const BINDING = 0.999; // as in synth/order/feasibility.py
+
+/**
+ * @typedef {import("./record.js").Design} Design
+ * @typedef {import("./record.js").Sides} Sides
+ * @typedef {import("./dom.js").Child} Child
+ * @typedef {{limit: import("./record.js").Limit, used: number, sides: Sides}} UsedLimit
+ */
+
+/** @type {Record<string, [tone: string, words: string]>} */
+const VERDICTS = { yes: ["good", "all limits hold"], no: ["bad", "a limit fails"] };
 
 /**
  * Make the panel.
@@ -26,14 +37,18 @@ export function panelView(x) {
       return;
     }
     const open = new Map([...node.querySelectorAll("details")].map((each) => [each.dataset.name, each.open]));
-    const blocks = [head(d, i), drawing(d), parts(d), limits(d), prices(d), remarks(d), values(d, i), downloads(d, i)];
-    node.replaceChildren(...blocks.filter(Boolean));
+    const blocks = [head(d, i), drawing(d), parts(d), limits(d), prices(d), remarks(d), values(i), downloads(d, i)];
+    node.replaceChildren(...blocks.filter((one) => one !== null));
     for (const each of node.querySelectorAll("details")) each.open = open.get(each.dataset.name) ?? each.open;
   }
 
-  const block = (title, ...children) =>
+  const block = (/** @type {string} */ title, /** @type {Child[]} */ ...children) =>
     h("section", { class: "block" }, title ? h("h3", null, title) : null, ...children);
 
+  /**
+   * @param {Design} d
+   * @param {number} i
+   */
   function head(d, i) {
     const pinned = x.state.pins.includes(i);
     const badges = x.model.names[i].map((name) => h("span", { class: "badge accent" }, name));
@@ -41,14 +56,16 @@ export function panelView(x) {
     else if (d.status === "optimal" && d.gap !== null)
       badges.push(h("span", { class: "badge good" }, `proven to ${percent(d.gap)}`));
     else badges.push(h("span", { class: "badge open" }, d.status.replaceAll("_", " ")));
-    if (d.robust)
+    if (d.robust) {
+      const [tone, words] = VERDICTS[d.robust.verdict] ?? ["open", d.robust.verdict];
       badges.push(
         h(
           "span",
-          { class: `badge ${{ yes: "good", no: "bad" }[d.robust.verdict] ?? "open"}` },
-          `over what scatters: ${{ yes: "all limits hold", no: "a limit fails" }[d.robust.verdict] ?? d.robust.verdict}`,
+          { class: `badge ${tone}` },
+          `over what scatters: ${words}`,
         ),
       );
+    }
     const pin =
       x.model.count > 1 &&
       h(
@@ -59,7 +76,7 @@ export function panelView(x) {
           "aria-pressed": String(pinned),
           onclick: () => {
             x.pin(i);
-            node.querySelector("button")?.focus();
+            focusOn(node, "button");
           },
         },
         pinned ? "Compared ✓" : "Compare",
@@ -98,6 +115,7 @@ export function panelView(x) {
     );
   }
 
+  /** @param {Design} d */
   function drawing(d) {
     if (d.drawing) return drawn(d, d.drawing);
     if (!x.options.picture) return null;
@@ -109,6 +127,10 @@ export function panelView(x) {
     return place;
   }
 
+  /**
+   * @param {Design} d
+   * @param {string} svg
+   */
   function drawn(d, svg) {
     const address = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`;
     const picture = () => h("img", { class: "drawing", src: address, alt: `Drawing of design ${d.rank}` });
@@ -120,6 +142,7 @@ export function panelView(x) {
     return block("", picture(), h("button", { onclick: open }, "Enlarge"), large);
   }
 
+  /** @param {Design} d */
   function parts(d) {
     const { record } = x.model;
     const items = Object.entries(d.parts).map(([slot, key]) => {
@@ -158,9 +181,15 @@ export function panelView(x) {
     return items.length ? block("Parts to buy or make", h("ul", { class: "parts" }, items)) : null;
   }
 
+  /** @param {Design} d */
   function limits(d) {
-    const known = x.model.record.limits.map((limit, k) => ({ limit, used: d.used[k], sides: d.sides[k] }));
-    const rows = known.filter((row) => row.used !== null).sort((a, b) => bad(d, b) - bad(d, a) || b.used - a.used);
+    /** @type {UsedLimit[]} */
+    const rows = [];
+    x.model.record.limits.forEach((limit, k) => {
+      const share = d.used[k];
+      if (share !== null) rows.push({ limit, used: share, sides: d.sides[k] });
+    });
+    rows.sort((a, b) => bad(d, b) - bad(d, a) || b.used - a.used);
     if (!rows.length) return null;
     const shown = all ? rows : rows.slice(0, FIRST_LIMITS);
     const more = rows.length - FIRST_LIMITS;
@@ -178,7 +207,7 @@ export function panelView(x) {
           onclick: () => {
             all = !all;
             draw();
-            node.querySelector(".limits + button")?.focus();
+            focusOn(node, ".limits + button");
           },
         },
         words,
@@ -194,8 +223,13 @@ export function panelView(x) {
     );
   }
 
-  const bad = (d, row) => Number(d.violated?.includes(row.limit.name) ?? false);
+  const bad = (/** @type {Design} */ d, /** @type {UsedLimit} */ row) =>
+    Number(d.violated?.includes(row.limit.name) ?? false);
 
+  /**
+   * @param {Design} d
+   * @param {UsedLimit} row
+   */
   function used(d, row) {
     const { limit, sides } = row;
     const tone = bad(d, row) ? "bad" : row.used >= BINDING && limit.sign !== "=" ? "hot" : "";
@@ -233,85 +267,16 @@ export function panelView(x) {
     );
   }
 
-  const near = ([value, limit]) =>
+  const near = (/** @type {Sides} */ [value, limit]) =>
     value !== null && limit !== null && value !== limit && number(value) === number(limit);
 
+  /** @param {Design} d */
   function prices(d) {
-    if (d.prices)
-      return block(
-        "What a change costs",
-        h(
-          "ul",
-          { class: "remarks" },
-          d.prices.slice(0, 12).map((text) => h("li", null, text)),
-        ),
-      );
-    if (!d.slopes) return null;
-    const { objectives } = x.model;
-    const most = Math.max(...d.slopes.flatMap(([, row]) => row.map((v) => Math.abs(v ?? 0))));
-    const unitless = (c) => c.values[x.state.selected] === null || !c.unit;
-    const step = stepsOf(d);
-    const cell = (v, k) => {
-      if (v === null || Math.abs(v) < 1e-3) return h("td", { class: "soft" }, "–");
-      const worse = v > 0 === (x.model.record.objectives[objectives[k].key] === "min");
-      const width = Math.max(1.5, (34 * Math.abs(v)) / most);
-      return h(
-        "td",
-        null,
-        s(
-          "svg",
-          {
-            class: `slope ${worse ? "worse" : "gain"}`,
-            width: 36,
-            height: 8,
-            viewBox: "0 0 36 8",
-            "aria-hidden": "true",
-          },
-          s("rect", { x: (35 - width).toFixed(1), y: 0, width: width.toFixed(1), height: 8, rx: 1 }),
-        ),
-        h("span", null, `${signed(v, 2)}\u00a0%`),
-        unitless(objectives[k]) ? null : h("small", { class: "soft" }, changed((v * objectives[k].values[x.state.selected]) / 100, objectives[k].unit)),
-      );
-    };
-    const table = h(
-      "table",
-      { class: "prices" },
-      h(
-        "thead",
-        null,
-        h(
-          "tr",
-          null,
-          h("td"),
-          objectives.map((c) => h("th", { scope: "col" }, c.label)),
-        ),
-      ),
-      h(
-        "tbody",
-        null,
-        d.slopes.map(([name, row]) => h("tr", null, h("th", { scope: "row" }, name, step(name) ? h("small", { class: "soft" }, step(name)) : null), row.map(cell))),
-      ),
-    );
-    return block(
-      "What 1 % more changes",
-      table,
-      h("p", { class: "note" }, "Slopes with these parts, good for a few per cent."),
-    );
+    const told = pricesOf(x, d);
+    return told && block(...told);
   }
 
-  const changed = (value, unit) => `${value < 0 ? "−" : "+"}${amount(Math.abs(value), unit, 2)}`;
-
-  /** Return what tells how much 1 % of a requirement or limit is; nothing of what has no unit. */
-  function stepsOf(d) {
-    const { record } = x.model;
-    const known = new Map(record.limits.map((limit, k) => [limit.label, [d.sides[k][1], limit.unit]]));
-    for (const row of [...record.asked, ...record.assumed]) known.set(row.label, [row.value, row.unit]);
-    return (name) => {
-      const [value, unit] = known.get(name) ?? [];
-      return typeof value === "number" && value && unit ? changed(Math.abs(value) / 100, unit) : "";
-    };
-  }
-
+  /** @param {Design} d */
   function remarks(d) {
     const told = [
       ...(d.robust ? [d.robust.words] : []),
@@ -331,14 +296,19 @@ export function panelView(x) {
       : null;
   }
 
-  /** Return a remark with its code as a word before it. */
+  /**
+   * Return a remark with its code as a word before it.
+   * @param {string} text
+   * @returns {Child[]}
+   */
   function named(text) {
     const found = /^([a-z][a-z0-9_]*): (.*)$/s.exec(text);
     return found ? [h("b", null, `${found[1].replaceAll("_", " ")}: `), found[2]] : [text];
   }
 
-  function values(d, i) {
-    const rows = x.model.columns.filter((c) => c.kind !== "word" && c.values[i] !== null);
+  /** @param {number} i */
+  function values(i) {
+    const rows = x.model.columns.filter((c) => c.kind !== "word").filter((c) => c.values[i] !== null);
     return h(
       "details",
       { class: "block", "data-name": "values" },
@@ -362,15 +332,20 @@ export function panelView(x) {
     );
   }
 
+  /**
+   * @param {Design} d
+   * @param {number} i
+   */
   function downloads(d, i) {
+    /** @type {HTMLElement[]} */
     const own = [h("button", { type: "button", class: "small", onclick: () => saveDesign(x, i) }, `DESIGN.yaml`)];
     for (const [label, file] of d.files ?? []) {
       const address = localAddress(file);
       if (address) own.push(h("a", { class: "button small", href: address }, label));
     }
     for (const entry of x.options.downloads?.(d) ?? []) {
-      if (entry.run)
-        own.push(h("button", { type: "button", class: "small", onclick: () => entry.run(d) }, entry.label));
+      const { run } = entry;
+      if (run) own.push(h("button", { type: "button", class: "small", onclick: () => run(d) }, entry.label));
       else if (localAddress(entry.href) || entry.href?.startsWith("/"))
         own.push(h("a", { class: "button small", href: entry.href, download: entry.download ?? null }, entry.label));
     }

@@ -1,10 +1,11 @@
 // Parallel coordinates: one axis for each attribute, ranges kept by dragging along it; on a phone the axes lie flat.
 
 import { h, s } from "./dom.js";
+import { short, wrapped } from "./labels.js";
 import { colourClass } from "./marks.js";
 import { tellingColumns } from "./model.js";
 import { amount, number } from "./numbers.js";
-import { axisOf } from "./scales.js";
+import { axisOf, rangeOf } from "./scales.js";
 
 const MOST_AXES = 9;
 const MOST_LETTERS = 20; // of a word beside its axis
@@ -13,17 +14,14 @@ const MOST_RIGHT = 168; // pixels that words may take
 const NEAR = 16; // pixels from an axis within which it is meant
 const REACH = 14; // pixels from a line
 
-/** Break a label into two lines of so many letters at most. */
-function wrapped(label, letters) {
-  const lines = [""];
-  for (const word of label.split(" ")) {
-    const line = lines[lines.length - 1];
-    if (!line || line.length + 1 + word.length <= letters) lines[lines.length - 1] = line ? `${line} ${word}` : word;
-    else lines.push(word);
-  }
-  const short = (text) => (text.length > letters ? `${text.slice(0, letters - 1)}…` : text);
-  return lines.length > 2 ? [short(lines[0]), short(lines.slice(1).join(" "))] : lines.map(short);
-}
+/**
+ * @typedef {import("./record.js").NumberColumn} NumberColumn
+ * @typedef {import("./record.js").WordColumn} WordColumn
+ * @typedef {import("./record.js").Range} Range
+ * @typedef {import("./record.js").Point} Point
+ * @typedef {import("./record.js").Groups} Groups
+ * @typedef {import("./record.js").ParallelAxis} ParallelAxis
+ */
 
 /**
  * Make the parallel coordinates.
@@ -32,24 +30,37 @@ function wrapped(label, letters) {
 export function parallelView(x) {
   const svg = s("svg", { class: "parallel", "aria-hidden": "true" });
   const box = h("div", { class: "chart" }, svg);
+  const over = {
+    chosen: s("path", { class: "line over chosen" }),
+    hover: s("path", { class: "line over hover" }),
+    dragged: s("rect", { class: "keep" }),
+  };
+  /** @type {ParallelAxis[]} */
   let axes = [];
+  /** @type {string[]} */
   let lines = [];
-  let over = {};
+  /** @type {SVGPathElement[]} */
+  let drawnLines = [];
+  /** @type {SVGRectElement[]} */
+  let brushes = [];
   let flat = false;
   let ends = [0, 1];
 
-  /** Return the columns that are worth an axis. */
+  /**
+   * Return the columns that are worth an axis.
+   * @param {number} wide
+   * @returns {(NumberColumn | WordColumn)[]}
+   */
   function columns(wide) {
     const { model, state } = x;
     const most = flat ? MOST_AXES : Math.min(MOST_AXES, Math.max(4, Math.floor(wide / 105)));
     const word = model.column(state.by);
-    const whole = (c) => !model.record.families || c.values.every((v) => v !== null); // not of one family alone
-    const sizes = model.sizes.filter(whole);
-    const chosen = [...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...sizes])];
+    const sizes = model.sizes.filter((c) => !model.record.families || c.values.every((v) => v !== null)); // of all
+    const chosen = [...new Set([...model.objectives, model.axis(state.x), model.axis(state.y), ...sizes])];
     const first = chosen.filter((c) => c.values.some((v) => v !== null));
     const room = most - (word && word.kind === "word" ? 1 : 0);
     const rest = model.derived.filter((c) => !first.includes(c) && c.values.every((v) => v !== null));
-    return tellingColumns(first, rest, room).concat(word && word.kind === "word" ? [word] : []);
+    return [...tellingColumns(first, rest, room), ...(word && word.kind === "word" ? [word] : [])];
   }
 
   function draw() {
@@ -68,7 +79,7 @@ export function parallelView(x) {
       const at = flat ? 40 + k * gap : 58 + k * gap;
       if (column.kind === "word") {
         const words = [...new Set(column.values)].sort((a, b) => String(a).localeCompare(String(b)));
-        const share = (word) => (words.indexOf(word) + 0.5) / words.length;
+        const share = (/** @type {string} */ word) => (words.indexOf(word) + 0.5) / words.length;
         return { column, at, words, share, value: null };
       }
       const values = column.values.filter((v) => v !== null);
@@ -76,7 +87,6 @@ export function parallelView(x) {
       return {
         column,
         at,
-        words: null,
         share: scale.share,
         value: scale.at,
         range: [Math.min(...values), Math.max(...values)],
@@ -86,17 +96,13 @@ export function parallelView(x) {
     lines = x.model.record.designs.map((_, i) => path(i));
     const order = model.record.designs.map((d, i) => [d.rank, i]).sort((a, b) => b[0] - a[0]);
     const many = model.count > 120 ? " many" : "";
+    /** @type {SVGPathElement[]} */
     const made = [];
     order.forEach(([, i]) => {
       made[i] = s("path", { class: `line ${colourClass(group.of[i], group.rest)}${many}`, d: lines[i] });
     });
-    over = {
-      lines: made,
-      chosen: s("path", { class: "line over chosen" }),
-      hover: s("path", { class: "line over hover" }),
-      brushes: axes.map(() => s("rect", { class: "keep" })),
-      dragged: s("rect", { class: "keep on" }),
-    };
+    drawnLines = made;
+    brushes = axes.map(() => s("rect", { class: "keep" }));
     over.dragged.classList.remove("on");
     const behind = s(
       "g",
@@ -106,7 +112,7 @@ export function parallelView(x) {
     svg.replaceChildren(
       behind,
       ...nodes.filter((n) => n.localName === "line"),
-      ...over.brushes,
+      ...brushes,
       over.dragged,
       over.chosen,
       over.hover,
@@ -119,14 +125,30 @@ export function parallelView(x) {
     mark();
   }
 
-  const along = (share) => ends[0] + (ends[1] - ends[0]) * share;
+  const along = (/** @type {number} */ share) => ends[0] + (ends[1] - ends[0]) * share;
+  /**
+   * Return where the line of a design crosses an axis.
+   * @param {ParallelAxis} axis
+   * @param {number} i
+   */
   const spot = (axis, i) => {
+    if (axis.value === null) return along(axis.share(axis.column.values[i]));
     const value = axis.column.values[i];
     return value === null ? null : along(axis.share(value));
   };
 
+  /**
+   * Draw an axis.
+   * @param {ParallelAxis} axis
+   * @param {number} gap
+   * @param {number} high
+   * @param {number} wide
+   * @param {Groups} group
+   */
   function drawn(axis, gap, high, wide, group) {
     const { column, at } = axis;
+    /** @type {SVGElement[]} */
+    const made = [];
     if (flat) {
       const name = s(
         "text",
@@ -134,8 +156,8 @@ export function parallelView(x) {
         column.label,
         column.unit ? s("tspan", { class: "soft" }, `  ${column.unit}`) : null,
       );
-      const made = [s("line", { class: "axis", x1: ends[0], x2: ends[1], y1: at, y2: at }), name];
-      if (axis.words) {
+      made.push(s("line", { class: "axis", x1: ends[0], x2: ends[1], y1: at, y2: at }), name);
+      if (axis.value === null) {
         axis.words.forEach((word) =>
           made.push(
             s(
@@ -155,17 +177,18 @@ export function parallelView(x) {
     }
     const room = Math.min(gap - 10, 2 * (at - 4), 2 * (wide - at - 4));
     const rows = wrapped(column.label, Math.max(7, Math.floor(room / 7.4)));
-    const made = [s("line", { class: "axis", x1: at, x2: at, y1: ends[1] - 4, y2: ends[0] + 4 })];
+    made.push(s("line", { class: "axis", x1: at, x2: at, y1: ends[1] - 4, y2: ends[0] + 4 }));
     rows.forEach((row, k) =>
       made.push(s("text", { x: at, y: 14 + 14 * (k + 2 - rows.length), class: "title mid" }, row)),
     );
     if (column.unit) made.push(s("text", { x: at, y: 43, class: "mid soft" }, column.unit));
-    if (axis.words) {
+    if (axis.value === null) {
       const grouped = x.state.by === column.key;
       axis.words.forEach((word) => {
-        const i = column.values.indexOf(word);
+        const i = axis.column.values.indexOf(word);
         const colour = grouped ? `word ${colourClass(group.of[i], group.rest)}` : "word";
-        made.push(s("text", { x: at + 8, y: along(axis.share(word)) + 4, class: colour }, short(String(word), MOST_LETTERS)));
+        const y = along(axis.share(word)) + 4;
+        made.push(s("text", { x: at + 8, y, class: colour }, short(word, MOST_LETTERS)));
       });
     } else {
       made.push(s("text", { x: at, y: ends[1] - 9, class: "mid" }, number(axis.range[1])));
@@ -174,10 +197,10 @@ export function parallelView(x) {
     return made;
   }
 
-  const short = (text, letters) => (text.length > letters ? `${text.slice(0, Math.max(1, letters - 1))}…` : text);
-
+  /** @param {number} i */
   function path(i) {
     let told = "";
+    /** @type {Point | null} */
     let before = null;
     for (const axis of axes) {
       const there = spot(axis, i);
@@ -200,20 +223,24 @@ export function parallelView(x) {
   }
 
   function filter() {
-    over.lines.forEach((line, i) => line.classList.toggle("out", !x.shown(i)));
+    drawnLines.forEach((line, i) => line.classList.toggle("out", !x.shown(i)));
     axes.forEach((axis, k) => {
-      const range = axis.value && x.state.ranges.get(axis.column.key);
-      over.brushes[k].classList.toggle("on", Boolean(range));
-      if (range)
-        setBox(
-          over.brushes[k],
-          axis,
-          range.map((v) => along(Math.min(1.03, Math.max(-0.03, axis.share(v) || 0)))),
-        );
+      const range = axis.value ? x.state.ranges.get(axis.column.key) : undefined;
+      brushes[k].classList.toggle("on", Boolean(range));
+      if (!range || !axis.value) return;
+      const place = (/** @type {number} */ v) => along(Math.min(1.03, Math.max(-0.03, axis.share(v) || 0)));
+      setBox(brushes[k], axis, place(range[0]), place(range[1]));
     });
   }
 
-  function setBox(node, axis, [from, to]) {
+  /**
+   * Draw what is kept of an axis.
+   * @param {SVGElement} node
+   * @param {ParallelAxis} axis
+   * @param {number} from
+   * @param {number} to
+   */
+  function setBox(node, axis, from, to) {
     const [low, size] = [Math.min(from, to), Math.abs(to - from)];
     const told = flat
       ? { x: low, width: size, y: axis.at - 9, height: 18 }
@@ -223,23 +250,31 @@ export function parallelView(x) {
 
   function mark() {
     const group = x.group();
-    for (const [name, i] of [
+    /** @type {["chosen" | "hover", number][]} */
+    const marked = [
       ["chosen", x.state.selected],
       ["hover", x.state.hovered],
-    ]) {
+    ];
+    for (const [name, i] of marked) {
       over[name].setAttribute("d", lines[i] ?? "");
       over[name].setAttribute("class", `line over ${name} ${i >= 0 ? colourClass(group.of[i], group.rest) : ""}`);
     }
   }
 
+  /**
+   * Return where an event is: across the axes, along them.
+   * @param {PointerEvent} event
+   * @returns {Point}
+   */
   function at(event) {
     const area = svg.getBoundingClientRect();
-    const point = [event.clientX - area.left, event.clientY - area.top];
-    return flat ? [point[1], point[0]] : point; // across the axes, along them
+    const [left, top] = [event.clientX - area.left, event.clientY - area.top];
+    return flat ? [top, left] : [left, top];
   }
 
-  const axisAt = ([across]) => axes.findIndex((axis) => Math.abs(axis.at - across) <= NEAR);
+  const axisAt = (/** @type {Point} */ [across]) => axes.findIndex((axis) => Math.abs(axis.at - across) <= NEAR);
 
+  /** @param {Point} here */
   function lineAt([across, level]) {
     const k = axes.findIndex((axis, n) => n + 1 < axes.length && across >= axis.at && across <= axes[n + 1].at);
     if (k < 0) return -1;
@@ -257,6 +292,7 @@ export function parallelView(x) {
     return best;
   }
 
+  /** @type {{k: number, from: Point, moved: boolean} | null} */
   let press = null;
   svg.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
@@ -268,11 +304,11 @@ export function parallelView(x) {
   svg.addEventListener("pointermove", (event) => {
     const here = at(event);
     const axis = press && axes[press.k];
-    if (axis && axis.value && event.pointerType !== "touch") {
+    if (press && axis && axis.value && event.pointerType !== "touch") {
       press.moved ||= Math.abs(here[1] - press.from[1]) > 4;
       if (press.moved) {
         over.dragged.classList.add("on");
-        setBox(over.dragged, axis, [press.from[1], here[1]]);
+        setBox(over.dragged, axis, press.from[1], here[1]);
         return;
       }
     }
@@ -283,9 +319,9 @@ export function parallelView(x) {
     const here = at(event);
     const axis = press && axes[press.k];
     over.dragged.classList.remove("on");
-    if (axis && press.moved) {
-      const share = (level) => Math.min(1, Math.max(0, (level - ends[0]) / (ends[1] - ends[0])));
-      x.keep([[axis.column.key, [press.from[1], here[1]].map((v) => axis.value(share(v))).sort((a, b) => a - b)]]);
+    if (press?.moved && axis?.value) {
+      const share = (/** @type {number} */ level) => Math.min(1, Math.max(0, (level - ends[0]) / (ends[1] - ends[0])));
+      x.keep([[axis.column.key, rangeOf(axis.value(share(press.from[1])), axis.value(share(here[1])))]]);
     } else if (axis && x.state.ranges.has(axis.column.key)) {
       x.keep([[axis.column.key, null]]);
     } else if (press) {
@@ -301,19 +337,20 @@ export function parallelView(x) {
 
   /** Return fields to type ranges into: the way of those who have no pointer. */
   function fields() {
-    const row = (column) => {
-      const now = x.state.ranges.get(column.key) ?? [null, null];
-      const field = (k, word) =>
+    const row = (/** @type {NumberColumn} */ column) => {
+      const now = x.state.ranges.get(column.key) ?? [-Infinity, Infinity];
+      const field = (/** @type {0 | 1} */ k, /** @type {string} */ word) =>
         h("input", {
           type: "number",
           step: "any",
           "aria-label": `${column.label}, ${word}${column.unit ? ` in ${column.unit}` : ""}`,
           placeholder: number((k ? Math.max : Math.min)(...column.values.filter((v) => v !== null))),
-          value: now[k] === null || !Number.isFinite(now[k]) ? null : Number(now[k].toPrecision(5)),
-          onchange: (event) => {
+          value: !Number.isFinite(now[k]) ? null : Number(now[k].toPrecision(5)),
+          onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
             const typed = event.target.value === "" ? null : Number(event.target.value);
             const old = x.state.ranges.get(column.key) ?? [-Infinity, Infinity];
-            const next = [...old];
+            /** @type {Range} */
+            const next = [old[0], old[1]];
             next[k] = typed === null ? (k ? Infinity : -Infinity) : typed;
             x.keep([[column.key, next[0] === -Infinity && next[1] === Infinity ? null : next]]);
           },
@@ -342,7 +379,7 @@ export function parallelView(x) {
       h(
         "tbody",
         null,
-        axes.filter((axis) => axis.value).map((axis) => row(axis.column)),
+        axes.flatMap((axis) => (axis.value ? [row(axis.column)] : [])),
       ),
     );
   }

@@ -11,9 +11,9 @@ const ROOM = 0.06; // beside the outermost values, as a share of the axis
  * @property {(share: number) => number} at the value that lies there
  */
 
-const roundStep = (size) => {
+const roundStep = (/** @type {number} */ size) => {
   const power = 10 ** Math.floor(Math.log10(size));
-  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= size * 0.999);
+  return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= size * 0.999) ?? 10 * power;
 };
 
 /**
@@ -34,7 +34,13 @@ export function axisOf(values, most = 6, room = ROOM) {
   return low > 0 && high / low >= WIDE_RANGE ? logarithmic(low, high, most, room) : linear(low, high, most, room);
 }
 
-/** @returns {Axis} */
+/**
+ * @param {number} low
+ * @param {number} high
+ * @param {number} most
+ * @param {number} room
+ * @returns {Axis}
+ */
 function linear(low, high, most, room) {
   const span = high - low || Math.abs(high) * 0.2 || 1;
   const middle = high === low ? span / 2 : 0;
@@ -49,12 +55,18 @@ function linear(low, high, most, room) {
   return { log: false, ticks, share: (v) => (v - ends[0]) / width, at: (u) => ends[0] + u * width };
 }
 
-/** @returns {Axis} */
+/**
+ * @param {number} low
+ * @param {number} high
+ * @param {number} most
+ * @param {number} room
+ * @returns {Axis}
+ */
 function logarithmic(low, high, most, room) {
   const span = Math.log(high / low);
   const start = Math.log(low) - room * span;
   const width = span * (1 + 2 * room);
-  const share = (v) => (Math.log(v) - start) / width;
+  const share = (/** @type {number} */ v) => (Math.log(v) - start) / width;
   const decades = (width / Math.LN10) * 1.0001;
   const steps = [[1, 2, 3, 5, 7], [1, 2, 5], [1, 3], [1]].find((each) => each.length * decades <= most * 1.7) ?? [1];
   const ticks = [];
@@ -66,3 +78,11 @@ function logarithmic(low, high, most, room) {
   }
   return { log: true, ticks, share, at: (u) => Math.exp(start + u * width) };
 }
+
+/**
+ * Return the range between two values.
+ * @param {number} a
+ * @param {number} b
+ * @returns {import("./record.js").Range}
+ */
+export const rangeOf = (a, b) => (a <= b ? [a, b] : [b, a]);

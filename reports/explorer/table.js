@@ -1,11 +1,25 @@
 // The table of designs: what the charts show, for eyes, keyboard and screen reader; sorted by any column.
 
-import { h, hidden } from "./dom.js";
+import { focusOn, h, hidden } from "./dom.js";
 import { glyph } from "./marks.js";
 import { columnNumbers, number } from "./numbers.js";
 
 const FIRST_ROWS = 200; // that are laid out before more are asked for
 const MOST_SIZES = 6; // columns of sizes that are shown unless others are chosen
+
+/**
+ * Return the order of values: what is missing last, whatever the direction, and equal ones as they were.
+ * @param {(number | string | null)[]} values
+ * @param {number} way 1 or -1
+ */
+export function sortedBy(values, way) {
+  const compare = (/** @type {number} */ a, /** @type {number} */ b) => {
+    const [x, y] = [values[a], values[b]];
+    if (x === null || y === null) return Number(x === null) - Number(y === null);
+    return way * (typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y)));
+  };
+  return values.map((_, i) => i).sort((a, b) => compare(a, b) || a - b);
+}
 
 /**
  * Make the table.
@@ -31,8 +45,11 @@ export function tableView(x) {
   );
   let most = FIRST_ROWS;
   const chooser = h("div", { class: "chooser" });
+  /** @type {HTMLTableRowElement[]} */
   let rows = [];
+  /** @type {number[]} */
   let sorted = [];
+  /** @type {{hovered: number, selected: number, pins: number[]}} */
   let marked = { hovered: -1, selected: -1, pins: [] };
 
   /** Return the columns that are shown unless others are chosen. */
@@ -42,15 +59,16 @@ export function tableView(x) {
     return new Set([...model.objectives, ...sizes, ...model.words].map((c) => c.key).concat("at_limit"));
   }
 
-  function shownColumns() {
+  /** Return the keys of the columns that are shown. */
+  function keys() {
     x.state.columns ??= usual();
-    return x.model.columns.filter((c) => x.state.columns.has(c.key));
+    return x.state.columns;
   }
 
   function draw() {
     const { model, state } = x;
-    const columns = shownColumns();
-    const limits = state.columns.has("at_limit");
+    const columns = model.columns.filter((c) => keys().has(c.key));
+    const limits = keys().has("at_limit");
     const group = x.group();
     head.replaceChildren(
       h(
@@ -61,20 +79,24 @@ export function tableView(x) {
         limits ? h("th", { scope: "col", class: "words" }, "at the limit") : null,
       ),
     );
-    const bounds = (d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
+    const bounds = (/** @type {import("./record.js").Design} */ d) => d.at_limit.map((n) => labels.get(n) ?? n).join(", ");
     const labels = new Map(model.record.limits.map((l) => [l.name, l.label]));
-    const numbers = new Map(columns.filter((c) => c.kind !== "word").map((c) => [c, columnNumbers(c.values)]));
+    /** @type {((i: number) => HTMLElement)[]} */
+    const cellOf = columns.map((c) => {
+      if (c.kind === "word") {
+        const mark = (/** @type {number} */ i) => (c.key === state.by ? glyph(group.of[i], group.rest) : null);
+        return (i) => h("td", { class: "words" }, mark(i), c.values[i]);
+      }
+      const text = columnNumbers(c.values);
+      return (i) => h("td", null, text(c.values[i]));
+    });
     rows = model.record.designs.map((d, i) => {
       const first = h(
         "th",
         { scope: "row" },
         h("button", { type: "button", tabindex: -1, "aria-label": `Design ${d.rank}` }, String(d.rank)),
       );
-      const cells = columns.map((c) =>
-        c.kind === "word"
-          ? h("td", { class: "words" }, c.key === state.by ? glyph(group.of[i], group.rest) : null, c.values[i])
-          : h("td", null, numbers.get(c)(c.values[i])),
-      );
+      const cells = cellOf.map((cell) => cell(i));
       const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
       if (names) first.append(names);
       const bound = limits ? h("td", { class: "words last soft", title: bounds(d) }, bounds(d)) : null;
@@ -89,6 +111,14 @@ export function tableView(x) {
     choose();
   }
 
+  /**
+   * Return the head of a column, by which it is sorted.
+   * @param {string} key
+   * @param {string} label
+   * @param {string} unit
+   * @param {string} [text]
+   * @param {boolean} [words]
+   */
   function header(key, label, unit, text = "", words = false) {
     const [by, way] = x.state.sort;
     const sorted = by === key ? (way > 0 ? "ascending" : "descending") : null;
@@ -96,7 +126,7 @@ export function tableView(x) {
     const press = () => {
       x.state.sort = [key, by === key && x.state.sort[1] > 0 ? -1 : 1];
       draw();
-      head.querySelector("th[aria-sort] button")?.focus();
+      focusOn(head, "th[aria-sort] button");
     };
     const name = key === "rank" ? hidden("rank") : null;
     return h(
@@ -116,14 +146,7 @@ export function tableView(x) {
   function order() {
     const [key, way] = x.state.sort;
     const values = key === "rank" ? x.model.record.designs.map((d) => d.rank) : (x.model.column(key)?.values ?? []);
-    const compare = (a, b) => {
-      if (values[a] === null || values[b] === null) return (values[a] === null) - (values[b] === null);
-      return (
-        way *
-        (typeof values[a] === "number" ? values[a] - values[b] : String(values[a]).localeCompare(String(values[b])))
-      );
-    };
-    sorted = rows.map((_, i) => i).sort((a, b) => compare(a, b) || a - b);
+    sorted = sortedBy(values, way);
     body.replaceChildren(...sorted.map((i) => rows[i]));
   }
 
@@ -151,13 +174,16 @@ export function tableView(x) {
       rows[hovered]?.classList.add("hovered");
     }
     if (marked.selected !== selected) {
-      for (const [i, on] of [
+      /** @type {[number, boolean][]} */
+      const changed = [
         [marked.selected, false],
         [selected, true],
-      ]) {
+      ];
+      for (const [i, on] of changed) {
         if (!rows[i]) continue;
         rows[i].classList.toggle("selected", on);
         const button = rows[i].querySelector("button");
+        if (!button) continue;
         button.tabIndex = on ? 0 : -1;
         if (on) button.setAttribute("aria-current", "true");
         else button.removeAttribute("aria-current");
@@ -168,7 +194,8 @@ export function tableView(x) {
     marked = { hovered, selected, pins: [...pins] };
   }
 
-  const rowOf = (event) => event.target.closest?.("tbody tr");
+  const near = (/** @type {Event} */ event) => (event.target instanceof Element ? event.target.closest("tbody tr") : null);
+  const rowOf = (/** @type {Event} */ event) => /** @type {HTMLTableRowElement | null} */ (near(event));
   body.addEventListener("click", (event) => {
     const row = rowOf(event);
     if (row) x.select(Number(row.dataset.i));
@@ -184,19 +211,27 @@ export function tableView(x) {
     if (event.key === " ") x.pin(Number(row.dataset.i));
     else if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       const step = event.key === "ArrowDown" ? "nextElementSibling" : "previousElementSibling";
-      let next = row[step];
-      while (next?.hidden) next = next[step];
+      let next = /** @type {HTMLTableRowElement | null} */ (row[step]);
+      while (next?.hidden) next = /** @type {HTMLTableRowElement | null} */ (next[step]);
       if (!next) return;
       x.select(Number(next.dataset.i));
-      next.querySelector("button").focus();
+      focusOn(next, "button");
     } else return;
     event.preventDefault();
   });
 
+  /**
+   * Return a column as the list tells it.
+   * @param {import("./record.js").Column} column
+   * @returns {[key: string, label: string]}
+   */
+  const named = ({ key, label }) => [key, label];
+
   /** Fill the list of columns to choose from. */
   function choose() {
+    /** @type {[key: string, label: string][]} */
     const all = [
-      ...x.model.columns.filter((c) => c.varies || c.kind === "objective").map((c) => [c.key, c.label]),
+      ...x.model.columns.filter((c) => c.varies || c.kind === "objective").map(named),
       ["at_limit", "at the limit"],
     ];
     chooser.replaceChildren(
@@ -206,10 +241,10 @@ export function tableView(x) {
           null,
           h("input", {
             type: "checkbox",
-            checked: x.state.columns.has(key),
-            onchange: (event) => {
-              if (event.target.checked) x.state.columns.add(key);
-              else x.state.columns.delete(key);
+            checked: keys().has(key),
+            onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
+              if (event.target.checked) keys().add(key);
+              else keys().delete(key);
               const place = all.findIndex(([each]) => each === key);
               draw();
               chooser.querySelectorAll("input")[place]?.focus();

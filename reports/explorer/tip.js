@@ -11,18 +11,18 @@ const MOST_ROWS = 9;
  */
 export function tipView(x) {
   const node = h("div", { class: "tip", "aria-hidden": "true" });
-  let head = null;
+  const head = document.createTextNode("");
+  const limits = document.createTextNode("");
+  /** @type {{column: import("./record.js").Column, text: Text}[]} */
   let rows = [];
 
   function draw() {
     const { model, state } = x;
-    const wanted = [
-      ...new Set([...model.objectives, model.column(state.x), model.column(state.y), ...model.sizes, ...model.words]),
-    ].filter(Boolean);
-    head = document.createTextNode("");
+    const chosen = [model.axis(state.x), model.axis(state.y)];
+    const wanted = [...new Set([...model.objectives, ...chosen, ...model.sizes, ...model.words])];
+    head.data = "";
     rows = wanted.slice(0, MOST_ROWS).map((column) => ({ column, text: document.createTextNode("") }));
-    const limits = document.createTextNode("");
-    rows.limits = limits;
+    limits.data = "";
     node.replaceChildren(
       h("b", null, head),
       h(
@@ -38,18 +38,23 @@ export function tipView(x) {
     );
   }
 
-  /** Show a design beside the pointer, or nothing. */
+  /**
+   * Show a design beside the pointer, or nothing.
+   * @param {number} i
+   * @param {number} [left]
+   * @param {number} [top]
+   */
   function show(i, left, top) {
     const d = x.model.record.designs[i];
-    const on = Boolean(d) && left !== undefined;
+    const on = d !== undefined && left !== undefined && top !== undefined;
     node.classList.toggle("on", on);
     if (!on) return;
     head.data = plain(`Design ${d.rank}${x.model.names[i].length ? `, ${x.model.names[i].join(", ")}` : ""}`);
     for (const { column, text } of rows)
       text.data = plain(column.kind === "word" ? column.values[i] : amount(column.values[i], column.unit));
-    const labels = x.model.record.limits.filter((l) => d.at_limit.includes(l.name)).map((l) => l.label);
-    rows.limits.data = labels.length
-      ? plain(`at the limit: ${labels.slice(0, 4).join(", ")}${labels.length > 4 ? " …" : ""}`)
+    const reached = x.model.record.limits.filter((l) => d.at_limit.includes(l.name)).map((l) => l.label);
+    limits.data = reached.length
+      ? plain(`at the limit: ${reached.slice(0, 4).join(", ")}${reached.length > 4 ? " …" : ""}`)
       : "";
     const area = x.root.getBoundingClientRect();
     const [wide, high] = [node.offsetWidth, node.offsetHeight];

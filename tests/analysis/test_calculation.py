@@ -21,8 +21,10 @@ from synth.results.dimensions import dimension_of
 from synth.results.expression import FUNCTIONS, in_force, names_in, size_of, value_of
 from tests.analysis.independent import recomputed
 from tests.conformance.cases import CASES, question
+from tests.properties import Properties
 
 POINTS = 12
+of_a_calculation = Properties()
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
 
 
@@ -54,7 +56,8 @@ def same(a, b, tolerance=1e-12):
     return a == b or (math.isnan(a) and math.isnan(b)) or abs(a - b) <= tolerance * max(abs(a), abs(b))
 
 
-def test_an_evaluator_that_knows_nothing_of_us_recomputes_everything(solved):
+@of_a_calculation
+def an_evaluator_that_knows_nothing_of_us_recomputes_everything(solved):
     calculation, result, steps, inputs = solved
     content = json.loads(calculation.to_json())
     for k in range(POINTS):
@@ -72,7 +75,8 @@ def test_an_evaluator_that_knows_nothing_of_us_recomputes_everything(solved):
                 assert same(float(limit[k]), own[1]), name
 
 
-def test_the_record_says_the_same_as_the_other_evaluator(solved):
+@of_a_calculation
+def the_record_says_the_same_as_the_other_evaluator(solved):
     calculation, _, _, inputs = solved
     content = json.loads(calculation.to_json())
     for k in range(POINTS):
@@ -86,14 +90,16 @@ def test_the_record_says_the_same_as_the_other_evaluator(solved):
             assert used is None or same(verdict.used, used), name
 
 
-def test_it_is_read_back_as_it_was_written(solved):
+@of_a_calculation
+def it_is_read_back_as_it_was_written(solved):
     calculation = solved[0]
     again = Calculation.from_json(json.loads(calculation.to_json()))
     assert again == calculation
     assert again.digest == calculation.digest
 
 
-def test_what_is_computed_stands_behind_what_it_is_computed_from(solved):
+@of_a_calculation
+def what_is_computed_stands_behind_what_it_is_computed_from(solved):
     calculation = solved[0]
     known = set()
     for q in calculation.quantities.values():
@@ -104,7 +110,8 @@ def test_what_is_computed_stands_behind_what_it_is_computed_from(solved):
         assert known.issuperset([*names_in(x.value), *names_in(x.limit)])
 
 
-def test_no_formula_is_longer_than_a_line(solved):
+@of_a_calculation
+def no_formula_is_longer_than_a_line(solved):
     calculation = solved[0]
     trees = [q.expression for q in calculation.quantities.values() if q.computed]
     trees += [side for x in calculation.limits for side in (x.value, x.limit)]
@@ -113,7 +120,8 @@ def test_no_formula_is_longer_than_a_line(solved):
     assert max(map(size_of, trees)) <= 1.5 * LONGEST
 
 
-def test_units_close_or_the_formula_is_one_for_si(solved):
+@of_a_calculation
+def units_close_or_the_formula_is_one_for_si(solved):
     calculation = solved[0]
     quantities = calculation.quantities
     for q in quantities.values():
@@ -121,7 +129,8 @@ def test_units_close_or_the_formula_is_one_for_si(solved):
             assert dimension_of(q.expression, quantities) is not None
 
 
-def test_counts_have_a_step_and_parts_a_column_as_its_table_names_it(solved):
+@of_a_calculation
+def counts_have_a_step_and_parts_a_column_as_its_table_names_it(solved):
     for q in solved[0].quantities.values():
         if q.kind == "count":
             assert (q.bounds[1] - q.bounds[0]) / q.step == pytest.approx(round((q.bounds[1] - q.bounds[0]) / q.step))
@@ -129,7 +138,8 @@ def test_counts_have_a_step_and_parts_a_column_as_its_table_names_it(solved):
             assert re.fullmatch(r"\w+", q.column)
 
 
-def test_a_branch_in_force_gives_the_same_number(solved):
+@of_a_calculation
+def a_branch_in_force_gives_the_same_number(solved):
     calculation, _, _, inputs = solved
     values = calculation.outcome(given(calculation, inputs[0])).values
     for q in calculation.quantities.values():
@@ -137,6 +147,10 @@ def test_a_branch_in_force_gives_the_same_number(solved):
             short, met = in_force(q.expression, values)
             assert same(value_of(short, values), values[q.name])
             assert all(value_of(condition, values) == answer for condition, answer in met)
+
+
+def test_a_calculation_keeps_every_property(solved):
+    assert of_a_calculation.broken(solved) == []
 
 
 # -- one small problem ---------------------------------------------------------------------------------

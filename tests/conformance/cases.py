@@ -1068,8 +1068,15 @@ STRUCTURES = [
 
 
 def question(family: str, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:
-    """Return a question to the whole catalogue, with or without the optional requirements."""
-    return question_to(synth.load(family, **options), options, optional, **settings)
+    """Return a question to the whole catalogue, with or without the optional requirements; it is asked once."""
+    if settings:
+        return question_to(synth.load(family, **options), options, optional, **settings)
+    return _asked_once(family, tuple(options.items()), optional)
+
+
+@cache
+def _asked_once(family: str, options: tuple[tuple[str, str], ...], optional: bool) -> Instance:
+    return question_to(synth.load(family, **dict(options)), dict(options), optional)
 
 
 def question_to(problem: DesignProblem, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:

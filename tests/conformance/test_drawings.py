@@ -20,10 +20,12 @@ from synth.analysis.designs import make_design, make_frame, part_row
 from synth.analysis.drawing import drawing_of, draws, shown_measure, weighed
 from synth.results.design import DesignSteps
 from tests.conformance.cases import CASES, front_of, question
+from tests.properties import Properties
 from tests.repetitions import repetitions
 from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
+of_drawings = Properties()
 
 POINTS = 60
 OTHERS = repetitions(1, 30)
@@ -89,27 +91,31 @@ def drawn(request):
     return [(*x, paper_sheet(x[1], x[0].frame.title, "clutchsynth 0.0.0")) for x in drawings_of(*request.param)]
 
 
-def test_dimensions_are_the_quantities_that_they_name(drawn):
+@of_drawings
+def dimensions_are_the_quantities_that_they_name(drawn):
     for design, drawing, _ in drawn:
         assert len(drawing.measured) >= 4
         for dimension in drawing.measured:
             assert dimension.measure == pytest.approx(shown_measure(dimension, design), rel=1e-9, abs=1e-9)
 
 
-def test_areas_weigh_what_the_design_weighs(drawn):
+@of_drawings
+def areas_weigh_what_the_design_weighs(drawn):
     for design, drawing, _ in drawn:
         for names, of_drawing, of_design in weighed(drawing, design):
             assert of_drawing == pytest.approx(of_design, rel=1e-6), names
 
 
-def test_every_part_that_is_drawn_is_listed_and_numbered(drawn):
+@of_drawings
+def every_part_that_is_drawn_is_listed_and_numbered(drawn):
     for _, drawing, _ in drawn:
         told = {b.item for v in drawing.views for b in (*v.balloons, *(b for d in v.details for b in d.balloons))}
         assert told == {item.number for item in drawing.items}
         assert all(item.count > 0 and item.name for item in drawing.items)
 
 
-def test_what_is_no_part_of_the_model_is_told(drawn):
+@of_drawings
+def what_is_no_part_of_the_model_is_told(drawn):
     for _, drawing, sheet in drawn:
         assert all(len(text) > 4 for text in drawing.omitted)
         text = drawing_svg(sheet, drawing)
@@ -117,9 +123,14 @@ def test_what_is_no_part_of_the_model_is_told(drawn):
         ET.fromstring(text)
 
 
-def test_nothing_overlaps_and_nothing_leaves_the_frame(drawn):
+@of_drawings
+def nothing_overlaps_and_nothing_leaves_the_frame(drawn):
     for _, _, sheet in drawn:
         assert_readable(sheet)
+
+
+def test_drawings_of_an_option_set_keep_every_property(drawn):
+    assert of_drawings.broken(drawn) == []
 
 
 def assert_readable(sheet):

@@ -28,6 +28,7 @@ from synth.text.row_cells import named_column
 from synth.units import parse_unit
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, OF_SHAFTS, answer, front_of, question, question_to
+from tests.properties import Properties
 from tests.regimes import refereed
 from tests.repetitions import repetitions
 from tests.shipped import FAMILIES
@@ -37,6 +38,7 @@ pytestmark = pytest.mark.slow
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 POINTS = 400
+of_an_option_set = Properties()
 
 
 def test_every_shipped_family_has_cases():
@@ -58,7 +60,8 @@ def traced(request):
 # -- words -------------------------------------------------------------------------------------------
 
 
-def test_everything_has_a_unit_a_text_and_a_source(traced):
+@of_an_option_set
+def everything_has_a_unit_a_text_and_a_source(traced):
     d = traced[0].model.declaration
     with_units = [
         *d.requirements.values(),
@@ -77,19 +80,22 @@ def test_everything_has_a_unit_a_text_and_a_source(traced):
         assert remark.code.isidentifier()
 
 
-def test_the_class_names_itself_and_its_sources(traced):
+@of_an_option_set
+def the_class_names_itself_and_its_sources(traced):
     problem = traced[0].problem
     assert problem.title
     assert problem.sources
     assert (type(problem).__doc__ or "").strip()
 
 
-def test_default_objectives_are_two_or_three(traced):
+@of_an_option_set
+def default_objectives_are_two_or_three(traced):
     objectives = traced[0].model.declaration.objectives.values()
     assert 2 <= sum(o.default for o in objectives) <= 3
 
 
-def test_limit_sides_have_the_kind_of_their_unit(traced):
+@of_an_option_set
+def limit_sides_have_the_kind_of_their_unit(traced):
     d = traced[0].model.declaration
     for limit in d.limits.values():
         same = [q for q in d.derived.values() if q.sx.element_hash() == ca.SX(limit.value).element_hash()]
@@ -97,7 +103,8 @@ def test_limit_sides_have_the_kind_of_their_unit(traced):
             assert parse_unit(quantity.unit).kind == parse_unit(limit.unit).kind, limit.name
 
 
-def test_kernels_have_room_for_it(traced):
+@of_an_option_set
+def kernels_have_room_for_it(traced):
     # What has no room is solved over arrays, and takes much longer.
     instance = traced[0]
     asked = chosen_objectives(instance.model, None)
@@ -128,7 +135,8 @@ def sound_rows(instance, variables, data):
     return rows
 
 
-def test_the_evaluator_equals_casadi(traced):
+@of_an_option_set
+def the_evaluator_equals_casadi(traced):
     instance, variables, data = traced
     model = instance.model
     named = outputs(model)
@@ -142,7 +150,8 @@ def test_the_evaluator_equals_casadi(traced):
         np.testing.assert_allclose(value, wanted, rtol=1e-12, atol=1e-300, err_msg=name)
 
 
-def test_gradients_equal_differences(traced):
+@of_an_option_set
+def gradients_equal_differences(traced):
     instance, variables, data = traced
     model = instance.model
     named = outputs(model)
@@ -197,9 +206,9 @@ def input_dimensions(instance):
     return np.array(result, dtype=float)
 
 
-def traced_again(instance, constants, scale, monkeypatch):
+def traced_again(instance, constants, scale):
     """Return the model once more, with the constants of its formulas in other units."""
-    with monkeypatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch:
         for place, exponents in constants.items():
             module, name = place.split(":")
             value = getattr(importlib.import_module(module), name)
@@ -208,7 +217,8 @@ def traced_again(instance, constants, scale, monkeypatch):
         return question_to(type(instance.problem)(**chosen), chosen, optional=True).model
 
 
-def test_formulas_scale_like_their_units(traced, monkeypatch):
+@of_an_option_set
+def formulas_scale_like_their_units(traced):
     # Kilogram, metre, second, kelvin and ampere of another size: sound formulas say the same thing in them.
     instance, variables, data = traced
     model = instance.model
@@ -219,7 +229,7 @@ def test_formulas_scale_like_their_units(traced, monkeypatch):
     rng = np.random.default_rng(8)
     for _ in range(3 if own else 6):
         scale = rng.uniform(0.4, 2.5, 5)
-        model = traced_again(instance, OF_SHAFTS | own, scale, monkeypatch)
+        model = traced_again(instance, OF_SHAFTS | own, scale)
         factors = np.prod(scale**dimensions, axis=1)
         n = len(model.variables)
         after = model.evaluate(
@@ -233,6 +243,10 @@ def test_formulas_scale_like_their_units(traced, monkeypatch):
             for old, new in zip(before.limits[limit.name], after.limits[limit.name], strict=True):
                 np.testing.assert_allclose(new, old * factor, rtol=1e-8, err_msg=limit.name)
             assert (after.holds[limit.name] == before.holds[limit.name]).mean() > 0.98
+
+
+def test_an_option_set_keeps_every_property(traced):
+    assert of_an_option_set.broken(traced) == []
 
 
 def test_limits_of_optional_requirements_are_not_asked_without_them():

@@ -13,8 +13,10 @@ from synth.results.dimensions import constant_in, dimension_of
 from synth.results.expression import Expression, parts_of
 from synth.units import parse_unit
 from tests.conformance.cases import CASES, question
+from tests.properties import Properties
 
 pytestmark = pytest.mark.slow
+of_a_calculation = Properties()
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
@@ -49,12 +51,14 @@ def numbers_in(tree: Expression):
         yield from numbers_in(part)
 
 
-def test_every_part_of_a_formula_has_a_name(told):
+@of_a_calculation
+def every_part_of_a_formula_has_a_name(told):
     _, calculation = told
     assert [name for name, q in calculation.quantities.items() if q.kind == "helper"] == []
 
 
-def test_units_close_except_where_a_formula_is_one_for_si(told):
+@of_a_calculation
+def units_close_except_where_a_formula_is_one_for_si(told):
     family, calculation = told
     still_open = {
         name for name, tree in formulas(calculation).items() if dimension_of(tree, calculation.quantities) is None
@@ -66,7 +70,8 @@ def test_few_formulas_are_for_si_alone():
     assert len(set().union(*FOR_SI.values())) <= 5
 
 
-def test_formulas_have_the_unit_of_what_they_compute(told):
+@of_a_calculation
+def formulas_have_the_unit_of_what_they_compute(told):
     _, calculation = told
     for q in calculation.quantities.values():
         dimension = dimension_of(q.expression, calculation.quantities) if q.computed else None
@@ -80,12 +85,17 @@ def test_formulas_have_the_unit_of_what_they_compute(told):
                 assert dimension == parse_unit(x.unit).dimension, x.name
 
 
-def test_every_constant_stands_in_a_formula(told):
+@of_a_calculation
+def every_constant_stands_in_a_formula(told):
     _, calculation = told
     constants = [q for q in calculation.quantities.values() if q.kind == "constant"]
     trees = [*formulas(calculation).values(), *(x.condition for x in calculation.remarks)]
     folds = [constant_in(number, constants) for tree in trees for number in numbers_in(tree)]
     assert {c.name for c in constants} == {fold.constant for fold in folds if fold is not None}
+
+
+def test_a_calculation_keeps_every_property(told):
+    assert of_a_calculation.broken(told) == []
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda p: p.stem)

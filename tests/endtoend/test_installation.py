@@ -195,6 +195,7 @@ def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(wheel
         names = {path.relative_to(ROOT).as_posix() for path in paths}
         assert {name if name.startswith("synth/") else f"synth/{name}" for name in names} <= packed, kind
     assert {name.split("/")[0] for name in packed if ".dist-info/" not in name} == {"synth"}
+    assert not {name for name in packed if name.endswith(".d.ts") or "node_modules" in name}
     assert "clutchsynth = synth.terminal.cli:main" in metadata
     named = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
     for group, points in named.items():

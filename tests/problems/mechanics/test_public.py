@@ -14,6 +14,7 @@ import io
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -26,13 +27,14 @@ from synth.problems.mechanics import Quantity
 
 from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, UNIT, Entry, Formula, formula, formulas, modules
 from tests.problems.formula_checks import DIMENSION
+from tests.properties import Properties
 from tests.waiting import PATIENCE
 
 ca.GlobalOptions.setNumpyMode(-1)
 
 pytestmark = pytest.mark.slow
 FORMULAS = formulas()
-every_formula = pytest.mark.parametrize("f", FORMULAS, ids=lambda f: f"{f.module}.{f.name}")
+of_a_formula = Properties()
 OF_OTHERS = {"rad": "-", "rad/s": "1/s", "rad/s3": "1/s3"}
 DIMENSIONS = {**DIMENSION, "m/s2": (0, 1, -2, 0), "ohm": (1, 2, -3, 0, -2), "N m s": DIMENSION["kg m2/s"]}
 DIMENSIONS |= {"Wb/A": (1, 2, -2, 0, -2), "W/A2": (1, 2, -3, 0, -2)}
@@ -40,6 +42,7 @@ UNITS = {*DIMENSIONS, *OF_OTHERS, "SI"}  # SI: each of many by its own
 NOT_QUANTITIES = ("str", "int", "callable", "StartupRun")  # first words of the types of arguments without a unit
 
 
+@cache
 def calls(f: Formula) -> list[inspect.BoundArguments]:
     """Return what the doctest of a function calls it with."""
     module = sys.modules[f"synth.problems.mechanics.{f.module}"]
@@ -89,8 +92,8 @@ def test_what_has_no_underscore_is_promised_and_nothing_else() -> None:
         assert defined((folder / f"{name}.py").read_text(encoding="utf-8")) == set(module.__all__), name
 
 
-@every_formula
-def test_a_formula_tells_meaning_units_equation_source_and_a_number(f: Formula) -> None:
+@of_a_formula
+def a_formula_tells_meaning_units_equation_source_and_a_number(f: Formula) -> None:
     assert faults(f) == []
 
 
@@ -154,8 +157,8 @@ def called(f: Formula, bound: inspect.BoundArguments, instead: dict[str, list[An
     return flat(f.function(*own.args, **own.kwargs))
 
 
-@every_formula
-def test_floats_and_arrays_give_the_same(f: Formula) -> None:
+@of_a_formula
+def floats_and_arrays_give_the_same(f: Formula) -> None:
     if f.takes == NUMBERS:
         assert not varied(f, calls(f)[0], (SYMBOLS, ARRAYS))
         return
@@ -169,9 +172,17 @@ def test_floats_and_arrays_give_the_same(f: Formula) -> None:
             np.testing.assert_allclose(np.broadcast_to(np.asarray(array, float), 3), numbers, rtol=1e-12)
 
 
-@every_formula
-@pytest.mark.parametrize("kind", [ca.SX, ca.MX], ids=["SX", "MX"])
-def test_floats_and_symbols_give_the_same(f: Formula, kind: Any) -> None:
+@of_a_formula
+def floats_and_sx_give_the_same(f: Formula) -> None:
+    assert_same_of_symbols(f, ca.SX)
+
+
+@of_a_formula
+def floats_and_mx_give_the_same(f: Formula) -> None:
+    assert_same_of_symbols(f, ca.MX)
+
+
+def assert_same_of_symbols(f: Formula, kind: Any) -> None:
     if f.takes != SYMBOLS:
         return
     for bound in calls(f):
@@ -206,10 +217,10 @@ def test_formulas_are_used_without_casadi() -> None:
 CONSTANT = re.compile(r"^([A-Z_0-9]+) = .*  # .*\[(.+?)\]", re.MULTILINE)
 
 
-@pytest.mark.parametrize(
-    "f", [f for f in FORMULAS if f.takes != NUMBERS and UNIT.search(f.returns)], ids=lambda f: f"{f.module}.{f.name}"
-)
-def test_the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) -> None:
+@of_a_formula
+def the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) -> None:
+    if f.takes == NUMBERS or not UNIT.search(f.returns):
+        return
     module = sys.modules[f"synth.problems.mechanics.{f.module}"]
     rng = np.random.default_rng(0)
     for _ in range(3):
@@ -241,9 +252,8 @@ def results_of(f: Formula) -> list[str]:
 
 def test_a_unit_that_is_wrong_is_noticed() -> None:
     right = next(f for f in FORMULAS if f.name == "friction_radius")
-    test = test_the_result_scales_as_its_unit_when_arguments_and_constants_do
     with pytest.raises(AssertionError):
-        test(dataclasses.replace(right, returns="r [m2]."))
+        the_result_scales_as_its_unit_when_arguments_and_constants_do(dataclasses.replace(right, returns="r [m2]."))
 
 
 # ---- the equation is what is computed -------------------------------------------------------------------------------
@@ -318,11 +328,18 @@ def equation_value(f: Formula, bound: inspect.BoundArguments) -> Any:
     return eval(as_python(main, set(functions)), {**functions, **values})
 
 
-@pytest.mark.parametrize("f", [f for f in FORMULAS if not f.how], ids=lambda f: f"{f.module}.{f.name}")
-def test_the_equation_is_what_is_computed(f: Formula) -> None:
+@of_a_formula
+def the_equation_is_what_is_computed(f: Formula) -> None:
+    if f.how:
+        return
     for bound in calls(f):
         computed = [float(x) for x in flat(f.function(*bound.args, **bound.kwargs))]
         np.testing.assert_allclose([float(x) for x in flat(equation_value(f, bound))], computed, rtol=1e-9)
+
+
+@pytest.mark.parametrize("f", FORMULAS, ids=lambda f: f"{f.module}.{f.name}")
+def test_a_formula_keeps_every_property(f: Formula) -> None:
+    assert of_a_formula.broken(f) == []
 
 
 def test_nearly_all_equations_are_computed() -> None:
@@ -333,4 +350,4 @@ def test_an_equation_that_is_wrong_is_noticed() -> None:
     right = next(f for f in FORMULAS if f.name == "friction_radius")
     for wrong in ("r = (dm/2) (1 + c**2/2)", "r = dm/2 + c", "r = (d/2) (1 + c**2/3)", "r = (dm/2) (1 + c**2/3) q"):
         with pytest.raises((AssertionError, NameError)):
-            test_the_equation_is_what_is_computed(dataclasses.replace(right, equation=wrong))
+            the_equation_is_what_is_computed(dataclasses.replace(right, equation=wrong))

@@ -2,19 +2,27 @@
 
 import { Refusal, ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { columnsCard } from "./columns_card.js";
-import { figure, h, say, unitText, words } from "./dom.js";
+import { byId, figure, h, say, unitText, words } from "./dom.js";
 import { count } from "./words.js";
 
-const place = document.getElementById("batch");
+const place = byId("batch");
 const MOST_FAULTS = 100, PATIENCE = 300, LONG = 40; // letters of a cell that needs room
+
+/**
+ * @typedef {{id: string, name: string, size: number, header: string[], rows: {line: number, cells: string[]}[]}} Upload
+ * @typedef {{line: number, column: string | null, value: unknown, expected: string, message: string}} Fault
+ */
+
+/** @type {{brought: Upload | null, families: {name: string, title: string}[], faults: Fault[]}} */
 const table = { brought: null, families: [], faults: [] };
 
-const file = h("input", { type: "file", id: "file", class: "unseen", accept: ".csv,.xlsx,text/csv", "aria-describedby": "file-kinds", onchange: () => file.files[0] && bring(file.files[0]) });
+const file = h("input", { type: "file", id: "file", class: "unseen", accept: ".csv,.xlsx,text/csv", "aria-describedby": "file-kinds", onchange: () => file.files?.[0] && bring(file.files[0]) });
 const choose = h("label", { class: "button", for: "file" }, "choose a file");
-const dropped = h("div", { class: "drop", ondragover: (event) => { event.preventDefault(); dropped.classList.add("over"); }, ondragleave: () => dropped.classList.remove("over"), ondrop: (event) => {
+const dropped = h("div", { class: "drop", ondragover: (event) => { event.preventDefault(); dropped.classList.add("over"); }, ondragleave: () => dropped.classList.remove("over"), ondrop: (/** @type {DragEvent} */ event) => {
   event.preventDefault();
   dropped.classList.remove("over");
-  if (event.dataTransfer.files[0]) bring(event.dataTransfer.files[0]);
+  const [brought] = event.dataTransfer?.files ?? [];
+  if (brought) bring(brought);
 } }, h("p", {}, "Drop a table here, or ", choose, file),
 h("p", { class: "note", id: "file-kinds" }, "CSV as your spreadsheet writes it, or the first sheet of an Excel workbook. A heading is a name with its unit, such as ", h("code", {}, "load_torque [N*m]"), "; what other headings mean can be said here."));
 const fault = h("p", { class: "fault", role: "alert" });
@@ -46,7 +54,7 @@ async function offerObjectives() {
 function asked(text, field) {
   const wrong = h("span", { class: "fault", id: `${field.id}-fault` });
   field.setAttribute("aria-describedby", wrong.id);
-  return { field, wrong, element: h("p", { class: "labelled" }, h("label", { for: field.id }, text), field, wrong) };
+  return { text, field, wrong, element: h("p", { class: "labelled" }, h("label", { for: field.id }, text), field, wrong) };
 }
 
 async function begin() {
@@ -73,9 +81,11 @@ async function bring(chosen) {
   form.append("file", chosen);
   place.setAttribute("aria-busy", "true");
   try {
-    table.brought = await post("/uploads", form);
+    /** @type {Upload} */
+    const brought = await post("/uploads", form);
+    table.brought = brought;
     choose.textContent = "choose another file";
-    columns.bring(table.brought.header, table.brought.rows);
+    columns.bring(brought.header, brought.rows);
     table.faults = [];
     preview();
     await check();
@@ -91,6 +101,7 @@ async function bring(chosen) {
 
 /** Show the first rows as they stand, with what is wrong in them. */
 function preview() {
+  if (!table.brought) return;
   const { name, size, header, rows } = table.brought;
   const wrong = new Map(table.faults.map((one) => [`${one.line} ${one.column}`, one]));
   const cell = (row, k) => {
@@ -117,7 +128,7 @@ function request() {
   const many = asks.points.field.value.trim();
   const family = asks.family.field.value;
   const mapping = columns.request();
-  return { upload: table.brought.id, ...(family ? { family } : {}), ...(names ? { objectives: names } : {}), ...(many ? { points: /^\d+$/.test(many) ? Number(many) : many } : {}), ...(Object.keys(mapping).length ? { mapping } : {}) };
+  return { upload: table.brought?.id, ...(family ? { family } : {}), ...(names ? { objectives: names } : {}), ...(many ? { points: /^\d+$/.test(many) ? Number(many) : many } : {}), ...(Object.keys(mapping).length ? { mapping } : {}) };
 }
 
 async function check() {
@@ -159,7 +170,7 @@ async function refused(error) {
   if (at) {
     at.wrong.textContent = at === asks.family && problem.value === null ? "No column of the table names the family; choose it here." : sentence(problem.message);
     at.field.setAttribute("aria-invalid", "true");
-    text = `${at.element.querySelector("label").textContent}: see above.`;
+    text = `${at.text}: see above.`;
   } else if (columns.fault(problem)) text = "A heading is not understood; say above what it means.";
   detail.replaceChildren();
   go.textContent = "Start";

@@ -1,7 +1,7 @@
 // A batch: how its rows stand, and what each has found.
 
 import { faultCard, get } from "./api.js";
-import { asWords, duration, figure, h, unitText, withFigures, words } from "./dom.js";
+import { asWords, duration, figure, firstOf, h, unitText, withFigures, words } from "./dom.js";
 import { sizesCard } from "./sizes_card.js";
 import { LIVE, ROWS, rowBadge } from "./words.js";
 
@@ -21,7 +21,8 @@ function designLink(href, text) {
 /** Show a batch, while it is worked at and after. */
 export function batchView(element, job) {
   const address = new URLSearchParams(location.search);
-  let shown = job, status = ROWS[address.get("status")] ? address.get("status") : "", cursors = [null], looked = 0, asked = 0;
+  let shown = job, status = address.get("status") ?? "", cursors = [""], looked = 0, asked = 0;
+  if (!(status in ROWS)) status = "";
   const bar = h("div", { class: "shares", role: "img" });
   const legend = h("ul", { class: "row legend" });
   const facts = h("p", { class: "note number" });
@@ -37,7 +38,8 @@ export function batchView(element, job) {
     const own = (asked += 1);
     const query = new URLSearchParams({ limit: "50" });
     if (status) query.set("status", status);
-    if (cursors.at(-1)) query.set("cursor", cursors.at(-1));
+    const cursor = cursors.at(-1);
+    if (cursor) query.set("cursor", cursor);
     looked = Date.now();
     try {
       const page = await get(`/jobs/${job.id}/rows?${query}`);
@@ -49,7 +51,7 @@ export function batchView(element, job) {
 
   function choose(name) {
     status = name;
-    cursors = [null];
+    cursors = [""];
     history.replaceState(null, "", status ? `?status=${status}` : location.pathname);
     view.show(shown);
     rows();
@@ -84,7 +86,7 @@ export function batchView(element, job) {
       h("td", { class: "best" }, h("p", { class: "told" }, row.best_design ? designLink(`/jobs/${job.id}/rows/${row.line}#design`, designText(row.best_design)) : row.status === "bad_input" ? row.explanation : asWords(row.explanation) || "–"), row.remarks ? h("p", { class: "note remark", title: row.remarks }, row.remarks) : null));
     const focused = known?.line.contains(document.activeElement);
     known?.line.replaceWith(line);
-    if (focused) line.querySelector("a").focus();
+    if (focused) firstOf(line, "a")?.focus();
     lines.set(row.line, { line, text });
     return line;
   }

@@ -2,11 +2,11 @@
 
 import { ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { cellsOf, headingOf, sheet, short } from "./csv.js";
-import { figure, h, say, unitText, when, words } from "./dom.js";
+import { byId, figure, firstOf, h, say, unitText, when, words } from "./dom.js";
 import { FULL_DIGITS } from "./numbers.js";
 import { badge, count } from "./words.js";
 
-const place = document.getElementById("catalogues");
+const place = byId("catalogues");
 const address = new URLSearchParams(location.search);
 const SHOWN_JOBS = 5, MOST = 300;
 const CONFIDENCE = { verified: "good", textbook: "fair", computed: "fair", typical: "warn" };
@@ -14,8 +14,9 @@ const ownPlace = (reference) => `/catalogues?own=${encodeURIComponent(reference)
 
 async function begin() {
   try {
-    if (address.get("table")) shippedTable(await get(`/tables/${encodeURIComponent(address.get("table"))}`));
-    else if (address.get("own")) await ownTable(...address.get("own").split("@"));
+    const [table, own] = [address.get("table"), address.get("own")];
+    if (table) shippedTable(await get(`/tables/${encodeURIComponent(table)}`));
+    else if (own) await ownTable(own);
     else await lists();
   } catch (error) {
     place.replaceChildren(error.status === 404 ? h("section", { class: "card stack" }, h("h1", {}, "No such table"), h("p", {}, h("a", { href: "/catalogues" }, "To the catalogues"))) : faultCard(error, () => location.reload()));
@@ -56,7 +57,7 @@ function inOrder(names) {
 function found(table) {
   const lines = [...table.querySelectorAll("tbody tr")];
   const told = h("span", { class: "note", role: "status" });
-  return h("p", { class: "row" }, h("input", { type: "search", class: "find", placeholder: "Find in the rows", "aria-label": "Find in the rows", oninput: (event) => {
+  return h("p", { class: "row" }, h("input", { type: "search", class: "find", placeholder: "Find in the rows", "aria-label": "Find in the rows", oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
     const wanted = event.target.value.toLowerCase();
     for (const line of lines) line.hidden = !line.textContent.toLowerCase().includes(wanted);
     told.textContent = wanted ? `${count(lines.filter((line) => !line.hidden).length, "row")} of ${lines.length}` : "";
@@ -84,7 +85,8 @@ function shippedTable(table) {
 
 // ---- a version of one's own ----
 
-async function ownTable(name, stated) {
+async function ownTable(reference) {
+  const [name, stated] = reference.split("@");
   const version = Number(stated), path = `/catalogues/${encodeURIComponent(name)}/${version}`;
   const [own, { catalogues }] = await Promise.all([get(path), get("/catalogues")]);
   const { entry, csv, separator, used_by: users } = own;
@@ -120,7 +122,7 @@ function differences(changes) {
   const named = (title, names) => (names.length ? h("p", {}, `${title}: ${names.join(", ")}`) : null);
   const told = [named("Added", changes.added), named("Removed", changes.removed), named("Columns added", changes.columns_added), named("Columns removed", changes.columns_removed),
     changes.changed.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Changed cells" }, h("table", {}, h("thead", {}, h("tr", {}, ["Row", "Column", "Before", "After"].map((text) => h("th", { scope: "col" }, text)))),
-      h("tbody", {}, changes.changed.slice(0, MOST).map((cell) => h("tr", {}, h("th", { scope: "row" }, cell.designation), h("td", {}, cell.column), h("td", {}, cell.before || "empty"), h("td", { class: "changed" }, cell.after || "empty")))))) : null].filter(Boolean);
+      h("tbody", {}, changes.changed.slice(0, MOST).map((cell) => h("tr", {}, h("th", { scope: "row" }, cell.designation), h("td", {}, cell.column), h("td", {}, cell.before || "empty"), h("td", { class: "changed" }, cell.after || "empty")))))) : null].filter((one) => one !== null);
   return [h("h3", {}, `Since ${changes.before.reference}`), ...(told.length ? told : [h("p", {}, "The rows are the same.")])];
 }
 
@@ -152,10 +154,10 @@ function bringing(tables) {
     field.setAttribute("aria-describedby", faults[name].id);
     return h("p", { class: "labelled" }, h("label", { for: field.id }, text), field, faults[name]);
   };
-  const file = h("input", { type: "file", id: "csv-file", class: "unseen", accept: ".csv,text/csv", onchange: async () => { if (file.files[0]) fields.csv.value = await file.files[0].text(); } });
+  const file = h("input", { type: "file", id: "csv-file", class: "unseen", accept: ".csv,text/csv", onchange: async () => { if (file.files?.[0]) fields.csv.value = await file.files[0].text(); } });
   const fault = h("p", { class: "fault", role: "alert" });
   const kept = h("div", { id: "kept", role: "status" });
-  return h("form", { class: "card stack", id: "bring", novalidate: true, onsubmit: async (event) => {
+  const form = h("form", { class: "card stack", id: "bring", novalidate: true, onsubmit: async (event) => {
     event.preventDefault();
     fault.textContent = "";
     kept.replaceChildren();
@@ -177,7 +179,7 @@ function bringing(tables) {
         return false;
       });
       fault.textContent = left.length || !error.problems.length ? sentence(left[0]?.message ?? error.message) : "";
-      event.target.querySelector("[aria-invalid]")?.focus();
+      firstOf(form, "[aria-invalid]")?.focus();
     }
   } }, h("h2", {}, "Bring a table"), h("p", { class: "note" }, "Each change is a new version; studies name the one that they were asked with. The first column is ", h("code", {}, "designation"), ", units stand in the headings: ", h("code", {}, "thickness [mm]"), "."),
   h("div", { class: "asks" }, labelled("name", "Name", h("input", { id: "name", maxlength: "60", autocomplete: "off", spellcheck: "false", placeholder: "my_linings" })),
@@ -186,6 +188,7 @@ function bringing(tables) {
   h("div", { class: "stack" }, h("p", {}, h("label", { class: "button small", for: "csv-file" }, "Rows from a file"), file), labelled("csv", "Rows as CSV", h("textarea", { id: "csv", rows: "8", class: "wide", spellcheck: "false" }))),
   h("details", { class: "more" }, h("summary", {}, "Schema, for a table that is none of ours"), labelled("schema", "Columns as CSV", h("textarea", { id: "schema", rows: "5", class: "wide", spellcheck: "false", placeholder: "column,type,unit,minimum,maximum,required,symbol,description" }))),
   fault, kept, h("p", {}, h("button", { type: "submit", class: "primary" }, "Keep as a new version")));
+  return form;
 }
 
 begin();

@@ -5,6 +5,7 @@ import { h, unitText, words } from "./dom.js";
 
 const CARRY = "carry";
 const STRUCTURE = ["family", "options", "limits", "fix", "parts"];
+/** @type {[label: string, sections: string[]][]} */
 const GROUPS = [["Requirements", ["needed", "limit", "assumption"]], ["Options", ["option"]], ["Given sizes, counts and parts", ["variable", "count", "choice", "part"]]];
 const SHOWN_CELLS = 3;
 const declared = new Map(); // family -> the rows of its declaration that a table may name
@@ -25,7 +26,8 @@ async function namesOf(family) {
 export function columnsCard(changed) {
   const columns = h("ul", { class: "meanings" });
   const own = h("span", { class: "note" });
-  const element = h("section", { class: "card", hidden: true }, h("details", { open: true }, h("summary", {}, h("h2", {}, "What the columns mean"), own), columns));
+  const asked = h("details", { open: true }, h("summary", {}, h("h2", {}, "What the columns mean"), own), columns);
+  const element = h("section", { class: "card", hidden: true }, asked);
   let all = [], families = null;
 
   function bring(header, rows) {
@@ -63,7 +65,7 @@ export function columnsCard(changed) {
     const found = all.find((one) => problem && (problem.value === one.title || places(one.title).some((text) => problem.message.includes(text))));
     const told = problem?.value === null || problem?.value === undefined ? "expected" : `got ${problem.value}; expected`;
     found?.fault(`${told} ${problem?.expected.replace(/ \(or '.*$/s, "")}`, problem?.expected.split(" (or ")[0], problem?.value !== found.title);
-    if (found) element.querySelector("details").open = true;
+    if (found) asked.open = true;
     return Boolean(found);
   }
 
@@ -104,9 +106,10 @@ class Column {
     const chosen = this.wanted ?? this.choice.value;
     this.rows = rows;
     for (const group of this.groups) group.remove();
-    const groups = [...GROUPS.map(([label, sections]) => [label, [...rows.values()].filter((row) => sections.includes(row.section)).map((row) => [row.name, `${words(row.name)}${unitText(row.unit) ? `, ${unitText(row.unit)}` : ""}`])]),
-      ["Several at once", STRUCTURE.map((name) => [name, name])]];
-    this.groups = groups.filter(([, names]) => names.length).map(([label, names]) => h("optgroup", { label }, names.map(([value, text]) => h("option", { value }, text))));
+    const named = (row) => h("option", { value: row.name }, words(row.name), unitText(row.unit) ? `, ${unitText(row.unit)}` : "");
+    const groups = GROUPS.map(([label, sections]) => ({ label, options: [...rows.values()].filter((row) => sections.includes(row.section)).map(named) }));
+    groups.push({ label: "Several at once", options: STRUCTURE.map((name) => h("option", { value: name }, name)) });
+    this.groups = groups.filter(({ options }) => options.length).map(({ label, options }) => h("optgroup", { label }, options));
     this.choice.append(...this.groups);
     this.choice.value = chosen;
     if (this.choice.selectedIndex < 0) this.choice.value = "";

@@ -14,7 +14,7 @@ const FEW = 2; // names that are told one by one
 export function together(families, declarations) {
   const found = new Map(), objectives = new Map();
   for (const family of families) {
-    const { rows } = declarations.get(family.name);
+    const { rows } = declarations.get(family.name) ?? { rows: [] };
     for (const name of family.understands) {
       const row = rows.find((row) => row.kind === "requirement" && row.name === name);
       if (!row) continue;
@@ -64,7 +64,7 @@ const few = (names) => (names.length > FEW ? `${words(names[0])} and ${names.len
 export function choiceOf(families, chosen, changed) {
   const notes = new Map(families.map((family) => [family.name, h("span", { class: "note" })]));
   const summary = h("p", { class: "note", role: "status" });
-  const box = (family) => h("label", { title: family.line }, h("input", { type: "checkbox", name: "families", value: family.name, checked: chosen.has(family.name), onchange: (event) => {
+  const box = (family) => h("label", { title: family.line }, h("input", { type: "checkbox", name: "families", value: family.name, checked: chosen.has(family.name), onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
     if (event.target.checked) chosen.add(family.name);
     else chosen.delete(family.name);
     changed();
@@ -80,6 +80,7 @@ export function choiceOf(families, chosen, changed) {
         const why = chosen.has(family.name) && asked.length && declaration ? misfit(family, declaration, asked) : "";
         const fits = chosen.has(family.name) && asked.length > 0 && !why;
         able += Number(fits);
+        if (!note) continue;
         note.textContent = fits ? "✓ can serve this" : why;
         note.classList.toggle("good", fits);
       }

@@ -7,9 +7,10 @@ import { FULL_DIGITS } from "./numbers.js";
 /** Return the lines of a CSV text, each as its cells; between them stands a comma, a semicolon or a tab. */
 export function cellsOf(text, separator = ",") {
   const cell = new RegExp(`(?:"((?:[^"]|"")*)"|([^${separator}"\\r\\n]*))(${separator}|\\r?\\n|$)`, "g");
+  /** @type {string[][]} */
   const lines = [[]];
   for (const [, quoted, plain, end] of text.replace(/^\ufeff/, "").matchAll(cell)) {
-    lines.at(-1).push(quoted === undefined ? plain : quoted.replaceAll('""', '"'));
+    lines.at(-1)?.push(quoted === undefined ? plain : quoted.replaceAll('""', '"'));
     if (end === "") break;
     if (end !== separator) lines.push([]);
   }
@@ -18,7 +19,7 @@ export function cellsOf(text, separator = ",") {
 
 /** Return a heading such as `mass [kg]` as name and unit. */
 export function headingOf(text) {
-  const [, name, unit = ""] = /^(.*?)(?: \[([^\]]*)\])?$/s.exec(text);
+  const [, name, unit = ""] = /^(.*?)(?: \[([^\]]*)\])?$/s.exec(text) ?? ["", text];
   return { name, unit: unit === "-" ? "" : unit };
 }
 
@@ -46,7 +47,7 @@ export const short = (text) => (String(text).length > LONG ? h("span", { class: 
 /**
  * Draw a table: headings with their units, and rows whose first cell is their heading.
  * @param {string} label
- * @param {{class: string, caption: Node | null, heads: {title: string | Node, unit?: string, right?: boolean}[], rows: {class?: string, cells: {class?: string, shown: unknown}[]}[]}} what
+ * @param {{class: string, caption: Node | null, heads: {title: string | Node, unit?: string, right?: boolean}[], rows: {class?: string, cells: {class?: string, shown: import("./dom.js").Child}[]}[]}} what
  */
 function drawn(label, { class: kind, caption, heads, rows }) {
   const side = (k) => (heads[k].right ? "right" : "");

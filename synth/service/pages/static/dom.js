@@ -3,29 +3,46 @@
 import { FULL_DIGITS, number } from "./numbers.js";
 
 /**
+ * @typedef {import("./elements.js").Child} Child
+ * @typedef {import("./elements.js").Attributes} Attributes
+ */
+
+/**
  * Make an element.
- * @param {string} tag
- * @param {Record<string, unknown>} [attributes] `onclick` and its like are listeners; true, false and null do what they say
- * @param {...(Node | string | number | null | undefined | false | Array)} children
- * @returns {HTMLElement}
+ * @template {keyof HTMLElementTagNameMap} T
+ * @param {T} tag
+ * @param {Attributes} [attributes] `onclick` and its like are listeners; true, false and null do what they say
+ * @param {...Child} children
  */
 export function h(tag, attributes = {}, ...children) {
   return filled(document.createElement(tag), attributes, children);
 }
 
-/** Make an element of a drawing. */
+/**
+ * Make an element of a drawing.
+ * @template {keyof SVGElementTagNameMap} T
+ * @param {T} tag
+ * @param {Attributes} [attributes]
+ * @param {...Child} children
+ */
 export function s(tag, attributes = {}, ...children) {
   return filled(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
 }
 
+/**
+ * @template {Element} E
+ * @param {E} element
+ * @param {Attributes} attributes
+ * @param {Child[]} children
+ */
 function filled(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
-    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else if (name === "value") element.value = value;
+    if (typeof value === "function") element.addEventListener(name.slice(2), value);
+    else if (name === "value" && "value" in element) element.value = value;
     else element.setAttribute(name, value === true ? "" : String(value));
   }
-  for (const child of children.flat(3)) {
+  for (const child of /** @type {unknown[]} */ (children).flat(3)) {
     if (child !== null && child !== undefined && child !== false) element.append(child instanceof Node ? child : String(child));
   }
   return element;
@@ -91,3 +108,28 @@ export function say(text) {
   if (!place) document.body.append((place = h("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" })));
   place.textContent = text;
 }
+
+/**
+ * Return the element of an id, which the page has.
+ * @param {string} id
+ */
+export function byId(id) {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no element ${id}`);
+  return element;
+}
+
+/**
+ * Return the elements of a page or a part of it that fit a selector; all of them are elements of HTML.
+ * @param {ParentNode} place
+ * @param {string} selector
+ * @returns {HTMLElement[]}
+ */
+export const allOf = (place, selector) => [...place.querySelectorAll(selector)].filter((one) => one instanceof HTMLElement);
+
+/**
+ * Return the first element of HTML that fits a selector, if there is one.
+ * @param {ParentNode} place
+ * @param {string} selector
+ */
+export const firstOf = (place, selector) => allOf(place, selector)[0];

@@ -1,11 +1,11 @@
 // The families: what each declares, with the sources of its formulas.
 
 import { faultCard, get, maySubmit } from "./api.js";
-import { figure, h, symbol, unitText, words } from "./dom.js";
+import { allOf, byId, figure, h, symbol, unitText, words } from "./dom.js";
 import { FULL_DIGITS } from "./numbers.js";
 import { count } from "./words.js";
 
-const place = document.getElementById("families");
+const place = byId("families");
 const SECTIONS = [
   ["needed", "Needed", "what a study must state"], ["limit", "Limits you may set", "asked only where they are stated"], ["assumption", "Assumptions", "each with a default and its source"],
   ["option", "Options", "how it is built and what it is judged by"], ["variable", "Sizes", "searched within their ranges"], ["count", "Counts", "whole numbers that are searched"], ["choice", "Choices", ""],
@@ -38,15 +38,15 @@ function declaration(family) {
   document.title = `${family.title} · clutchsynth`;
   const told = h("span", { class: "note", role: "status" });
   const find = h("input", { type: "search", class: "find", placeholder: "Find a name, a text, a source", "aria-label": "Find a name, a text or a source", oninput: () => {
-    const wanted = find.value.toLowerCase(), lines = [...place.querySelectorAll("tbody tr")];
-    for (const line of lines) line.hidden = !line.textContent.toLowerCase().includes(wanted);
-    for (const one of place.querySelectorAll("section[data-section]")) one.hidden = Boolean(wanted) && !one.querySelector("tbody tr:not([hidden])");
+    const wanted = find.value.toLowerCase(), lines = allOf(place, "tbody tr");
+    for (const line of lines) line.hidden = !(line.textContent ?? "").toLowerCase().includes(wanted);
+    for (const one of allOf(place, "section[data-section]")) one.hidden = Boolean(wanted) && !one.querySelector("tbody tr:not([hidden])");
     if (wanted) for (const one of place.querySelectorAll("details")) one.open = true;
     told.textContent = wanted ? `${lines.filter((line) => !line.hidden).length} found` : "";
   } });
   place.replaceChildren(h("p", { class: "note" }, h("a", { href: "/families" }, "Families")), h("div", { class: "heading" }, h("h1", {}, family.title), h("div", { class: "row" }, told, find, maySubmit() ? h("a", { class: "button primary", href: `/new?family=${family.name}` }, "New study") : null)),
     h("section", { class: "card" }, h("h2", {}, "Sources"), h("ul", { class: "sources" }, family.sources.map((source) => h("li", {}, source)))),
-    ...SECTIONS.map(([name, title, hint]) => section(title, hint, family.rows.filter((row) => sectionOf(row) === name))).filter(Boolean));
+    ...SECTIONS.map(([name, title, hint]) => section(title, hint, family.rows.filter((row) => sectionOf(row) === name))).filter((one) => one !== null));
 }
 
 function section(title, hint, rows) {

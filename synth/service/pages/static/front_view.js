@@ -28,7 +28,7 @@ export async function frontView(element, job, explorer, heard) {
   if (["infeasible", "not_found"].includes(job.summary?.outcome)) return nothingView(element, job, null);
   const [record, page] = await Promise.all([get(`/jobs/${job.id}/result`), get(`/jobs/${job.id}/designs?limit=${MOST}`)]);
   const objectives = Object.keys(record.objectives).map((name) => page.columns.find((column) => column.name === name)).filter(Boolean);
-  const table = tableCard(job, record, page, objectives);
+  const table = tableCard(job, page, objectives);
   const points = page.designs.map((design) => ({ rank: design.rank, note: design.note, values: objectives.map(({ name }) => design[name]) }));
   element.replaceChildren(certificate(job, record),
     ...(points.length > 1 ? [plotOf(objectives, points, { label: "The front", choose: (design) => table.choose(design.rank) })] : []), table.element);
@@ -112,7 +112,7 @@ function certificate(job, record) {
     h("p", { class: "note" }, "The proof covers the formulas, limits and catalogue rows of this study, not the world outside them."));
 }
 
-function tableCard(job, record, page, objectives) {
+function tableCard(job, page, objectives) {
   const shown = page.columns.filter(({ name }) => !BESIDE.includes(name)).slice(0, SHOWN);
   const numeric = new Set(shown.filter(({ name }) => page.designs.some((design) => typeof design[name] === "number")).map(({ name }) => name));
   const lines = new Map();

@@ -1,7 +1,7 @@
 // What can be asked of a front beyond it, and what was asked of a job already.
 
 import { get, listen, maySubmit, post, sentence } from "./api.js";
-import { h } from "./dom.js";
+import { firstOf, h } from "./dom.js";
 import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 
 const SHOWN = 5; // jobs before the rest is unfolded
@@ -64,7 +64,7 @@ export async function furtherCard(job) {
       const made = await post("/jobs", body, { "Idempotency-Key": `further-${ask.kind}-${of.id}-${rank}` });
       if (AGAIN.includes(made.state)) await post(`/jobs/${made.id}/resume`);
       await load();
-      list.querySelector(`a[href="/jobs/${made.id}"]`)?.focus();
+      firstOf(list, `a[href="/jobs/${made.id}"]`)?.focus();
     } catch (error) {
       fault.textContent = sentence(error.message);
     }
@@ -94,12 +94,12 @@ export async function furtherCard(job) {
   }
 
   function draw() {
-    const focused = list.contains(document.activeElement) ? document.activeElement.getAttribute("href") : null, open = list.querySelector("details")?.open ?? false;
+    const focused = list.contains(document.activeElement) ? document.activeElement?.getAttribute("href") : null, open = list.querySelector("details")?.open ?? false;
     const rest = known.slice(SHOWN);
     element.hidden = !offered.length && !known.length;
     list.replaceChildren(...(known.length ? [offered.length ? h("h3", {}, "What followed") : h("h2", {}, "What followed"), h("ul", {}, known.slice(0, SHOWN).map(line)),
       rest.length ? h("details", { class: "more", open }, h("summary", {}, `${rest.length} more`), h("ul", {}, rest.map(line))) : ""] : []));
-    if (focused) list.querySelector(`a[href="${focused}"]`)?.focus();
+    if (focused) firstOf(list, `a[href="${focused}"]`)?.focus();
   }
 
   element.replaceChildren(...(offered.length ? [h("h2", {}, "Ask further"), asks, lacking, fault] : []), list);

@@ -1,9 +1,9 @@
 // The interface as its description tells it: routes, parameters, bodies and answers, drawn here and from nowhere else.
 
 import { faultCard, get } from "./api.js";
-import { h } from "./dom.js";
+import { allOf, byId, h } from "./dom.js";
 
-const place = document.getElementById("interface");
+const place = byId("interface");
 const METHODS = ["get", "post", "patch", "delete"];
 const DEEPEST = 3; // levels of answers that are shown; what is deeper is in openapi.json
 let schemas = {};
@@ -21,9 +21,9 @@ async function begin() {
     }
     const said = h("span", { class: "note", role: "status" });
     const find = h("input", { type: "search", class: "find", placeholder: "Find a route", "aria-label": "Find a route", oninput: () => {
-      const wanted = find.value.toLowerCase(), lines = [...place.querySelectorAll(".operations > li")];
-      for (const line of lines) line.hidden = !line.querySelector("summary").textContent.toLowerCase().includes(wanted);
-      for (const card of place.querySelectorAll("section.card")) card.hidden = !card.querySelector(".operations > li:not([hidden])");
+      const wanted = find.value.toLowerCase(), lines = allOf(place, ".operations > li");
+      for (const line of lines) line.hidden = !(line.querySelector("summary")?.textContent ?? "").toLowerCase().includes(wanted);
+      for (const card of allOf(place, "section.card")) card.hidden = !card.querySelector(".operations > li:not([hidden])");
       said.textContent = wanted ? `${lines.filter((line) => !line.hidden).length} found` : "";
     } });
     place.replaceChildren(h("p", { class: "row" }, find, said), ...[...groups].map(([tag, operations]) => h("section", { class: "card" }, h("h2", {}, tag[0].toUpperCase() + tag.slice(1)), h("ul", { class: "operations" }, operations.map((one) => h("li", {}, one))))));

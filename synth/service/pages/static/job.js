@@ -2,7 +2,7 @@
 
 import { ask, faultCard, get, listen, maySubmit, sentence } from "./api.js";
 import { batchView } from "./batch_view.js";
-import { day, duration, h, say, when, words } from "./dom.js";
+import { byId, day, duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
 import { filesCard } from "./files_card.js";
 import { furtherCard } from "./further_card.js";
@@ -12,8 +12,8 @@ import { sizesView } from "./sizes_card.js";
 import { watchView } from "./watch_view.js";
 import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 
-const place = document.getElementById("job");
-const id = place.dataset.job;
+const place = byId("job");
+const { job: id = "", explorer = "" } = place.dataset;
 const RESUMABLE = ["cancelled", "failed", "stopped"];
 let job, titles = {}, content = null, stop = null, files = null;
 let shown = { id, moved: "" }; // whose front is shown, and with which values other than those of the job
@@ -150,7 +150,7 @@ async function ended() {
     if (job.kind === "batch") await batchView(slot, job).loaded;
     else if (job.kind === "explain") await nothingView(slot, job, job);
     else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || ["infeasible", "not_found"].includes(job.summary?.outcome)))) {
-      await frontView(slot, job, place.dataset.explorer, (other, rank, moved) => {
+      await frontView(slot, job, explorer, (other, rank, moved) => {
         further.shown(other, rank);
         if (moved === undefined || other.id === shown.id) return;
         shown = { id: other.id, moved };
@@ -160,7 +160,7 @@ async function ended() {
     }
     else if (job.kind === "size_range" && job.summary?.variants) await sizesView(slot, job);
     else if (hasView(job)) await kindView(slot, job);
-    else slot.replaceChildren(...[job.summary ? facts() : null].filter(Boolean));
+    else slot.replaceChildren(...(job.summary ? [facts()] : []));
     below.append(further.element);
     files = await filesCard(below, job);
     if (shown.id !== id) files.show(shown);

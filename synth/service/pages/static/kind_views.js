@@ -58,7 +58,7 @@ async function whatIfView(job) {
     return [...lines].map(([label, points]) => ({ label, points: points.sort((a, b) => a[0] - b[0]) })).filter(({ points }) => points.some(([, y]) => y !== null));
   };
   const across = { name: along.label, unit: along.unit };
-  const curves = numeric ? objectives.map((objective, k) => [objective, series(k)]).filter(([, lines]) => lines.length).map(([{ name, unit, sense }, lines]) =>
+  const curves = numeric ? objectives.map((objective, k) => ({ ...objective, lines: series(k) })).filter(({ lines }) => lines.length).map(({ name, unit, sense, lines }) =>
     curveOf(across, { name, unit, note: sense === "max" ? "the largest there is" : "the least there is" }, lines, { ...found, marks: found.marks.filter((mark) => !mark.objective || mark.objective === name) })) : [];
   const stated = (step) => step.values.map((value, k) => (Array.isArray(value) ? value.join(", ") : typeof value === "number" ? `${figure(value)} ${unitText(study.varied[k].unit)}`.trim() : value));
   const seen = new Set();
@@ -158,7 +158,7 @@ const remarked = (text, step) => arrows(text.replace(/^(up|down)wards .*? these 
 async function nearView(job) {
   const { columns, rows } = await tableOf(job.id, "near_equals.csv");
   const changes = columns.filter(({ name }) => name.startsWith("change: "));
-  const objectives = changes.map(({ name }) => columns.find((column) => column.name === name.slice(8))).filter(Boolean);
+  const objectives = changes.map(({ name }) => columns.find((column) => column.name === name.slice(8))).filter((column) => column !== undefined);
   return [
     verdict(job.summary.complete ? "good" : "warn", job.summary.complete ? "✓" : "!", job.summary.complete ? "complete" : "not complete", sentence(arrows(job.summary.sentence ?? outcomeText(job))), job.summary.interrupted ? h("p", { class: "note" }, `Interrupted: ${job.summary.interrupted}`) : null),
     rows.length ? card("Nearly as good", tableView("Nearly as good", [

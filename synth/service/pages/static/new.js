@@ -2,19 +2,29 @@
 
 import { Refusal, faultCard, get, maySubmit, post, sentence } from "./api.js";
 import { ANY, choiceOf, together } from "./compare_form.js";
-import { h, say, unitText, words } from "./dom.js";
+import { byId, firstOf, h, say, unitText, words } from "./dom.js";
 import { Field, choices, hintOf, stated, typed } from "./fields.js";
 import { sideView } from "./new_side.js";
 
 const PATIENCE = 300; // ms without a key, before the service is asked
-const place = document.getElementById("new");
+const place = byId("new");
 const address = new URLSearchParams(location.search);
 const SIZES = ["variable", "count"];
 
+/** @typedef {string[] | Record<string, string>} Objectives names alone, or names with what is made of them */
+
 // What is asked: the spec as stated, apart from what fields hold. `rest` has no field and is passed on.
+/**
+ * @type {{family: string, several: Set<string> | null, own: {family: string}[], title: string, options: Record<string, string>, objectives: Objectives | null,
+ *   values: Record<string, Record<string, unknown>>, limits: unknown[], points: string, rest: Record<string, unknown>}}
+ */
 const study = { family: "", several: null, own: [], title: "", options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
 // Where several families are compared, `several` holds their names, `own` the entries that say more than a name.
-let families = [], examples = [], declared = null, choice = null, fields = [], told = { ready: false, problems: [], read: {}, combinations: null };
+/** @type {ReturnType<typeof choiceOf> | null} */
+let choice = null;
+/** @type {Field[]} */
+let fields = [];
+let families = [], examples = [], declared = null, told = { ready: false, problems: [], read: {}, combinations: null };
 
 const declarations = new Map();
 const side = sideView({ start, spec: () => body(), fieldAt });
@@ -64,9 +74,10 @@ async function redraw() {
 }
 
 async function declaredBySeveral() {
-  const missing = families.filter(({ name }) => study.several.has(name) && !declarations.has(name));
+  const compared = families.filter(({ name }) => study.several?.has(name));
+  const missing = compared.filter(({ name }) => !declarations.has(name));
   for (const { name } of missing) declarations.set(name, await get(`/families/${name}`)); // one after the other: they share what answers forms
-  return together(families.filter(({ name }) => study.several.has(name)), declarations);
+  return together(compared, declarations);
 }
 
 const of = (...sections) => declared.rows.filter((row) => sections.includes(row.section));
@@ -91,7 +102,7 @@ function draw() {
     folded("sizes", "Sizes that are given", "empty is free", of(...SIZES).map((row) => field(row, "fix")))]),
     folded("practice", "Rules of practice", `${rules.length} of what an experienced engineer demands; each can be widened alone`, rules.map((row) => field(row, "requirements")), false, true),
     folded("assumptions", "Assumptions", `${assumptions.length} values, each with a default and its source`, assumptions.map((row) => field(row, "requirements")), false, true),
-    h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (event) => { study.title = event.target.value; side.code(); } }))];
+    h("section", { class: "card" }, h("label", { for: "title" }, "Title"), h("input", { id: "title", class: "wide", maxlength: "200", value: study.title, placeholder: "made of the duty, if empty", oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => { study.title = event.target.value; side.code(); } }))];
   form.append(...cards.filter((one) => one !== null));
   for (const id of open) form.querySelector(`#${id}`)?.setAttribute("open", "");
   for (const one of form.querySelectorAll("details")) if (one.querySelector(".changed")) one.open = true;
@@ -104,7 +115,7 @@ function card(title, hint, children) {
 
 function folded(id, title, hint, children, open = false, find = false) {
   if (!children.length) return null;
-  const search = find ? h("input", { type: "search", class: "find", placeholder: "Find: friction, oil …", "aria-label": `Find in ${title.toLowerCase()}`, oninput: (event) => {
+  const search = find ? h("input", { type: "search", class: "find", placeholder: "Find: friction, oil …", "aria-label": `Find in ${title.toLowerCase()}`, oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
     const wanted = event.target.value.toLowerCase();
     for (const one of children) one.hidden = !one.textContent.toLowerCase().includes(wanted);
   } }) : null;
@@ -124,7 +135,7 @@ function familyCard() {
 function turn(family) {
   const known = study.values.requirements, limits = new Set(study.several || family === ANY ? Object.keys(known) : []);
   take({ family, requirements: Object.fromEntries(Object.entries(known).filter(([name]) => limits.has(name) && understood(family, name))) });
-  redraw().then(() => form.querySelector(`input[value="${family}"]`)?.focus()).catch(show);
+  redraw().then(() => firstOf(form, `input[value="${family}"]`)?.focus()).catch(show);
 }
 
 /** Tell whether a requirement means the same in other families: then it is taken over. */
@@ -134,7 +145,7 @@ function choose(row, name) {
   collect();
   if (name === row.default) delete study.options[row.name];
   else study.options[row.name] = name;
-  redraw().then(() => form.querySelector(`input[name="o-${row.name}"]:checked`)?.focus()).catch(show);
+  redraw().then(() => firstOf(form, `input[name="o-${row.name}"]:checked`)?.focus()).catch(show);
 }
 
 function field(row, section) {
@@ -150,7 +161,7 @@ function objectiveCard(rows) {
   const boxes = rows.map((row) => h("label", {}, h("input", { type: "checkbox", value: row.name, checked: chosen.includes(row.name), onchange: () => { collect(); later(); } }),
     words(row.name), h("span", { class: "note" }, [row.sense === "max" ? "large" : "", unitText(row.unit)].filter(Boolean).join(" · "))));
   return h("section", { class: "card" }, h("h2", {}, "What to make small or large"), h("div", { class: "objectives", role: "group", "aria-label": "Objectives" }, boxes),
-    h("p", { class: "row points" }, h("label", { for: "points" }, "Designs at most"), h("input", { id: "points", inputmode: "numeric", autocomplete: "off", value: study.points, "aria-describedby": "points-fault", oninput: (event) => { study.points = event.target.value; later(); } }), h("span", { id: "objective-note", class: "note" })),
+    h("p", { class: "row points" }, h("label", { for: "points" }, "Designs at most"), h("input", { id: "points", inputmode: "numeric", autocomplete: "off", value: study.points, "aria-describedby": "points-fault", oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => { study.points = event.target.value; later(); } }), h("span", { id: "objective-note", class: "note" })),
     h("p", { class: "fault", id: "points-fault" }));
 }
 
@@ -161,10 +172,11 @@ function collect() {
     if (!one.value) delete study.values[section][name];
     else study.values[section][name] = section === "parts" ? partsOf(one.value) : stated(one.value, one.row.unit);
   }
-  const boxes = [...form.querySelectorAll(".objectives input")];
-  const names = boxes.filter((box) => box.checked).map((box) => box.value);
-  if (study.objectives === null || Array.isArray(study.objectives)) study.objectives = names;
-  else study.objectives = Object.fromEntries(names.map((name) => [name, study.objectives[name] ?? of("objective").find((row) => row.name === name).sense]));
+  const boxes = /** @type {NodeListOf<HTMLInputElement>} */ (form.querySelectorAll(".objectives input"));
+  const names = [...boxes].filter((box) => box.checked).map((box) => box.value);
+  const before = study.objectives;
+  if (before === null || Array.isArray(before)) study.objectives = names;
+  else study.objectives = Object.fromEntries(names.map((name) => [name, before[name] ?? of("objective").find((row) => row.name === name).sense]));
 }
 
 /** Return what is asked of a part: a condition, or designations; one that has a comma itself stands in double quotes. */
@@ -220,11 +232,11 @@ function tell(answer) {
   }
   for (const one of fields) one.show(at.get(one) ?? null, one.path[0] === "requirements" ? answer.read[one.row.name] : "");
   const points = left.find((problem) => problem.path[0] === "points");
-  document.getElementById("points-fault").textContent = points?.message ?? "";
-  document.getElementById("points").setAttribute("aria-invalid", String(Boolean(points)));
+  byId("points-fault").textContent = points?.message ?? "";
+  byId("points").setAttribute("aria-invalid", String(Boolean(points)));
   const chosen = count(), objectives = study.several ? Math.max(1, chosen) : chosen;
   choice?.show(declarations, Object.keys(study.values.requirements));
-  document.getElementById("objective-note").textContent = study.several && !chosen ? "None chosen: those that all have in common." : ["Choose at least one.", "One optimum.", "A front of the best compromises."][chosen] ?? `A front in ${chosen} dimensions; this can take minutes.`;
+  byId("objective-note").textContent = study.several && !chosen ? "None chosen: those that all have in common." : ["Choose at least one.", "One optimum.", "A front of the best compromises."][chosen] ?? `A front in ${chosen} dimensions; this can take minutes.`;
   side.show(answer, at, left, { objectives, stated: Object.keys(study.values.requirements).length, slots: of("part").map((row) => words(row.name)) });
 }
 

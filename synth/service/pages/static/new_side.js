@@ -28,7 +28,7 @@ export function sideView({ start, spec, fieldAt }) {
       await navigator.clipboard.writeText(code.textContent);
       copy.textContent = "Copied";
     } catch {
-      getSelection().selectAllChildren(code);
+      getSelection()?.selectAllChildren(code);
       copy.textContent = "Selected";
     }
     setTimeout(() => { copy.textContent = "Copy"; }, 1500);
@@ -67,7 +67,7 @@ export function sideView({ start, spec, fieldAt }) {
         ...[...other, ...loose].map((problem) => line("✗", "fault", problem.message)),
         ...(answer.remarks ?? []).map((remark) => line("○", "note", remark.message)),
         ...missing.map(([field]) => line("○", "note", words(field.row.name), field.path)),
-        ...(answer.ready ? [line("✓", "good", `${facts.stated} requirements stated, all others by default`), facts.slots.length ? line("✓", "good", `Searched among parts: ${facts.slots.join(", ")}`) : null].filter(Boolean) : []));
+        ...(answer.ready ? [line("✓", "good", `${facts.stated} requirements stated, all others by default`), facts.slots.length ? line("✓", "good", `Searched among parts: ${facts.slots.join(", ")}`) : ""] : []));
       cost.textContent = answer.combinations ? `${figure(answer.combinations)} combinations of parts and counts. You can close the page; the job goes on.` : "";
       go.disabled = !facts.objectives || faults > 0;
     },

@@ -33,7 +33,7 @@ export async function nothingView(element, job, explaining) {
 
 /**
  * @typedef {object} Ways
- * @property {string} heading tag of the heading
+ * @property {"h2" | "h3"} heading tag of the heading
  * @property {boolean} [begin] whether they are looked for without being asked, behind what others wait for
  * @property {(job: object) => void} [asked] is told the job that looks for them
  * @property {() => void} [told] is told when they are shown
@@ -93,7 +93,7 @@ function inUnit(text, typed) {
   const own = typeof typed === "string" ? quantity(typed, "") : null, found = REQUIREMENT.exec(text);
   if (!own?.unit || !found || own.unit === found[5] || /deg/.test(own.unit + found[5])) return text;
   const [, name, needed, unit, given, , rest = ""] = found;
-  return `${name} ${needed} ${unit} (${number((own.number * needed) / given, FULL_DIGITS)} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
+  return `${name} ${needed} ${unit} (${number((own.number * Number(needed)) / Number(given), FULL_DIGITS)} ${own.unit}) instead of ${own.number} ${own.unit}${rest}`;
 }
 
 /** Return how much a way out changes, and whether less would do. */

@@ -8,7 +8,7 @@ const WIDE = SMALL ? 360 : 720, HIGH = SMALL ? 300 : 360, LEFT = 70, RIGHT = 22,
 /** Return round numbers that cover a range. */
 export function ticks(low, high, most = TICKS) {
   const rough = (high - low) / most, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough);
+  const step = [1, 2, 5, 10].map((k) => k * power).find((k) => k >= rough) ?? NaN; // no range, no ticks
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
   return found;

@@ -1,18 +1,19 @@
 // A row of a batch: what it asks, and the designs that it has found.
 
 import { faultCard, get, maySubmit, post, sentence } from "./api.js";
-import { asWords, duration, figure, h, symbol, unitText, words } from "./dom.js";
+import { asWords, byId, duration, figure, h, symbol, unitText, words } from "./dom.js";
 import { percent, usedShare } from "./numbers.js";
 import { plotOf } from "./plot.js";
 import { yamlText } from "./spec.js";
 import { count, rowBadge } from "./words.js";
 
-const place = document.getElementById("row");
-const { job: id, line } = place.dataset;
+const place = byId("row");
+const { job: id = "", line = "" } = place.dataset;
 const BESIDE = ["rank", "score", "status", "gap", "note", "alternatives"];
 const LIMIT = "utilisation: ";
 const HOT = 0.995; // of a limit: it decides
 const SEARCHED = ["objectives", "weights", "points", "gap", "grid", "seed", "time_limit", "catalogs"]; // that all rows of a batch share
+/** @type {[title: string, sections: string[]][]} */
 const GROUPS = [["Sizes", ["variable", "count", "choice"]], ["Parts", ["part"]], ["What follows", ["derived"]]];
 
 async function begin() {
@@ -42,7 +43,7 @@ function show(job, { row, header, faults, question, columns, designs }, request,
     h("div", { class: "heading" }, h("h1", {}, `Line ${row.line}`), question && maySubmit() ? h("div", { class: "row" }, studyButton(row, question, request, designs, fault)) : null),
     h("p", { class: "row note" }, rowBadge(row.status), h("span", {}, family?.title ?? words(row.family), took)), fault,
     ...outcome(row, designs, faults),
-    ...found(row, columns, designs, request, family),
+    ...found(columns, designs, request, family),
     h("section", { class: "card stack" }, h("h2", {}, "What stands in the table"), h("dl", { class: "facts" }, header.map((title, k) => [h("dt", {}, title), h("dd", { class: faults.some((one) => one.column === title) ? "wrong" : "" }, row.cells[k] || "–")])),
       row.remarks ? h("p", { class: "note" }, row.remarks) : null),
     question ? h("section", { class: "card" }, h("details", {}, h("summary", {}, h("h2", {}, "What was asked")), h("pre", { tabindex: "0", "aria-label": "The question of this row as a spec" }, yamlText(specOf(question, request))))) : "");
@@ -79,7 +80,7 @@ function outcome(row, designs, faults) {
     h("p", {}, proven ? `No other design that this row allows is better in all objectives${row.gap ? `, to within ${percent(row.gap)}` : ""}.` : "They hold all limits; better ones may exist."))];
 }
 
-function found(row, columns, designs, request, family) {
+function found(columns, designs, request, family) {
   if (!designs.length) return [];
   const kinds = new Map((family?.rows ?? []).filter((one) => ["variable", "count", "choice", "part", "derived"].includes(one.section)).map((one) => [one.name, one]));
   const wanted = Array.isArray(request.objectives) ? request.objectives : request.objectives ? Object.keys(request.objectives) : (family?.rows ?? []).filter((one) => one.section === "objective" && one.default === "yes").map((one) => one.name);
@@ -103,8 +104,8 @@ function panelOf(design, many, columns, objectives, kinds) {
   const value = ({ name, unit }) => `${typeof design[name] === "number" ? figure(design[name]) : words(design[name] ?? "")} ${unitText(unit)}`.trim();
   const line = (column) => [h("dt", { title: kinds.get(column.name)?.text ?? "" }, words(column.name), " ", symbol(kinds.get(column.name)?.symbol)), h("dd", { class: "number" }, typeof design[column.name] === "string" && kinds.get(column.name)?.section === "part" ? design[column.name] : value(column))];
   const rest = columns.filter((column) => !BESIDE.includes(column.name) && !column.name.startsWith(LIMIT) && !objectives.includes(column));
-  const groups = GROUPS.map(([title, sections]) => [title, rest.filter(({ name }) => sections.includes(kinds.get(name)?.section ?? "derived"))]).filter(([, own]) => own.length);
-  const group = ([title, own]) => h("div", {}, h("h3", {}, title), h("dl", { class: "facts" }, own.map(line)));
+  const groups = GROUPS.map(([title, sections]) => ({ title, own: rest.filter(({ name }) => sections.includes(kinds.get(name)?.section ?? "derived")) })).filter(({ own }) => own.length);
+  const group = ({ title, own }) => h("div", {}, h("h3", {}, title), h("dl", { class: "facts" }, own.map(line)));
   const limits = columns.filter((column) => column.name.startsWith(LIMIT) && design[column.name] !== "" && design[column.name] !== null).map((column) => [column.name.slice(LIMIT.length), Number(design[column.name])]).sort((a, b) => b[1] - a[1]);
   return h("section", { class: "card stack", "aria-label": `Design ${design.rank}` }, h("h2", {}, many > 1 ? `Design ${design.rank}` : "The design"),
     h("dl", { class: "figures" }, objectives.map((column) => h("div", {}, h("dt", {}, words(column.name)), h("dd", {}, value(column))))),

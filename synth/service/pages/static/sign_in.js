@@ -1,8 +1,10 @@
 // Where a browser shows its token once.
 
 import { ask, sentence } from "./api.js";
+import { byId } from "./dom.js";
 
-const form = document.getElementById("sign-in"), field = document.getElementById("token"), fault = document.getElementById("fault");
+const form = byId("sign-in"), fault = byId("fault");
+const field = /** @type {HTMLInputElement} */ (byId("token"));
 
 form.addEventListener("submit", async (event) => {
   event.preventDefault();

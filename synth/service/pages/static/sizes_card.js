@@ -52,6 +52,7 @@ const file = (job, name) => get(`/jobs/${job.id}/files/${name}${name.endsWith(".
 
 async function excessOf(job) {
   const [header, ...rows] = cellsOf(await file(job, "curve.csv"));
+  /** @type {[size: number, excess: number | null][]} */
   const points = rows.map(([sizes, excess]) => [Number(sizes), excess === "" ? null : Number(excess)]);
   const up = { name: `total excess of ${words(job.summary.objective)}`, unit: headingOf(header[1]).unit, note: "over the number of sizes: what more would save, and fewer cost" };
   const chosen = { value: job.summary.variants, ends: false, text: "chosen" };

@@ -1,13 +1,15 @@
 // The list of studies: found by words and states, watched by one stream.
 
 import { faultCard, get, listen, maySubmit, post, sentence } from "./api.js";
-import { asWords, h, when, words } from "./dom.js";
+import { asWords, byId, h, when, words } from "./dom.js";
 import { KINDS, LIVE, badge, outcomeText, share } from "./words.js";
 
+/** @type {[name: string, states: string[]][]} */
 const FILTERS = [["All", []], ["Running", LIVE], ["Done", ["done"]], ["Ended early", ["failed", "cancelled", "stopped"]]];
 const PATIENCE = 250, MOST_WATCHED = 50;
-const place = document.getElementById("studies");
+const place = byId("studies");
 const address = new URLSearchParams(location.search);
+/** @type {{text: string, filter: number, followed: boolean, next: string | null, titles: Record<string, string>, stop: (() => void) | null, asked: number}} */
 const state = { text: address.get("q") ?? "", filter: Math.max(0, FILTERS.findIndex(([name]) => name === address.get("state"))), followed: address.get("followed") === "yes", next: null, titles: {}, stop: null, asked: 0 };
 
 const rows = new Map(); // of the list, by job
@@ -46,7 +48,7 @@ function query(more) {
   if (state.filter) kept.set("state", FILTERS[state.filter][0]);
   if (state.followed) kept.set("followed", "yes");
   history.replaceState(null, "", kept.size ? `?${kept}` : location.pathname);
-  if (more) asked.set("cursor", state.next);
+  if (more && state.next) asked.set("cursor", state.next);
   return asked;
 }
 
@@ -144,7 +146,7 @@ const welcome = h("section", { class: "welcome", hidden: true });
 async function greet() {
   place.append(welcome);
   if (welcome.childElementCount) return;
-  const names = place.dataset.examples.split(",");
+  const names = (place.dataset.examples ?? "").split(",");
   const [{ examples }] = await Promise.all([get("/examples"), named]);
   const offered = names.map((name) => examples.find((example) => example.name === name)).filter(Boolean);
   welcome.replaceChildren(

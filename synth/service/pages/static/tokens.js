@@ -1,9 +1,9 @@
 // Tokens: made, shown once, and revoked.
 
 import { API, ask, faultCard, get, post, sentence } from "./api.js";
-import { day, h, say, when } from "./dom.js";
+import { byId, day, h, say, when } from "./dom.js";
 
-const place = document.getElementById("tokens");
+const place = byId("tokens");
 const SCOPES = [["read", "see the jobs of its tenant"], ["submit", "ask for jobs, cancel and delete them"], ["admin", "make tokens for all tenants"]];
 let none = false; // whether this is to be the first one
 const listed = h("div"), made = h("div", { role: "status" });
@@ -22,7 +22,7 @@ async function list() {
   const { tokens } = await get("/tokens");
   none = !tokens.length;
   const over = (token) => Boolean(token.revoked) || (token.expires !== null && token.expires < Date.now() / 1000);
-  tokens.sort((a, b) => over(a) - over(b) || b.created - a.created);
+  tokens.sort((a, b) => Number(over(a)) - Number(over(b)) || b.created - a.created);
   listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
     h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Made", "Last used", "Valid until"].map((name) => h("th", { scope: "col" }, name)), h("td", {}, h("span", { class: "unseen" }, "What can be done")))),
     h("tbody", {}, tokens.map((token) => h("tr", { class: over(token) ? "over" : "" }, h("th", { scope: "row", class: "text" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, when(token.created)), h("td", {}, token.used ? when(token.used) : "never"),
@@ -67,7 +67,7 @@ function making() {
       faults[id].textContent = "";
       field.removeAttribute("aria-invalid");
     }
-    const body = { name: name.value.trim(), scopes: boxes.map((box) => box.querySelector("input")).filter((box) => box.checked).map((box) => box.value) };
+    const body = { name: name.value.trim(), scopes: boxes.flatMap((box) => box.querySelector("input") ?? []).filter((box) => box.checked).map((box) => box.value) };
     if (tenant.value.trim()) body.tenant = tenant.value.trim();
     if (days.value.trim()) body.days = /^[\d.]+$/.test(days.value.trim()) ? Number(days.value) : days.value.trim();
     try {

@@ -12,7 +12,7 @@ export function watchView(element, job) {
   const steps = h("ol", { class: "steps", "aria-hidden": "true" });
   const facts = h("p", { class: "note number" });
   const plot = h("div");
-  let tick = setInterval(() => (element.contains(stage) ? count() : clearInterval(tick)), 500);
+  const tick = setInterval(() => (element.contains(stage) ? count() : clearInterval(tick)), 500);
 
   function count() {
     const told = shown.progress ?? {};

@@ -1,9 +1,10 @@
 // The strip below a front: sliders for requirements and limits; each release is a search of its own.
 
-import { ask, get, listen, post, sentence } from "./api.js";
+import { get, listen, post, sentence } from "./api.js";
 import { duration, h } from "./dom.js";
 import { asTyped } from "./as_typed.js";
 import { seek } from "./nothing_view.js";
+import { asked, stopped } from "./what_if_jobs.js";
 import { filling, knobsOf, patchOf, shown, valuesOf } from "./what_if_knobs.js";
 import { Slider } from "./what_if_slider.js";
 import { marksOf } from "./what_if_track.js";
@@ -17,10 +18,31 @@ const CALM = 1000; // ms that a value is looked at, before more than its front i
 const MOST = 4; // sliders
 
 /**
+ * @typedef {import("./what_if_knobs.js").Knob} Knob
+ * @typedef {import("../../../../reports/explorer/options.js").Handle} Handle
+ * @typedef {import("../../../../reports/explorer/record.js").FrontRecord} FrontRecord
+ * @typedef {object} Job
+ * @property {string} id
+ * @property {string} title
+ * @property {string} state
+ * @property {number} [started]
+ * @property {number} [ended]
+ * @property {{message: string}} [error]
+ * @property {Record<string, unknown>} [summary]
+ * @typedef {object} Page what the strip knows of the page around it
+ * @property {Job} job
+ * @property {FrontRecord} record
+ * @property {{family: string, options?: Record<string, string>, requirements?: Record<string, string | number>}} request
+ * @property {string} state
+ * @property {(text: string) => void} onState
+ * @property {(job: Job, moved: string) => void} onJob
+ */
+
+/**
  * Fill the strip.
  * @param {HTMLElement} slot
- * @param {object} handle of the explorer
- * @param {{job: object, record: object, state: string, onState: (text: string) => void, onJob: (job: object) => void}} page
+ * @param {Handle} handle of the explorer
+ * @param {Page} page
  */
 export async function whatIf(slot, handle, page) {
   const { request } = page;
@@ -28,12 +50,38 @@ export async function whatIf(slot, handle, page) {
   const [family, checked] = await Promise.all([get(`/families/${request.family}${options ? `?options=${encodeURIComponent(options)}` : ""}`), post("/check", request).catch(() => ({ read: {} }))]);
   const knobs = knobsOf(request, family.rows, checked.read, page.record);
   if (!knobs.length) return slot.setAttribute("hidden", "");
-  return new Strip(slot, handle, page, request, knobs).begin();
+  return new Strip(slot, handle, page, knobs).begin();
 }
 
-class Strip {
-  constructor(slot, handle, page, request, knobs) {
-    Object.assign(this, { slot, handle, page, request, knobs, sliders: [], number: 0, live: null, holding: false, held: null, fills: new Map() });
+export class Strip {
+  /**
+   * @param {HTMLElement} slot
+   * @param {Handle} handle
+   * @param {Page} page
+   * @param {Knob[]} knobs
+   */
+  constructor(slot, handle, page, knobs) {
+    this.slot = slot;
+    this.handle = handle;
+    this.page = page;
+    this.knobs = knobs;
+    /** @type {Slider[]} */
+    this.sliders = [];
+    this.number = 0; // of the last search
+    /** @type {{id: string, stop: () => void} | null} */
+    this.live = null; // the search that runs
+    this.holding = false;
+    /** @type {(() => void) | null} */
+    this.held = null; // what is shown when a finger is lifted
+    /** @type {Map<Knob, ReturnType<typeof marksOf> | null>} */
+    this.fills = new Map();
+    /** @type {Job | null} */
+    this.shown = null; // whose front is shown in place of the one as asked
+    /** @type {{own: number, id: string} | null} */
+    this.explaining = null;
+    this.filling = ""; // the study of a track that runs
+    /** @type {Job[] | null} */
+    this.earlier = null;
     this.took = page.job.started && page.job.ended ? page.job.ended - page.job.started : 0;
     this.slow = this.took > LONG;
     this.list = h("div", { class: "knobs" });
@@ -68,8 +116,12 @@ class Strip {
     this.buttons();
   }
 
+  /**
+   * Return the knobs that do not stand at what was asked, with their values.
+   * @returns {[Knob, number][]}
+   */
   moved() {
-    return this.sliders.filter((slider) => slider.value !== slider.knob.base).map((slider) => [slider.knob, slider.value]);
+    return this.sliders.flatMap(({ knob, value }) => (value === null || value === knob.base ? [] : [[knob, value]]));
   }
 
   buttons() {
@@ -88,6 +140,7 @@ class Strip {
 
   another() {
     const free = this.knobs.find((knob) => !this.sliders.some((slider) => slider.knob === knob));
+    if (!free) return;
     const slider = new Slider(this, free, free.base);
     this.sliders.push(slider);
     this.lay();
@@ -99,7 +152,7 @@ class Strip {
     const moved = slider.value !== slider.knob.base;
     this.sliders = this.sliders.filter((one) => one !== slider);
     this.lay();
-    this.sliders.at(-1).select.focus();
+    this.sliders.at(-1)?.select.focus();
     if (moved) this.released();
   }
 
@@ -177,7 +230,7 @@ class Strip {
       if (own !== this.number) return this.give(job.id);
       const ended = await this.follow(job, (stage) => own === this.number && this.say(`Searching anew with ${what}: ${stage.toLowerCase()} …`));
       if (own !== this.number) return undefined;
-      const record = ended.state === "done" || ended.summary?.designs ? asTyped(await get(`/jobs/${ended.id}/files/${RECORD}`), { ...this.request.requirements, ...patch.requirements }) : null;
+      const record = ended.state === "done" || ended.summary?.designs ? asTyped(await get(`/jobs/${ended.id}/files/${RECORD}`), { ...this.page.request.requirements, ...patch.requirements }) : null;
       if (own !== this.number) return undefined;
       const show = () => {
         if (own === this.number) this.show(ended, record, what);
@@ -248,7 +301,8 @@ class Strip {
       this.explaining = null;
       this.fill();
     };
-    const how = { heading: "h3", begin: true, apply, asked: (job) => { if (latest()) this.explaining.id = job.id; }, told };
+    /** @type {import("./nothing_view.js").Ways} */
+    const how = { heading: "h3", begin: true, apply, asked: (job) => { if (this.explaining && latest()) this.explaining.id = job.id; }, told };
     place.replaceChildren(h("h3", {}, "Looking for ways out"));
     const begin = () => {
       if (own !== this.number) return;
@@ -278,10 +332,12 @@ class Strip {
   /** Take up studies that were asked before. */
   async recall() {
     try {
-      this.earlier ??= (await get(`/jobs?kind=whatif&parent=${this.page.job.id}&limit=50`)).jobs;
+      /** @type {Job[]} */
+      const earlier = this.earlier ?? (await get(`/jobs?kind=whatif&parent=${this.page.job.id}&limit=50`)).jobs;
+      this.earlier ??= earlier;
       for (const slider of this.sliders) {
         if (this.fills.has(slider.knob)) continue;
-        const known = this.earlier.filter((job) => ["open", "running", "done"].includes(job.state) && job.title.startsWith(fillTitle(slider.knob)));
+        const known = earlier.filter((job) => ["open", "running", "done"].includes(job.state) && job.title.startsWith(fillTitle(slider.knob)));
         if (known.length) await this.filled(slider.knob, known[0]);
         else slider.ticks();
       }
@@ -325,32 +381,3 @@ class Strip {
 
 /** Return how the title of a study begins that fills a track: by this it is known again. */
 const fillTitle = (knob) => `What if: ${knob.label} ${shown(knob, knob.values.find((value) => value !== null))} to ${shown(knob, knob.values.findLast((value) => value !== null))}, `;
-
-/** Return a short word for a text: the same for the same text. */
-function digest(text) {
-  let [a, b] = [0xdeadbeef, 0x41c6ce57];
-  for (let k = 0; k < text.length; k += 1) {
-    a = Math.imul(a ^ text.charCodeAt(k), 2654435761);
-    b = Math.imul(b ^ text.charCodeAt(k), 1597334677);
-  }
-  return [a ^ (b >>> 15), b ^ (a >>> 13)].map((part) => (part >>> 0).toString(36)).join("");
-}
-
-/** Cancel a job, if it has not ended. */
-async function stopped(id) {
-  const job = await get(`/jobs/${id}`).catch(() => null);
-  if (job && LIVE.includes(job.state)) await ask("POST", `/jobs/${id}/cancel`).catch(() => {}); // it has ended just now
-}
-
-/** Ask for a job, or take the one that was made of the same question; one that was cancelled goes on. */
-async function asked(body) {
-  let job;
-  try {
-    job = await post("/jobs", body, { "Idempotency-Key": `what-if-${body.parent}-${digest(JSON.stringify(body))}` });
-  } catch (error) {
-    if (error.status !== 409) throw error;
-    return post("/jobs", body); // two questions with the same word: as good as never
-  }
-  if (["open", "running", "done"].includes(job.state)) return job;
-  return ask("POST", `/jobs/${job.id}/resume`).catch(() => post("/jobs", body));
-}

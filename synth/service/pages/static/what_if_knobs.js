@@ -26,7 +26,11 @@ const SIGNS = { "<=": "at most", ">=": "at least" };
  * @property {(number | null)[]} values along the track
  */
 
-/** Return a number and its unit; null where a value is no number. */
+/**
+ * Return a number and its unit; null where a value is no number.
+ * @param {unknown} value
+ * @param {string} declared unit
+ */
 export function quantity(value, declared) {
   if (typeof value === "number") return { number: value, unit: declared };
   const found = typeof value === "string" ? NUMBER.exec(value) : null;
@@ -42,12 +46,14 @@ export function quantity(value, declared) {
  * @returns {Knob[]}
  */
 export function knobsOf(request, rows, read, record) {
+  /** @type {Knob[]} */
   const found = [];
   for (const row of rows.filter((row) => row.kind === "requirement")) {
     const stated = request.requirements?.[row.name];
     const asked = quantity(stated ?? row.default, row.unit);
     if (!asked || asked.number === 0) continue;
-    const scale = asked.unit === row.unit ? 1 : OFFSET.test(asked.unit + row.unit) ? NaN : asked.number / quantity(read[row.name] ?? "", row.unit)?.number;
+    const scale = asked.unit === row.unit ? 1 : OFFSET.test(asked.unit + row.unit) ? NaN : asked.number / (quantity(read[row.name] ?? "", row.unit)?.number ?? NaN);
+    /** @type {[number, number]} */
     const bounds = Number.isFinite(scale) ? [(row.lower ?? -Infinity) * scale, (row.upper ?? Infinity) * scale] : [-Infinity, Infinity];
     const group = stated === undefined ? "Assumptions" : "Requirements";
     found.push(knob({ ...asked, bounds, group, key: row.name, vary: row.name, sign: "", label: words(row.name), text: row.text }));
@@ -76,8 +82,12 @@ export function knobsOf(request, rows, read, record) {
 const limit = (name, sign, group, row, asked) =>
   knob({ ...asked, group, key: `${name}${sign}`, vary: `${name} ${sign}`, sign, label: `${words(name)} ${SIGNS[sign]}`, text: row?.text ?? "", bounds: [-Infinity, Infinity] });
 
+/**
+ * @param {Omit<Knob, "base" | "values"> & {number: number | null, ends?: number[]}} what
+ * @returns {Knob}
+ */
 function knob({ number, unit, bounds, ends, ...rest }) {
-  const span = ends ?? SPAN.map((share) => share * number).sort((a, b) => a - b);
+  const span = ends ?? SPAN.map((share) => share * (number ?? NaN)).sort((a, b) => a - b);
   const [low, high] = [Math.max(span[0], bounds[0]), Math.min(span[1], bounds[1])];
   const track = trackOf(low, high, number);
   const values = number !== null ? track : rest.sign === ">=" ? [null, ...track] : [...track, null];
@@ -92,7 +102,7 @@ function knob({ number, unit, bounds, ends, ...rest }) {
  */
 function trackOf(low, high, base) {
   const rough = (high - low) / STEPS, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5, 10].map((k) => k * power).find((k) => k >= rough * 0.999);
+  const step = [1, 2, 2.5, 5, 10].map((k) => k * power).find((k) => k >= rough * 0.999) ?? NaN;
   const values = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high * (1 + 1e-12); k += 1) values.push(Number((k * step).toPrecision(12)));
   if (base !== null && !values.includes(base)) values.push(base);
@@ -125,6 +135,7 @@ export function patchOf(moved) {
  * @returns {[Knob, number][] | null}
  */
 export function valuesOf(patch, knobs) {
+  /** @type {[Knob, number][]} */
   const found = [];
   for (const [section, entries] of Object.entries(patch)) {
     for (const [name, told] of Object.entries(entries)) {

@@ -8,8 +8,15 @@ const PATIENCE = 400; // ms after a key, before a search starts
 
 /** A slider with a field beside it; the strip that it stands in is told what is let go. */
 export class Slider {
+  /**
+   * @param {import("./what_if.js").Strip} strip
+   * @param {import("./what_if_knobs.js").Knob} knob
+   * @param {number | null} value
+   */
   constructor(strip, knob, value) {
-    Object.assign(this, { strip, knob, value });
+    this.strip = strip;
+    this.knob = knob;
+    this.value = value;
     this.word = h("span", {});
     this.select = h("select", { "aria-label": "What is varied", onchange: () => this.turn() });
     this.range = h("input", { type: "range", min: 0, step: 1, oninput: () => this.dragged(), onchange: () => this.let() });
@@ -19,7 +26,7 @@ export class Slider {
       strip.held?.();
       strip.held = null;
     }), { passive: true });
-    this.field = h("input", { inputmode: "decimal", autocomplete: "off", spellcheck: "false", onchange: () => this.typed(), onkeydown: (event) => event.key === "Escape" && this.set(this.value) });
+    this.field = h("input", { inputmode: "decimal", autocomplete: "off", spellcheck: "false", onchange: () => this.typed(), onkeydown: (/** @type {KeyboardEvent} */ event) => event.key === "Escape" && this.set(this.value) });
     this.unit = h("span", {});
     this.drawing = s("svg", { class: "ticks", height: 26, "aria-hidden": "true" });
     this.list = h("div", { class: "unseen" });
@@ -46,7 +53,7 @@ export class Slider {
 
   turn() {
     const moved = this.value !== this.knob.base;
-    this.knob = this.strip.knobs.find((knob) => knob.key === this.select.value);
+    this.knob = this.strip.knobs.find((knob) => knob.key === this.select.value) ?? this.knob;
     this.value = this.knob.base;
     this.draw();
     this.strip.lay();
@@ -73,9 +80,9 @@ export class Slider {
     clearTimeout(this.waiting);
     this.value = value;
     const { values } = this.knob;
-    let k = values.indexOf(value);
-    if (k < 0) k = values.reduce((best, one, i) => (one !== null && Math.abs(one - value) < Math.abs((values[best] ?? Infinity) - value) ? i : best), values[0] === null ? 1 : 0);
-    this.range.value = String(k);
+    const far = (k) => Math.abs((values[k] ?? Infinity) - (value ?? 0));
+    const k = values.indexOf(value);
+    this.range.value = String(k >= 0 ? k : [...values.keys()].reduce((best, i) => (far(i) < far(best) ? i : best), values[0] === null ? 1 : 0));
     this.tell(value);
   }
 
@@ -111,8 +118,8 @@ export class Slider {
     const [low, high] = this.knob.bounds;
     const empty = this.field.value.trim() === "";
     const value = empty ? this.knob.base : told?.number;
-    const right = empty || (told && Number.isFinite(value) && told.unit === this.knob.unit && value >= low && value <= high);
-    if (!right) {
+    const right = told && Number.isFinite(told.number) && told.unit === this.knob.unit && told.number >= low && told.number <= high;
+    if (value === undefined || !(empty || right)) {
       this.field.setAttribute("aria-invalid", "true");
       const range = Number.isFinite(low) ? ` from ${shown(this.knob, low)} to ${shown(this.knob, high)}` : "";
       return this.strip.say(h("span", { class: "fault" }, `${this.knob.label}: a number in ${unitText(this.knob.unit) || "this unit"}${range}, please.`));

@@ -8,6 +8,7 @@ const APART = 10; // pixels between two labels
 /**
  * @typedef {object} Mark
  * @property {number} value
+ * @property {string} objective that has another best design there; empty where it ends
  * @property {boolean} ends whether nothing fits on one of its sides
  * @property {string} label
  * @property {string} text
@@ -21,7 +22,11 @@ const APART = 10; // pixels between two labels
 export function marksOf(study) {
   const { unit } = study.varied[0];
   const told = (value) => `${figure(value)} ${unitText(unit)}`.trim();
-  const marks = [], barren = [], seen = new Set();
+  const seen = new Set();
+  /** @type {Mark[]} */
+  const marks = [];
+  /** @type {[number, number][]} */
+  const barren = [];
   for (const found of study.breaks) {
     const ends = found.kind === "feasible";
     const here = told(found.value);
@@ -32,17 +37,18 @@ export function marksOf(study) {
     const text = ends ? `It ${label}: ${found.before ? "beyond" : "below"} nothing meets all limits` : `From ${here} on the ${study.objectives[found.objective] === "max" ? "largest" : "smallest"} ${words(found.objective)} has ${what}`;
     marks.push({ value: found.value, objective: ends ? "" : found.objective, ends, label, text: found.proven ? text : `${text} (not proven)` });
   }
+  /** @type {[value: number, fits: boolean][]} */
   const steps = study.steps.map((step) => [step.values[0], Boolean(step.front?.designs.length)]);
   steps.sort((a, b) => a[0] - b[0]);
   const edge = (a, b) => marks.find((mark) => mark.ends && mark.value >= a && mark.value <= b)?.value ?? (a + b) / 2;
-  let from = steps[0]?.[1] ? null : -Infinity;
+  let from = -Infinity; // where nothing fits
   for (let k = 1; k < steps.length; k += 1) {
     if (steps[k - 1][1] === steps[k][1]) continue;
     const at = edge(steps[k - 1][0], steps[k][0]);
     if (steps[k][1]) barren.push([from, at]);
     else from = at;
   }
-  if (steps.length && !steps.at(-1)[1]) barren.push([from, Infinity]);
+  if (steps.length && !steps.at(-1)?.[1]) barren.push([from, Infinity]);
   if (!steps.some(([, fits]) => fits)) return { marks, barren: steps.length ? [[-Infinity, Infinity]] : [] };
   return { marks: marks.sort((a, b) => a.value - b.value), barren };
 }
@@ -62,13 +68,14 @@ export function drawTrack(drawing, values, { marks, barren }) {
     return (at + first) / Math.max(1, values.length - 1);
   };
   const wide = drawing.clientWidth || 300;
-  const inside = (value) => value >= known[0] && value <= known.at(-1);
+  const end = known.at(-1) ?? Infinity;
+  const inside = (value) => value >= known[0] && value <= end;
   const bars = barren.map(([from, to]) => {
-    const [a, b] = [share(Math.max(from, known[0])), share(Math.min(to, known.at(-1)))];
+    const [a, b] = [share(Math.max(from, known[0])), share(Math.min(to, end))];
     return b > a ? s("rect", { class: "barren", x: `${100 * a}%`, width: `${100 * (b - a)}%`, y: 0, height: 4, rx: 2 }) : null;
   });
   const taken = [];
-  const order = [...marks].filter((mark) => inside(mark.value)).sort((a, b) => b.ends - a.ends);
+  const order = [...marks].filter((mark) => inside(mark.value)).sort((a, b) => Number(b.ends) - Number(a.ends));
   const nodes = order.map((mark) => {
     const x = share(mark.value), width = LETTER * mark.label.length;
     const left = Math.min(Math.max(0, x * wide - width / 2), wide - width);
@@ -77,7 +84,7 @@ export function drawTrack(drawing, values, { marks, barren }) {
     return s("g", { class: mark.ends ? "ends" : "" }, s("title", {}, mark.text), s("line", { x1: `${100 * x}%`, x2: `${100 * x}%`, y1: 0, y2: 9 }),
       free ? s("text", { x: left + width / 2, y: 22, "text-anchor": "middle" }, mark.label) : null);
   });
-  drawing.replaceChildren(...bars.filter(Boolean), ...nodes);
+  drawing.replaceChildren(...bars.filter((bar) => bar !== null), ...nodes);
 }
 
 /** Return the same for whoever does not see it. */
