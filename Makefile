@@ -58,7 +58,7 @@ javascript:
 
 $(NODE_MODULES): package.json package-lock.json
 	@mkdir -p $(dir $(NPM_TOLD))
-	@npm ci --no-audit --no-fund --fetch-retries=1 --fetch-retry-mintimeout=1000 > $(NPM_TOLD) 2>&1
+	@npm ci --no-audit --no-fund --fetch-retries=1 --fetch-retry-mintimeout=1000 --fetch-timeout=30000 > $(NPM_TOLD) 2>&1
 	@touch $@
 
 # Headers of what Python and the C kernels must agree on; a test compares them.
