@@ -57,7 +57,7 @@ class About:
 
     @staticmethod
     def of(told: Any, folder: Path | None = None) -> About:
-        """Return what a mapping tells; nothing for None.
+        """About block from a mapping; empty for None.
 
         Parameters
         ----------

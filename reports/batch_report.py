@@ -65,12 +65,12 @@ def batch_report(batch: BatchRecord, about: About) -> Document:
 
 
 def batch_state(batch: BatchRecord) -> State:
-    """Return what must be known of a batch first."""
+    """Notes that belong at the head of a batch."""
     return _state(batch)
 
 
 def row_name(batch: BatchRecord, row: BatchRow) -> str:
-    """Return what a row is called in the table, as far as columns are carried along; its line otherwise."""
+    """Name of a row in the table, as far as columns are carried along; its line otherwise."""
     named = " · ".join(cell for k in batch.carried[:NAMES] if (cell := row.cells[k].strip()))
     return _short(named, LONGEST_NAME) or f"line {row.line}"
 
@@ -147,7 +147,7 @@ def _counted(batch: BatchRecord) -> list[Block]:
 
 
 def _causes(batch: BatchRecord) -> list[Block]:
-    """Return what stands in the way of rows, counted."""
+    """Reasons why rows have no design, counted."""
     found = Counter((row.status, cause) for row in batch.rows if row.status in FAILURES for cause in row.causes)
     if not found:
         return []

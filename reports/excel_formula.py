@@ -139,7 +139,7 @@ def from_si_text(cell: str, unit: str) -> str:
 
 
 def _factor(unit: str, turned: bool = False) -> tuple[str, str]:
-    """Return what follows the cell, and what is added: the exact factor of a unit as people write it."""
+    """Text behind the cell, and the added factor: the exact factor of a unit as people write it."""
     if unit in ("", "-"):
         return "", ""
     read = parse_unit(unit)
@@ -268,7 +268,7 @@ class _Writer:
         return text
 
     def _negated(self, tree: Expression) -> str:
-        """Return what stands behind a minus: a sign goes before a power there, so a power stands in brackets."""
+        """Operand behind a minus: a sign goes before a power there, so a power stands in brackets."""
         plain = tree[0] in ("q", "f", "if") or (tree[0] == "n" and tree[1] >= 0)
         text = self.number(tree, BASE)
         return text if plain or text.startswith("(") else f"({text})"
@@ -314,7 +314,7 @@ class _Writer:
         return f"IF({u}=1,{x},IF(OR({u}<0.5,{u}>2),{u}-1,({u}-1)*{x}/LN({u})))"
 
     def _cell(self, tree: Expression) -> str:
-        """Return what can be named several times."""
+        """Reference that can occur several times."""
         if tree[0] == "q" or self.helper is None:
             return self.number(tree, BASE)
         return self.helper(tree)

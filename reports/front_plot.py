@@ -125,7 +125,7 @@ class Drawn:
         return {name: k for k, name in enumerate(dict.fromkeys(self.families))}
 
     def label(self, design: Design) -> str:
-        """Return what stands beside a point: its rank, where all of them have room, or it is one to look at."""
+        """Label of a point: its rank, where all of them have room, or it is one to look at."""
         return f"#{design.rank}" if len(self.designs) <= LABELLED or design.note or design.rank == 1 else ""
 
     def staircase(self, pair: tuple[str, str]) -> list[tuple[float, float]]:
@@ -344,7 +344,7 @@ def _shape(x: float, y: float, shape: str, fill: str, stroke: str, kind: str = "
 
 
 def front_in_words(front: ParetoFront) -> str:
-    """Return what the drawing shows, for people who do not see it."""
+    """Description of the drawing, for people who do not see it."""
     told = []
     for name, sense in front.frame.objectives.items():
         unit = front.frame.units[name]

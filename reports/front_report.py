@@ -267,7 +267,7 @@ class _Report:
         return [f"{self._meaning(name)}: {word}" for name, word in design.choices.items()]
 
     def _parts(self, design: Design) -> list[Cell]:
-        """Return what fills the slots, with table, source and confidence."""
+        """Rows that fill the slots, with table, source and confidence."""
         told: list[Cell] = []
         for slot, row in design.parts.items():
             confidence = f"confidence: {row['confidence']}" if row.get("confidence") else ""

@@ -64,7 +64,7 @@ def _is_best(front: ParetoFront, design: Design, name: str, sense: str) -> bool:
 
 
 def _between(front: ParetoFront, design: Design) -> str:
-    """Return what a design of a front of two objectives gains over each of its two neighbours."""
+    """Gain of a design of a front of two objectives over each of its two neighbours."""
     first, second = front.frame.objectives
     line = sorted(front.designs, key=lambda d: d.objectives[first])
     place = next(k for k, d in enumerate(line) if d is design)

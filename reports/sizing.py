@@ -40,7 +40,7 @@ class _Leaves:
 
 
 def sizing_line(calculation: Calculation, design: Design) -> str:
-    """Return what a design is sized for: numbers, result and names; nothing where its family does not tell.
+    """Duty of a design: numbers, result and names; empty where its family does not state it.
 
     Parameters
     ----------

@@ -154,7 +154,7 @@ def _parts(shown: Sequence[Design]) -> dict[str, list[str]]:
 
 
 def shared_parts(shown: Sequence[Design]) -> dict[str, str]:
-    """Return what all of several designs have in common, by name of the choice or slot."""
+    """Parts and counts that several designs share, by name of the choice or slot."""
     return {n: cells[0] for n, cells in _parts(shown).items() if len(shown) > 1 and len(set(cells)) == 1}
 
 
@@ -232,7 +232,7 @@ def _number(things: Sized, one: str, more: str) -> str:
 
 
 def _shared_headline(designs: Sequence[Design]) -> list[str]:
-    """Return what some family decides by and all of them have, measured alike."""
+    """Objectives of some family that all of them have, measured alike."""
     units = [d.frame.units for d in designs]
     shown = dict.fromkeys(name for d in designs for name in d.frame.headline)
     return [n for n in shown if all(n in own for own in units) and len({own[n] for own in units}) == 1]

@@ -88,11 +88,11 @@ class RowsOffered:
         self.keys = tuple(_told_apart(str(row["designation"]) for row in self.rows))
 
     def values(self, q: NamedQuantity) -> list[float]:
-        """Return what the rows say of a quantity, in SI; not-a-number where one says nothing."""
+        """Value of a quantity from the rows, in SI; not-a-number where none has one."""
         return [part_value(row, q.columns) for row in self.rows]
 
     def sought(self, cell: str) -> str:
-        """Return what is looked for in the list of keys; letters that would stand for others are told to be meant."""
+        """Pattern for the list of keys; letters that would stand for others are escaped."""
         text = cell
         for letter in WILD:
             if any(letter in key for key in self.keys):
@@ -174,7 +174,7 @@ class Formulas:
         self._raw_names = self._computed_again(calculation)
 
     def value(self, expression: Expression) -> float:
-        """Return what a tree comes to, whatever guards say."""
+        """Value of a tree, whatever guards say."""
         return value_of(expression, self._raw)
 
     def text(self, expression: Expression) -> str:

@@ -231,7 +231,7 @@ def where_raised(error: BaseException) -> list[str]:
 
 
 def shortened(text: str, most: int = INPUT_LIMITS.message) -> str:
-    """Return what a message repeats of a text: beginning and end of the whole, and of every word, that is too long.
+    """Excerpt of a text for a message: beginning and end of the whole, and of every word, that is too long.
 
     Examples
     --------

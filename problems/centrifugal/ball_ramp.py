@@ -164,7 +164,7 @@ class CentrifugalBallRamp(DesignProblem):
         blocks.declare_objectives(d, scope=scope)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
-        """Return what friction at the balls costs and what torque asks for; of a design forces and travel over speed.
+        """Friction at the balls and the force that the torque demands; of a design forces and travel over speed.
 
         Parameters
         ----------

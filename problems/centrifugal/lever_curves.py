@@ -143,7 +143,7 @@ def worn(lever: RodLever | ReversedLever, spec: Mapping[str, Any]) -> RodLever |
 
 
 def columns_of(motion: Motion, design: Any, own: Sequence[tuple[str, str, float]]) -> dict[str, Any]:
-    """Return what is shown of a motion, by heading.
+    """Columns of a motion, by heading.
 
     Parameters
     ----------

@@ -184,7 +184,7 @@ class CentrifugalTwoSpring(DesignProblem):
         blocks.declare_objectives(d, scope=scope)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
-        """Return what the torque asks for; of a design forces and travel over speed, both branches.
+        """Curves that the torque demands; of a design forces and travel over speed, both branches.
 
         Parameters
         ----------

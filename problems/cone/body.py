@@ -208,7 +208,7 @@ def wear_depth(wants: ConeBodyRequirements, pair: Pair) -> Any:
 
 
 def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair: Pair, pack_size: Size) -> ConeBody:
-    """Return what is around the cones: a web and a boss for each, and the spring.
+    """Parts around the cones: a web and a boss for each, and the spring.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class _Face:
         return x0 - apart * math.sin(self.angle), y0 + apart * math.cos(self.angle)
 
     def layer(self, low: float, high: float) -> tuple[Vertex, ...]:
-        """Return what lies between two such surfaces, cut off square at both ends."""
+        """Area between two such surfaces, cut off square at both ends."""
         return self.at(0.0, low), self.at(self.wide, low), self.at(self.wide, high), self.at(0.0, high)
 
 

@@ -131,7 +131,7 @@ def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> 
 
 
 def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: DiscPack, pack_size: Size) -> DiscBody:
-    """Return what is around the discs: hub, cover and diaphragm spring; the flywheel stays outside.
+    """Parts around the discs: hub, cover and diaphragm spring; the flywheel stays outside.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: 
 
 
 def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, pack_size: Size) -> DiscBody:
-    """Return what is around discs that an armature presses: hub and cover, no diaphragm spring.
+    """Parts around discs that an armature presses: hub and cover, no diaphragm spring.
 
     Parameters
     ----------

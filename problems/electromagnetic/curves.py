@@ -41,12 +41,12 @@ class Built:
         return coil_curves.flux_densities(ampere_turns, self.circuit.ampere_turns, highest)
 
     def force(self, flux_density: Any) -> Any:
-        """Return what is left for the pack [N]."""
+        """Force left for the pack [N]."""
         return np.maximum(pot_magnet.magnet_force(flux_density, self.shape) - self.return_force, 0.0)
 
 
 def built(spec: Mapping[str, Any], design: Any) -> Built:
-    """Return what the formulas need of the magnet of a design."""
+    """Sizes of the magnet of a design as the formulas take them."""
     value = design.values
     shape = pot_magnet.PotMagnet(
         bore=spec["magnet_bore_radius"],
@@ -61,7 +61,7 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
 
 
 def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
-    """Return what is drawn of the coil of a design; torque is in proportion to the force on the pack.
+    """Curves of the coil of a design; torque is in proportion to the force on the pack.
 
     Parameters
     ----------

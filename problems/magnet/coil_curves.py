@@ -42,7 +42,7 @@ class Warmth:
         return self._cold(current) * magnetics.resistance_ratio(temperature)
 
     def other_loss(self, current: Any) -> Any:
-        """Return what heats the body beside its copper [W]."""
+        """Heat of the body beside that of its copper [W]."""
         return self.other_heat + self.share * self.brush_drop * current
 
     def _cold(self, current: Any) -> Any:
@@ -71,7 +71,7 @@ class Warmth:
 
 
 def warmth(spec: Mapping[str, Any], design: Any, limited_by: str) -> Warmth:
-    """Return what heats and cools the body of a design; ``limited_by`` says whose limit it is."""
+    """Heating and cooling of the body of a design; ``limited_by`` says whose limit it is."""
     step = design.steps
     return Warmth(
         conductance=step["coil_conductance"],

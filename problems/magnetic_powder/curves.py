@@ -50,7 +50,7 @@ class Built:
 
 
 def built(spec: Mapping[str, Any], design: Any) -> Built:
-    """Return what the formulas need of a design."""
+    """Sizes of a design as the formulas take them."""
     value, row = design.values, design.parts["powder"]
     still = design.choices["coil"] == "stationary"
     layout = powder.Layout(
@@ -106,7 +106,7 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
 
 
 def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
-    """Return what is drawn of the coil of a design.
+    """Curves of the coil of a design.
 
     Parameters
     ----------

@@ -137,7 +137,7 @@ def powder_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> D
 
 
 def _parts(size: Sizes, at: _Places, *, still: bool) -> tuple[list[Drawable], list[Item], list[Balloon]]:
-    """Return what the formulas size: rotor, powder, drum of a stationary coil, body and coil."""
+    """Sized parts: rotor, powder, drum of a stationary coil, body and coil."""
     x0, x1 = at.rotor
     rotor = Area(
         (

@@ -247,7 +247,7 @@ class StartupRun:
         return frame
 
     def quantities(self) -> dict[str, float]:
-        """Return what the closed forms give too, by public name; not-a-number where there was no lock-up."""
+        """Results that the closed forms give too, by public name; not-a-number where there was no lock-up."""
         locked = not math.isnan(self.slip_time)
         return {
             "slip_time": self.slip_time,

@@ -127,7 +127,7 @@ def complete_body(
     force: Any,
     pack_size: PackSize,
 ) -> Body:
-    """Return what is around a pack.
+    """Parts around a pack.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def body_at_magnet(
     pack: Pack,
     pack_size: PackSize,
 ) -> Body:
-    """Return what is around a pack that an armature presses: it is one of the end plates, and there is no piston.
+    """Parts around a pack that an armature presses: it is one of the end plates, and there is no piston.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ class DrawnPack:
 
 
 def pack_names(size: Sizes) -> PackNames:
-    """Return what sizes of the plates are called: of parts chosen one by one, or of a list."""
+    """Names of the sizes of the plates: of parts chosen one by one, or of a list."""
     if "plate_set" in size.design.parts:
         return PackNames(
             "plate_set.inner_core_thickness", "plate_set.outer_core_thickness", "plate_set.lining_thickness"
@@ -291,7 +291,7 @@ def _complete(size: Sizes, *, piston: bool) -> Drawing:
 
 
 def omitted_aid(size: Sizes) -> tuple[str, ...]:
-    """Return what is not drawn of a release aid."""
+    """Parts of a release aid that are not drawn."""
     aid = size.design.frame.options.get("release_aid", "none")
     return () if aid == "none" else (f"release aid ({aid.replace('_', ' ')})",)
 

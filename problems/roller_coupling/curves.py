@@ -52,7 +52,7 @@ def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
 
 
 def torque_force(spec: Mapping[str, Any], least: float, largest: float) -> pd.DataFrame:
-    """Return what the torque alone puts on a pin over the arm radius; float and rollers add to it."""
+    """Force on a pin by the torque alone, over the arm radius; float and rollers add to it."""
     import pandas as pd
 
     radius = np.geomspace(least, largest, 241)

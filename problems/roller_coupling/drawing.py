@@ -206,7 +206,7 @@ def _front(shape: _Shape) -> View:
 
 
 def _behind(shape: _Shape) -> list[Drawable]:
-    """Return what the guides let see of arm 2 and its boss, unless a counter float stands before them."""
+    """Visible part of arm 2 and its boss, unless a counter float stands before them."""
     if shape.counter:
         return []
     (x, y), long, bar = shape.along_2, shape.size("arm_length") / 2, shape.size("arm_width") / 2

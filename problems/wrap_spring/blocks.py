@@ -543,7 +543,7 @@ def fitted_moment(wire: Wire, coils: Coils, interference: Any, free_radius: Any)
 
 
 def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -> Any:
-    """Return what the spinning wire carries of its bending moment itself [N m]; 0 in the model of the source."""
+    """Share of its bending moment that the spinning wire carries itself [N m]; 0 in the model of the source."""
     if options.model == "seed":
         return 0.0
     return formulas.centrifugal_moment(wire.density, wire.width, wire.thickness, coils.mean_radius, duty.spring_speed)

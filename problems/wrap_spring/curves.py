@@ -221,7 +221,7 @@ def coil_ladder(clutch: Fitted) -> np.ndarray:
 
 
 def over_belt_exponent(spec: Mapping[str, Any], drag_limit: float | None) -> pd.DataFrame:
-    """Return what the requirement alone allows: least drag and the slip torque that comes with it.
+    """Limits by the requirement alone: least drag and the slip torque that comes with it.
 
     Parameters
     ----------
@@ -561,7 +561,7 @@ def _actuated_along(
 
 
 def actuator_over_belt_exponent(spec: Mapping[str, Any]) -> pd.DataFrame:
-    """Return what the requirement alone allows: the energising torque without what closes the gap.
+    """Limits by the requirement alone: the energising torque without what closes the gap.
 
     Parameters
     ----------

@@ -169,7 +169,7 @@ class _Dxf:
             self.model.add_arc(centre, radius, shape.start, shape.end, dxfattribs=layer)
 
     def _window(self, shape: Drawable, placed: PlacedView) -> _Window | None:
-        """Return what cuts a shape of a detail; None where all of it is seen."""
+        """Clipping region of a shape in a detail; None where all of it is seen."""
         if placed.detail is None:
             return None
         x0, y0, x1, y1 = placed.window

@@ -239,7 +239,7 @@ def _towards(a: XY, b: XY) -> XY:
 
 
 def _pen(kind: LineKind, wide: float | None = None) -> str:
-    """Return what differs from a narrow continuous line."""
+    """Attributes that differ from those of a narrow continuous line."""
     dash = f' stroke-dasharray="{DASHES[kind]}"' if kind in DASHES else ""
     thick = wide or (WIDE if kind is LineKind.OUTLINE else NARROW)
     return (f' stroke-width="{thick:g}"' if thick != NARROW else "") + dash

@@ -28,7 +28,7 @@ def comparison_record(
     links: Mapping[str, str] | None = None,
     drawings: Mapping[int, Drawing] | None = None,
 ) -> dict[str, Any]:
-    """Return what the explorer shows of a comparison, as JSON knows it.
+    """Explorer record of a comparison, as JSON holds it.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class _Compared:
             self._gather(family)
 
     def _titles(self) -> dict[str, str]:
-        """Return what families are called: by their titles, and by more where two have the same."""
+        """Titles of the families, longer where two have the same."""
         told = {str(x["family"]): str(x["title"]) for x in self.content["families"]}
         often = list(told.values())
         return {name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in told.items()}
@@ -113,11 +113,11 @@ class _Compared:
     # -- what was asked ------------------------------------------------------------------------
 
     def asked(self) -> list[dict[str, Any]]:
-        """Return what was asked of all, and of single families."""
+        """Question to all, and to single families."""
         return self._merged({f: [*r.asked(stated=True), *r.restrictions()] for f, r in self.records.items()})
 
     def assumed(self) -> list[dict[str, Any]]:
-        """Return what stands at its default."""
+        """Values at their defaults."""
         return self._merged({family: record.asked(stated=False) for family, record in self.records.items()})
 
     def _merged(self, rows: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[dict[str, Any]]:
@@ -183,7 +183,7 @@ class _Compared:
         return {"message": message, "conflicts": [], "nearest": []}
 
     def families(self) -> list[dict[str, Any]]:
-        """Return what became of each family."""
+        """Outcome of each family."""
         return [
             {
                 "name": str(x["family"]),

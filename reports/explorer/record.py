@@ -37,7 +37,7 @@ def explorer_record(
     files: Mapping[int, Mapping[str, str]] | None = None,
     drawings: Mapping[int, Drawing] | None = None,
 ) -> dict[str, Any]:
-    """Return what the explorer shows of a front, as JSON knows it.
+    """Explorer record of a front, as JSON holds it.
 
     Parameters
     ----------
@@ -87,14 +87,14 @@ class RecordOf:
         self.rules = {x.name: x for x in calculation.limits}
 
     def quantity(self, name: str) -> dict[str, Any]:
-        """Return what is told of a quantity beside its values."""
+        """Entry of a quantity beside its values."""
         q = self.calculation.quantities.get(name)
         unit = self.frame.units[name]
         told = {"name": name, "label": label(name), "unit": told_unit(unit), "kind": self.frame.kinds.get(name, "")}
         return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
 
     def limit(self, name: str) -> dict[str, Any]:
-        """Return what is told of a limit beside its sides."""
+        """Entry of a limit beside its sides."""
         rule = self.rules.get(name)
         return {
             "name": name,
@@ -128,7 +128,7 @@ class RecordOf:
         return rows + options
 
     def restrictions(self) -> list[dict[str, Any]]:
-        """Return what was asked beside requirements: own limits, fixed sizes, parts held to, what scatters."""
+        """Question beside its requirements: own limits, fixed sizes, parts held to, scatter."""
         rows = []
         for key, words in (("limits", ""), ("fix", "fixed at "), ("parts", "only "), ("robust", "scatters ")):
             told = self.front.settings.get(key)
@@ -138,7 +138,7 @@ class RecordOf:
         return rows
 
     def spec(self) -> dict[str, Any]:
-        """Return what all DESIGN.yaml of the front have in common."""
+        """Common part of all DESIGN.yaml of the front."""
         if not self.front.designs:
             return {}
         told = self.front.designs[0].to_spec()
@@ -185,7 +185,7 @@ class RecordOf:
         ]
 
     def _not_part(self) -> list[str]:
-        """Return what the certificate does not speak of."""
+        """Parts of the question that the certificate does not cover."""
         told = [NOT_COVERED]
         marked = sorted({f"{row} ({row['table']})" for row in self._rows() if row.get("confidence") != "verified"})
         if marked:

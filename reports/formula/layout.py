@@ -348,7 +348,7 @@ class Typesetter:
         return Row((sides[0], Word(kind) if joins else Sign(COMPARED[kind]), sides[1]))
 
     def _word(self, quantity: Expression, number: Expression) -> str | None:
-        """Return what a number means for a quantity that stands for words."""
+        """Meaning of a number for a quantity that stands for words."""
         if quantity[0] != "q" or number[0] != "n":
             return None
         return self.quantities[quantity[1]].word(number[1])
@@ -384,7 +384,7 @@ def _raised(base: Layout, power: int) -> Layout:
 
 
 def by_symbol(q: NamedQuantity) -> Layout:
-    """Return what stands for a quantity in a formula: its symbol."""
+    """Symbol of a quantity in a formula."""
     return Letter(q.symbol)
 
 

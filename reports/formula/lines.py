@@ -94,7 +94,7 @@ def _inside(line: Layout, widest: float) -> list[Layout]:
 
 
 def _pieces(row: Row, signs: tuple[str, ...], places: tuple[int, int] = (1, 1_000)) -> list[list[Layout]]:
-    """Return what stands before and behind signs; of those between two places."""
+    """Pieces of a row before and behind some signs, of those between two places."""
     pieces: list[list[Layout]] = [[]]
     for position, item in enumerate(row.items):
         if places[0] <= position < places[1] and isinstance(item, Sign) and item.text in signs:

@@ -35,7 +35,7 @@ UNSEEN = re.compile("[\x00-\x08\x0b-\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u
 
 
 def written_out(character: str) -> str:
-    """Return what stands in place of a character that cannot be shown.
+    """Replacement of a character that cannot be shown.
 
     Examples
     --------

@@ -79,7 +79,7 @@ def design_sheet(request: SheetRequest) -> Document:
 
 
 def program_name(front: ParetoFront | None) -> str:
-    """Return what computed a front, with its version."""
+    """Program that computed a front, with its version."""
     versions = installed_versions() if front is None or front.record is None else front.record.get("versions", {})
     return f"clutchsynth {versions.get('clutchsynth', '')}".strip()
 
@@ -356,7 +356,7 @@ def _grouped(quantities: Iterable[NamedQuantity]) -> list[tuple[str, list[NamedQ
 
 
 def state_of(design: Design, front: ParetoFront | None) -> State:
-    """Return what must be known of a design first."""
+    """Notes that belong at the head of a design."""
     details: list[str] = []
     if design.robust:
         details.append(over_range_in_words(design))

@@ -102,7 +102,7 @@ def _inert(data: str) -> str:
 
 
 def _policy(script: str) -> str:
-    """Return what the file may do: draw itself, and run the script that is meant."""
+    """Policy of the file: it may draw itself, and run its own script."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     scripts = f" script-src 'sha256-{digest}';" if script else ""
     return f"default-src 'none'; style-src 'unsafe-inline'; img-src data:;{scripts} base-uri 'none'; form-action 'none'"
@@ -122,7 +122,7 @@ def inline_html(part: Inline) -> str:
 
 
 def cell_html(cell: Cell) -> str:
-    """Return what stands in a cell or a paragraph."""
+    """Markup of a cell or a paragraph."""
     return "".join(map(inline_html, cell)) if isinstance(cell, tuple) else inline_html(cell)
 
 

@@ -144,7 +144,7 @@ def _property(text: str) -> str:
 
 
 def _alternative(text: str) -> str:
-    """Return what is said in place of a formula or a drawing."""
+    """Text in place of a formula or a drawing."""
     return one_text(_shortened(text, LONGEST_SAID))
 
 

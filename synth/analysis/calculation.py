@@ -529,7 +529,7 @@ class _Reader:
         return ["neg", ["q", self.turned[node]]] if node in self.turned else None
 
     def own(self, node: int) -> Expression:
-        """Return what a node is computed from; an input is computed from nothing."""
+        """Expression of a node in its operands; an input stands for itself."""
         if node not in self._known:
             # Each before its readers, so that depth is no matter.
             stack = [node]

@@ -25,7 +25,7 @@ from synth.units import typed_quantity
 
 
 def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
-    """Return what all designs of one question share."""
+    """Data that all designs of one question share."""
     model, d = instance.model, instance.model.declaration
     return Frame(
         family=instance.problem.name,
@@ -162,7 +162,7 @@ def _which(masks: Sequence[tuple[str, np.ndarray]], count: int) -> list[tuple[st
 
 
 def offered(instance: Instance) -> SearchStatistics:
-    """Return what a question leaves to choose from, for the statistics of a front."""
+    """Choices left by a question, for the statistics of a front."""
     selection = instance.selection
     return SearchStatistics(
         combinations=instance.combinations.count,

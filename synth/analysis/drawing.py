@@ -102,7 +102,7 @@ def quantity_of(design: Design, name: str) -> float | None:
 
 
 def shown_measure(dimension: Measured, design: Design) -> float | None:
-    """Return what a dimension must measure by its quantity: mm, angles rad; None where there is no such quantity."""
+    """Value that a dimension must measure by its quantity: mm, angles rad; None where there is no such quantity."""
     value = quantity_of(design, dimension.quantity)
     if value is None:
         return None
@@ -144,7 +144,7 @@ def _faults_of_shapes(shapes: Any) -> list[str]:
 
 
 def weighed(drawing: Drawing, design: Design) -> list[tuple[str, float, float]]:
-    """Return what the drawn areas weigh and what the design says, by the names of the masses [kg]."""
+    """Masses of the drawn areas, and those of the design, by the names of the masses [kg]."""
     rows = []
     for weight in drawing.weights:
         density = quantity_of(design, weight.density) or math.nan

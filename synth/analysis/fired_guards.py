@@ -55,7 +55,7 @@ class Wanted:
 
 
 def wanted(when: Any) -> list[Wanted] | None:
-    """Return what must all be so, that a condition does not refuse; None where it is not of that form.
+    """Conditions that must all hold for a guard not to refuse; None where it is not of that form.
 
     Examples
     --------

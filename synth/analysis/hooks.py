@@ -175,7 +175,7 @@ def _read_setting(field: str, setting: Setting, value: Any, catalogs: Catalogs) 
 
 
 def requirements_of(design: Design) -> dict[str, float | None]:
-    """Return what hooks are told of the requirements: SI by name, None where an optional one is not given."""
+    """Requirements as hooks get them: SI by name, None where an optional one is not given."""
     return {**design.frame.requirement_values, **dict.fromkeys(design.frame.not_asked)}
 
 

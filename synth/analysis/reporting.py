@@ -164,7 +164,7 @@ def explore(
 def explored(
     front: ParetoFront, *, about: Any = None, problem: Any = None, catalogs: Any = None, drawn: int = DRAWN
 ) -> dict[str, Any]:
-    """Return what the explorer shows of a front, as JSON holds it; arguments as for :func:`report`.
+    """Explorer record of a front, as JSON holds it; arguments as for :func:`report`.
 
     ``drawn``: designs, from the first by rank, whose drawings it holds.
 
@@ -184,7 +184,7 @@ def explored(
 
 
 def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
-    """Return what the explorer shows of the common front of several families, as JSON holds it.
+    """Explorer record of the common front of several families, as JSON holds it.
 
     Raises
     ------
@@ -229,7 +229,7 @@ class ReportOptions:
     def read(
         formats: str | Sequence[str], about: Any, length: str, fonts: Sequence[str | Path], about_folder: Path | None
     ) -> ReportOptions:
-        """Return what was asked for; what is wrong in it reports tell themselves."""
+        """Options as they were stated; reports refuse wrong ones themselves."""
         words = (formats,) if isinstance(formats, str) else tuple(formats)
         return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
 
@@ -281,7 +281,7 @@ def _of_front(
 
 
 def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
-    """Return what is told of tables that are not as they were; nothing without the family."""
+    """Remarks on tables that have changed; none without the family."""
     if front.question is not None:
         return []
     with suppress(InputError):
@@ -427,7 +427,7 @@ def _made(asked: Mapping[str, Any], how: ReportOptions) -> Made:
 
 
 def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:
-    """Return what other commands have found out about a front, in its folder or in one below."""
+    """Further results on a front, in its folder or in one below."""
     found: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
     digest = front.result_digest
     for path in (folder / "prices.json", *sorted(folder.glob("*/prices.json"))):

@@ -82,7 +82,7 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
 
 
 def table_differences(front: ParetoFront, tables: Catalogs) -> tuple[list[str], list[str]]:
-    """Return what is told of tables that are away, and of those that are others than when the front was found."""
+    """Remarks on tables that are away, and on those that have changed since the front was found."""
     away, names = tables.away(), set(tables.own)
     told = tables.differences()
     gone = [sentence for sentence in told if any(sentence.startswith(f"table {name}:") for name in away)]

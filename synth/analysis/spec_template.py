@@ -24,7 +24,7 @@ def needed(rows: Iterable[Row]) -> list[Row]:
 
 
 def stated_value(row: Row, text: str) -> str:
-    """Return what was typed for a requirement, once it is known to be a value of it.
+    """Stated requirement in the words of the user, once it is known to be a value of it.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def _example(row: Row) -> str:
 
 
 def _default(row: Row) -> tuple[str, str]:
-    """Return what stands if nothing is said, as a value or in words."""
+    """Default, as a value or in words."""
     unit = "" if row["unit"] in ("", "-") else f" {row['unit']}"
     if isinstance(row["default"], float):
         return f"{row['default']:.6g}{unit}", ""

@@ -68,7 +68,7 @@ def written_digits(
 
 
 def _rounded(space: SearchSpace, points: np.ndarray, digits: int) -> np.ndarray:
-    """Return what is read where variables are written with so many digits."""
+    """Points whose variables are written with so many digits."""
     return np.array(
         [
             [

@@ -240,5 +240,5 @@ def scored_room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
 
 
 def filled(arrays: Mapping[str, np.ndarray]) -> Boxes:
-    """Return what was written to room with scores."""
+    """Scored boxes from the arrays that a kernel has filled."""
     return Boxes(*(arrays[f"out_{name}"] for name in ("cell", "low", "high", "bounds", "scores", "tag")))

@@ -191,7 +191,7 @@ class BranchingWeights:
         return int(self._statistics.count.sum())
 
     def statistics(self) -> BranchingStatistics:
-        """Return what was learned so far."""
+        """Branching knowledge gathered so far."""
         return self._statistics.copy()
 
     def adopt(self, statistics: BranchingStatistics) -> bool:
@@ -221,7 +221,7 @@ class BranchingWeights:
         return result.astype(np.float32)
 
     def _score_tables(self, influence: np.ndarray) -> ScoreTables:
-        """Return what scores are made of, for influences (limits + objectives, inputs)."""
+        """Score tables for influences (limits + objectives, inputs)."""
         first_auxiliary = influence.shape[1] - len(self._question.auxiliary)
         moving = np.concatenate([influence[:, : self._question.n], influence[:, first_auxiliary:]], axis=1)
         steep = np.maximum(moving, self._floor)

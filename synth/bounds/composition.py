@@ -67,7 +67,7 @@ class TermComposition:
     # -- what a term says
 
     def shape(self, term: Term | None, nodes: Sequence[int]) -> Shape:
-        """Return what is known of a term made of some nodes."""
+        """Sign and monotonicity of a term made of some nodes."""
         if term is None:
             reached: np.ndarray = np.logical_or.reduce(self.depends[list(nodes)])
             return Shape(0, False, UNKNOWN, self._jumps(reached))

@@ -144,7 +144,7 @@ class Growth:
         return self
 
     def subtrees(self) -> Subtrees:
-        """Return what has grown.
+        """Grown subtrees.
 
         Raises
         ------

@@ -152,7 +152,7 @@ class LogRelaxation:
         return BoundedTogether(tight, alive, points)
 
     def _ends(self, boxes: Boxes, cutoffs: np.ndarray) -> tuple[Ends, Ends, np.ndarray]:
-        """Return what holds of every node in each box, and which boxes are empty."""
+        """Ranges of every node in each box, and which boxes are empty."""
         tables = self.propagation.tables[False]
         ends = [np.array([x.take(boxes.cell[:, f]) for f, *both in tables for x in (both[side],)]) for side in (0, 1)]
         question = self.question
@@ -389,7 +389,7 @@ def _solved(
 def _bound(
     cost: np.ndarray, left: np.ndarray, right: np.ndarray, width: np.ndarray, multipliers: np.ndarray
 ) -> tuple[float, np.ndarray]:
-    """Return what any multipliers, none of them positive, prove (see the head of the module), and what is left of c."""
+    """Bound proven by any multipliers, none of them positive (see the head of the module), and the remainder of c."""
     residual = cost - multipliers @ left
     sizes = np.abs(cost) + np.abs(multipliers) @ np.abs(left)
     rounding = SUMMED * float(sizes @ width + np.abs(multipliers) @ np.abs(right))

@@ -50,7 +50,7 @@ def raised(a: Term, power: float, sign: int = 1) -> Term:
 
 
 def without_common(a: Term, b: Term) -> tuple[Term, Term, Term]:
-    """Return what two terms have in common, and what is left of each."""
+    """Common part of two terms, and the remainder of each."""
     common = {atom: min(p, b.powers[atom]) for atom, p in a.powers.items() if atom in b.powers}
     shared = Term(1, 1.0, common)
     return shared, times(a, shared, -1.0), times(b, shared, -1.0)

@@ -126,7 +126,7 @@ class QuestionBounds:
         return bool(self.root.low[node] > 0 or self._least_known.get(node, 0.0) > 0)
 
     def range_of(self, node: int) -> tuple[float, float]:
-        """Return what is known of a node over the whole question."""
+        """Range of a node over the whole question."""
         return float(self.root.low[node]), float(self.root.high[node])
 
     def first_data(self) -> list[float]:
@@ -201,7 +201,7 @@ class QuestionBounds:
         }
 
     def _root(self, values: Sequence[np.ndarray]) -> Root:
-        """Return what holds everywhere; objectives that only settle ties cut nothing off, so that they may count."""
+        """Ranges that hold everywhere; objectives that only settle ties cut nothing off, so that they may count."""
         hull = (np.array([np.min(v) for v in values]), np.array([np.max(v) for v in values]))
         ranges = self.instance.ranges
         leaves = Leaves(ranges.lower, ranges.upper, hull, self.constants[True], self.right_sides)

@@ -53,7 +53,7 @@ class Leaves:
 
 
 def propagated_root(nodes: PropagatedNodes, leaves: Leaves) -> Root:
-    """Return what holds of every node over the hull of everything."""
+    """Ranges of every node over the hull of everything."""
     with np.errstate(all="ignore"):
         found = _NodePropagation(nodes, leaves)
         found.run(SWEEPS)
@@ -88,7 +88,7 @@ def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interv
 def propagated_boxes(
     nodes: PropagatedNodes, leaves: Leaves, cutoffs: Sequence[Any], sweeps: int
 ) -> tuple[list[Any], list[Any], np.ndarray]:
-    """Return what holds of every node in each of many boxes.
+    """Ranges of every node in each of many boxes.
 
     Parameters
     ----------

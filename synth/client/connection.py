@@ -88,7 +88,7 @@ class ServiceClient:
         return [str(family["name"]) for family in self._transport.ask("GET", "/families").json()["families"]]
 
     def describe(self, p: str | DesignProblem) -> pd.DataFrame:
-        """Return what a family asks, decides and computes, one row per quantity."""
+        """Requirements, decisions and quantities of a family, one row per quantity."""
         import pandas as pd  # costly to import
 
         family, options = _family(p)
@@ -389,12 +389,12 @@ def _spec(p: str | DesignProblem, requirements: Mapping[str, Any], **asked: Any)
 
 
 def _given(**asked: Any) -> dict[str, Any]:
-    """Return what was asked: None is nothing."""
+    """Request as a mapping: None is nothing."""
     return {name: value for name, value in asked.items() if value is not None}
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON holds of a request: numbers of NumPy as numbers, tuples as lists."""
+    """Request as JSON holds it: numbers of NumPy as numbers, tuples as lists."""
     if isinstance(value, Mapping):
         return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (str, bytes)) or value is None:

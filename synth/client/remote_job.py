@@ -43,7 +43,7 @@ class RemoteJob:
     # -- how it is -----------------------------------------------------------------------------
 
     def status(self) -> dict[str, Any]:
-        """Return what the service says of the job: state, outcome, progress, summary, times."""
+        """Record of the job from the service: state, outcome, progress, summary, times."""
         found: dict[str, Any] = self._transport.ask("GET", self._path()).json()
         return found
 

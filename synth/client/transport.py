@@ -154,7 +154,7 @@ def _pause(answer: httpx.Response, usual: float) -> float:
 
 
 def _refusal(answer: httpx.Response) -> Exception:
-    """Return what a service refuses as an error of ours."""
+    """Error for a refusal of a service."""
     try:
         told: Mapping[str, Any] = answer.json()["error"]
     except (ValueError, KeyError, TypeError):
@@ -167,7 +167,7 @@ def _refusal(answer: httpx.Response) -> Exception:
 
 
 def told_input_error(problems: Sequence[Mapping[str, Any]]) -> InputError:
-    """Return what a service says of the input as the error that the search itself would have raised."""
+    """Error that the search itself would have raised, from what a service says of the input."""
     found = [_input_error(problem) for problem in problems]
     return SeveralErrors(found) if len(found) > 1 else found[0]
 

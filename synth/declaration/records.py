@@ -114,7 +114,7 @@ class Choice:
         return _same(self, other, f"choice {self.name}", f"{self.name}.select({{{told}}})")
 
     def expected(self, label: str) -> str:
-        """Return what may stand in place of a label that is not offered, with the reason where there is one."""
+        """Texts that may replace a label that is not offered, with the reason where there is one."""
         reason = self.refused.get(label)
         return "one of " + ", ".join(self.labels) + (f"; {reason}" if reason else "")
 

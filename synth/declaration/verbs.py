@@ -239,7 +239,7 @@ class Block:
 
     @classmethod
     def fields(cls) -> dict[str, BlockField]:
-        """Return what the block declares, by name and in order."""
+        """Declarations of the block, by name and in order."""
         everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
         return {name: value for name, value in everything if isinstance(value, (Requirement, Option, Variable, Slot))}
 
@@ -749,7 +749,7 @@ class Declaration:
     # -- views ---------------------------------------------------------------------------------
 
     def asked(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
-        """Return what this was made for: another one made for the same takes the same declarations."""
+        """Key of its purpose: another one made for the same takes the same declarations."""
         return self.problem, self._asked_options, self._given, self.catalogs
 
     def quantities(self) -> Iterator[tuple[str, str, str]]:

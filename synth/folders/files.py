@@ -37,7 +37,7 @@ KINDS = {
 
 
 def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> bytes:
-    """Return what stands in a file that a user has named.
+    """Content of a file that a user has named.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def csv_writer(file: TextIO) -> Callable[[Sequence[Any]], object]:
-    """Return what writes a row of cells into a file."""
+    """Writer of rows of cells into a file."""
     writer = csv.writer(file, lineterminator="\n")
     return lambda cells: writer.writerow([csv_cell(cell) for cell in cells])
 

@@ -482,7 +482,7 @@ class BatchJob:
         return InputError(where, fault.value, f"{fault.expected}{more}", path)
 
     def _content(self) -> dict[str, Any]:
-        """Return what is kept with the job: how it is solved, and what its columns are."""
+        """Record stored with the job: how it is solved, and its columns."""
         carried = {column.position for column in self.questioner.carried}
         kept = None if self.catalogs is None else self._catalogs_as_text()
         return {

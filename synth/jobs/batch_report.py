@@ -65,7 +65,7 @@ class BatchReportOptions:
         about_folder: Path | None = None,
         fonts: Sequence[str | Path] = (),
     ) -> BatchReportOptions:
-        """Return what was asked for.
+        """Requested options.
 
         Raises
         ------
@@ -357,7 +357,7 @@ def chosen_row(record: BatchRecord, named: str) -> BatchRow | None:
 
 
 def _causes(answered: Answered, reason: str) -> tuple[str, ...]:
-    """Return what stands in the way of a row, in a few words that many rows share."""
+    """Reason why a row has no design, in a few words that many rows share."""
     if answered.faults:
         return tuple(dict.fromkeys(str(fault["column"]) or "the row as a whole" for fault in answered.faults))
     # A limit that a row adds has its number in its name.

@@ -49,7 +49,7 @@ def read_options(text: str, where: str) -> dict[str, str]:
 
 
 def read_fix(text: str, where: str) -> dict[str, str]:
-    """Return what a cell pins.
+    """Values to which a cell pins quantities.
 
     Examples
     --------

@@ -132,7 +132,7 @@ class EngineProcess:
             raise EngineCrashedError(self.ended()) from error
 
     def hear(self, timeout: float) -> Message | None:
-        """Return what the process says next; None where it says nothing in time.
+        """Next message of the process; None where none comes in time.
 
         Raises
         ------
@@ -217,7 +217,7 @@ class _Budget:
 
 
 def answer_of(message: Message) -> Any:
-    """Return what a task has returned, or raise as it has.
+    """Result of a task; an error is raised again.
 
     Raises
     ------

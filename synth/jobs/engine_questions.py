@@ -25,7 +25,7 @@ def families(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def declaration(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return what a family declares, and the digest of the code that says so; None for a family that is not there."""
+    """Declaration of a family, and the digest of its code; None for an unknown family."""
     if payload["family"] not in registered():
         return {"declaration": None, "code": code_digest()}
     return {"declaration": small.declaration(payload["family"], payload["options"]), "code": code_digest()}
@@ -47,7 +47,7 @@ def evaluate(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return what decides answers and is not as it was when a batch was begun, and the fingerprint of programs now.
+    """Hashes that decide answers and have changed since a batch was begun, and the fingerprint of programs now.
 
     Raises
     ------

@@ -521,7 +521,7 @@ def _unused(keep: float | None = None) -> sa.ColumnElement[Any]:
 
 
 def body_digest(body: Any) -> str:
-    """Return what tells two requests with the same idempotency key apart."""
+    """Digest that tells two requests with the same idempotency key apart."""
     return digest(body)
 
 

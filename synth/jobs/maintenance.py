@@ -63,7 +63,7 @@ def examine(url: str) -> Finding:
 
 
 def _faults(engine: sa.Engine) -> tuple[str, ...]:
-    """Return what is wrong with a SQLite file; a server looks after its own."""
+    """Faults of a SQLite file; a server looks after its own."""
     if engine.dialect.name != "sqlite":
         return ()
     with engine.connect() as connection:

@@ -251,7 +251,7 @@ class RowOutcome:
 
 
 def row_outcomes(store: Store, job: str) -> Iterator[RowOutcome]:
-    """Return what became of each row, in the order of the table."""
+    """Outcome of each row, in the order of the table."""
     record = store.job(job)
     assert record is not None
     layouts = store.layouts(job)

@@ -35,11 +35,11 @@ class GroupMember:
     number: int
 
     def asked(self, question: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a member asks: the question, and which group it belongs to."""
+        """Question of a member, and the group that it belongs to."""
         return {**question, GROUP: {"name": self.name, "rows": self.rows}}
 
     def position(self) -> bytes:
-        """Return what orders questions: those of a group side by side, neighbours in it too."""
+        """Sort key of questions: those of a group side by side, neighbours in it too."""
         return f"{self.name}\0{self.number:08d}".encode()
 
 

@@ -58,7 +58,7 @@ class Fault:
 
     @classmethod
     def of(cls, line: int, column: str, error: InputError) -> Fault:
-        """Return what is wrong with the content of a column."""
+        """Fault of the content of a column."""
         return cls(line, column, None if error.value is None else str(error.value), error.expected)
 
     def sentence(self) -> str:
@@ -279,7 +279,7 @@ class Questioner:
     def _question(
         self, line: int, cells: tuple[str, ...], family: str
     ) -> tuple[dict[str, Any], list[float], list[str]]:
-        """Return what a row asks, its requirements in SI in the order of their names, and the columns not used."""
+        """Question of a row: its requirements in SI in the order of their names, and the columns not used."""
         variant, options, ignored = self._variant(line, cells, family)
         faults: list[Fault] = []
         requirements: dict[str, str] = {}
@@ -514,7 +514,7 @@ def alikeness(question: Mapping[str, Any]) -> str:
 
 
 def canonical_position(cells: tuple[str, ...]) -> bytes:
-    """Return what orders rows by their cells, left to right, numbers in a text by their size.
+    """Sort key of rows by their cells, left to right, numbers in a text by their size.
 
     Examples
     --------

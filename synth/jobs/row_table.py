@@ -72,7 +72,7 @@ class RowTable:
                 yield number, cells[:width] if spare else cells
 
     def header_elsewhere(self, fits: Callable[[Sequence[str]], bool]) -> str:
-        """Return what is right where a header is not in the first line; nothing where no line near it is one."""
+        """Hint where a header is not in the first line; empty where no line near it is one."""
         if isinstance(self.source, Path) and is_workbook(self.source):
             return table_elsewhere(self.source, "rows", fits, self.name)
         return next((header_first(k) for k, cells in islice(self._records(), LOOKED_AT) if fits(cells)), "")
@@ -176,7 +176,7 @@ def text_of(value: Any) -> str:
 
 
 def _several(name: str, value: Any) -> list[str]:
-    """Return what one entry of a mapping says; a list of comparisons is several entries, one of names is one."""
+    """Parsed entry of a mapping; a list of comparisons is several entries, one of names is one."""
     if not isinstance(value, (list, tuple)):
         return [text_of(value)]
     texts = [text_of(entry) for entry in value]

@@ -152,7 +152,7 @@ class Shelf:
     # -- what requests refer to ----------------------------------------------------------------
 
     def sources(self, tenant: int, request: Any) -> Sources:
-        """Return what a request refers to by name, as far as the tenant has it: what is missing is for others to say.
+        """Objects that a request refers to by name, as far as the tenant has them; others report what is missing.
 
         Parameters
         ----------

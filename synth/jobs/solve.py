@@ -196,7 +196,7 @@ def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 
 @lru_cache(maxsize=8)
 def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], BranchingStatistics | None]:
-    """Return what the search for a similar question has found and learned; nothing where it fails."""
+    """Designs and branching knowledge of a similar question; nothing where that search fails."""
     try:
         front, branching = _posed(json.loads(question), json.loads(settings), shared).experience()
     except Exception:  # its own row tells why
@@ -212,7 +212,7 @@ def _give_up_unwanted(reason: str) -> None:
 
 
 def record(front: ParetoFront, seconds: float) -> dict[str, Any]:
-    """Return what is kept of a front; of what a search for several questions has cost, the share of one."""
+    """Stored record of a front; of the cost of a search for several questions, the share of one."""
     certificate, figures = front.certificate, front.statistics
     together = figures.get("searched_together") or 1
     content: dict[str, Any] = {
@@ -276,7 +276,7 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
 
 
 def _unknowns(design: Design) -> dict[str, Any]:
-    """Return what makes a design again: its unknowns in SI, and its objectives."""
+    """Data from which a design can be computed again: its unknowns in SI, and its objectives."""
     kinds = design.frame.kinds
     return {
         "values": {n: v for n, v in design.values.items() if kinds[n] in ("variable", "count")},

@@ -29,7 +29,7 @@ class Word:
 
 
 def word_of(declaration: Declaration, name: str, settings: Mapping[str, Any]) -> Word:
-    """Return what a name stands for in a declaration."""
+    """Declared object for a name."""
     d = declaration
     kinds: dict[str, Mapping[str, Any]] = {
         "option": d.options,

@@ -67,7 +67,7 @@ class SideBySide(Generic[T]):
 
 
 def side_by_side(work: Sequence[Callable[[], T]], workers: int) -> list[T]:
-    """Return what comes of parts of some work, in their order, shared among threads of which the caller's is one.
+    """Results of parts of some work, in their order, shared among threads of which the caller's is one.
 
     Parameters
     ----------

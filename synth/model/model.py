@@ -43,7 +43,7 @@ class DataInput:
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """Return what tells it from all other inputs."""
+        """Key that identifies it among all inputs."""
         return self.kind, self.name, self.column
 
     @property
@@ -67,7 +67,7 @@ class Evaluation:
     terms: dict[str, np.ndarray]  # per quantity: the size of its largest term, where its value does not tell it
 
     def also(self, constraints: Sequence[Constraint]) -> Evaluation:
-        """Return what it says with further limits on quantities, which count as those of the family do.
+        """Model with further limits on quantities, which count as those of the family do.
 
         Where the guards do not hold without which a quantity does not exist, they alone tell why.
         """
@@ -91,7 +91,7 @@ class Evaluation:
         )
 
     def take(self, rows: slice) -> Evaluation:
-        """Return what it says of some of the designs."""
+        """Note restricted to some of the designs."""
         return Evaluation(
             {name: x[rows] for name, x in self.values.items()},
             {name: (value[rows], bound[rows]) for name, (value, bound) in self.limits.items()},
@@ -210,7 +210,7 @@ class Model:
     def _unsearched(
         self, what: str, named: Mapping[str, Any], variables: np.ndarray, data: Sequence[InputValue]
     ) -> list[dict[str, float]]:
-        """Return what only results and hooks read: the search does not carry it, so it has a program of its own."""
+        """Function for what only results and hooks read, as a program of its own: the search does not carry it."""
         if not named:
             return [{} for _ in variables]
         expressions = [record.sx for record in named.values()]
@@ -441,7 +441,7 @@ class Model:
         return result
 
     def kind_of(self, name: str) -> str:
-        """Return what a declared name is, with its article."""
+        """Kind of a declared name, with its article."""
         d = self.declaration
         kinds: dict[str, Mapping[str, Any]] = {
             "a requirement": d.requirements,

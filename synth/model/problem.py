@@ -155,7 +155,7 @@ class DesignProblem:
     def declaration(
         self, given: frozenset[str], catalogs: Catalogs, options: Mapping[str, str] | None = None
     ) -> Declaration:
-        """Return what the problem declares, without tracing it into a model: for whoever asks for names alone.
+        """Declaration of the problem, not traced into a model: for callers that need names alone.
 
         ``options``: in place of its own.
         """

@@ -301,7 +301,7 @@ class InteriorPointBatch:
         return idle
 
     def _values(self, form: np.ndarray, t: np.ndarray, absent: np.ndarray, missing: np.ndarray) -> np.ndarray:
-        """Return what each row exceeds its right side by; -1 where there is no row."""
+        """Excess of each row over its right side; -1 where there is no row."""
         here = self.counts & ~self._idle(absent, missing)
         return np.where(here, form - self.slopes * t - self.rights, -1.0)
 

@@ -93,7 +93,7 @@ class Pieces:
         return len(self.decisions)
 
     def _terms_of(self, nodes: Sequence[int]) -> list[int]:
-        """Return what the sums behind some nodes are made of."""
+        """Terms of the sums behind some nodes."""
         result: list[int] = []
         stack = list(nodes)
         while stack:
@@ -227,7 +227,7 @@ class Pieces:
 
 
 def _piece(op: int, way: Any, args: Sequence[Any]) -> Any:
-    """Return what a decision gives, as an expression of which way it goes."""
+    """Value of a decision, as an expression of which way it goes."""
     if op in (ca.OP_LT, ca.OP_LE):
         return way
     if op == ca.OP_FABS:
@@ -407,7 +407,7 @@ class _Question:
         return result
 
     def _promises(self, rows: np.ndarray, state: _State) -> tuple[np.ndarray, np.ndarray]:
-        """Return what speaks for the other piece of each decision of some problems.
+        """Reasons to take the other piece of each decision of some problems.
 
         Returns
         -------

@@ -82,7 +82,7 @@ class RowFunctions:
         self.fixed_order = [k for k in reached(self.nodes, self.stored) if self.nodes[k].op != ca.OP_CONST]
 
     def _sides(self, program: Program, inputs: Sequence[Any], bounds: Any, sizes: Any) -> list[Any]:
-        """Return what each row is made of: value over limit, a scaled difference, or an objective."""
+        """Kind of each row: value over limit, a scaled difference, or an objective."""
         rows = self.rows
         values: dict[int, Any] = {}
         moving = program.dependence(range(self.n))

@@ -111,7 +111,7 @@ class Scale:
 
     @staticmethod
     def read(told: Mapping[str, Sequence[float]], objectives: Mapping[str, str]) -> Scale:
-        """Return what ``told`` has told; a ValueError where an end is no number."""
+        """Fields of a message of ``told``; a ValueError where an end is no number."""
         ends = np.array([told[name] for name in objectives], dtype=float) * signs_of(objectives)[:, None]
         if not np.isfinite(ends).all():
             raise ValueError("scale: an end is no number")

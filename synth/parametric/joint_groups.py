@@ -9,7 +9,7 @@ from synth.search.question import Question
 
 
 def joint_key(question: Question) -> tuple[Any, ...]:
-    """Return what questions must have in common to be answered together."""
+    """Key that questions must share to be answered together."""
     instance, settings = question.instance, question.settings
     ranges, selection = instance.ranges, instance.selection
     return (

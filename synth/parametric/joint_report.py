@@ -152,7 +152,7 @@ class JointReport:
         )
 
     def _statistics(self, question: Question, solved: int, solves: int) -> SearchStatistics:
-        """Return what the search of all questions has cost, and how many combinations of one were solved."""
+        """Cost of the search of all questions, and how many combinations of one were solved."""
         counters = self.form.counters
         return replace(
             offered(question.instance),

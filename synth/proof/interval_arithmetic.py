@@ -153,7 +153,7 @@ class Arithmetic:
         return low, high
 
     def meet(self, a: Pair, b: Pair) -> Pair:
-        """Return what two ranges have in common; an end that is not known does not count."""
+        """Intersection of two ranges; an end that is not known does not count."""
         return self.do("fmax", a[0], b[0]), self.do("fmin", a[1], b[1])
 
     def choose(self, masks: Pair, a: Pair, b: Pair) -> Pair:

@@ -164,7 +164,7 @@ class Tape:
         return 1 if name == "power" and first > 0 else 0
 
     def kernel(self, inputs: Sequence[Ref], outputs: Sequence[Expr]) -> Kernel:
-        """Return what computes some outputs from arrays of the inputs."""
+        """Function that computes some outputs from arrays of the inputs."""
         needed = {x.index for x in outputs if isinstance(x, Ref)}
         kept: list[int] = []
         for index in sorted(self.instructions, reverse=True):
@@ -174,11 +174,11 @@ class Tape:
         return Kernel(self, inputs, outputs, kept[::-1])
 
     def read(self, index: int) -> list[Ref]:
-        """Return what an instruction reads."""
+        """Operands of an instruction."""
         return [a for a in self.instructions[index][1] if isinstance(a, Ref)]
 
     def function(self, name: str) -> Callable[..., Any]:
-        """Return what carries out an instruction; it takes the array of the result last."""
+        """Function that carries out an instruction; it takes the array of the result last."""
         if name in FUNCTIONS:
             return FUNCTIONS[name]
         if name in WRITERS:

@@ -43,7 +43,7 @@ class _Step:
         self._ends, self._halves, self._coordinates, self._groups = ends, halves, coordinates, groups
 
     def narrowed(self, rows: Sequence[ProofRow], levels: Sequence[Ref], narrow: Sequence[Pair]) -> list[Expr]:
-        """Return what narrow ranges tell: the largest row, new ends, and least objectives."""
+        """Bounds from narrow ranges: the largest row, new ends, and least objectives."""
         worst: Expr = -INF
         floors = []
         for row in rows:
@@ -62,7 +62,7 @@ class _Step:
         groups: int,
         emphasis: Sequence[Expr],
     ) -> list[Expr]:
-        """Return what slopes tell: as ``narrowed``, then how much each group spreads the rows, and the middle.
+        """Bounds from slopes: as ``narrowed``, then how much each group spreads the rows, and the middle.
 
         ``emphasis``: how much each row counts when it is told what to split.
         """

@@ -490,7 +490,7 @@ class ProofTree:
         return np.where(most > 0, found / np.where(most > 0, most, 1.0), 1.0) + self.limits.faint
 
     def _around(self, point: Point, levels: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
-        """Return what a kernel takes of a small box around a design, and half of its widths; its parts stay."""
+        """Inputs of a kernel for a small box around a design, and half of its widths; its parts stay."""
         inputs = [*point.variables, *point.data]
         values = np.ones(len(self._coordinates))
         free = np.zeros(len(self._coordinates), dtype=bool)
@@ -535,7 +535,7 @@ class ProofTree:
     def _tightened(
         self, boxes: ProofBoxes, regions: Clusters, emphasis: np.ndarray | None = None
     ) -> tuple[ProofBoxes, np.ndarray, np.ndarray]:
-        """Return what is left of boxes, how much each group spreads the rows, and the largest row at the middle."""
+        """Remaining boxes, how much each group spreads the rows, and the largest row at the middle."""
         result = self._narrowing.run(self._handed(boxes, regions, False))
         boxes, _ = self._placed(boxes, regions, result)
         if not len(boxes):

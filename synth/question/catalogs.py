@@ -71,7 +71,7 @@ def needed_columns(declared: Declaration) -> Iterator[tuple[Part, tuple[str, ...
 
 
 def lacking_columns(problem: DesignProblem, catalogs: Catalogs) -> list[InputError]:
-    """Return what tables of the user's own lack and the problem cannot do without, all of it.
+    """Columns that the user's own tables lack and the problem cannot do without, all of them.
 
     What it uses is known by the shipped tables; of a table that only the user has, nothing is told here.
     """

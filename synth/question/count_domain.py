@@ -25,7 +25,7 @@ COMPARES = re.compile(r"^\s*[<>=]|\.\.")
 
 
 def entries(value: Any) -> list[Any]:
-    """Return what is asked of one quantity, entry by entry: a list as it stands, a text in brackets taken apart.
+    """Conditions on one quantity, entry by entry: a list as it stands, a text in brackets taken apart.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def stated(asked: Mapping[Any, Any] | None) -> dict[Any, Any]:
 
 
 def stated_value(value: Any) -> Any:
-    """Return what is asked of one name as files keep it."""
+    """Conditions on one name as files keep them."""
     if is_list(value) and not isinstance(value, str):
         return [stated_value(entry) for entry in entries(value)]
     if isinstance(value, np.generic):

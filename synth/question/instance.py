@@ -101,7 +101,7 @@ class Instance(SearchSpace):
         return self.values
 
     def fingerprint(self) -> Fingerprint:
-        """Return what decides the numbers of an answer to this question, by which kept results are known again."""
+        """Digest of everything that decides the numbers of an answer, by which kept results are recognised."""
         model, selection, problem = self.model, self.selection, self.problem
         asked = {
             "family": problem.name,

@@ -20,12 +20,12 @@ POWER = re.compile(r"(?:\w*_)?power(?:_\w*)?|leistung|p", re.IGNORECASE)
 
 @lru_cache(maxsize=128)
 def _declared(family: type[DesignProblem], options: tuple[tuple[str, str], ...], catalogs: Catalogs) -> Declaration:
-    """Return what a family declares with some options, once: each slip of a name asks for all of them."""
+    """Declaration of a family with some options, cached: each slip of a name asks for all of them."""
     return family(**dict(options)).declaration(frozenset(), catalogs)
 
 
 def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
-    """Return what must be names with values; nothing given is an empty mapping.
+    """Mapping of names to values; nothing given is an empty mapping.
 
     Raises
     ------

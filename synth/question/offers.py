@@ -25,7 +25,7 @@ from synth.text.numbers import typed_number
 
 
 def select(model: Model, catalogs: Catalogs, rules: Mapping[str, Any], limits: UserLimits) -> Selection:
-    """Return what slots, rules, limits and pins leave to choose from; refusals of the family are not asked here.
+    """Parts and values left by slots, rules, limits and pins; refusals of the family are not applied here.
 
     Parameters
     ----------

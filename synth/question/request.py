@@ -180,7 +180,7 @@ class Request:
         return {**{key: value for key, value in content.items() if value}, "grid": self.grid}
 
     def rules(self) -> dict[str, Any]:
-        """Return what is asked of the parts as files keep it: conditions, and lists of designations."""
+        """Conditions on the parts as files keep them: comparisons, and lists of designations."""
         return {slot: rule if isinstance(rule, str) else list(rule) for slot, rule in self.parts.items()}
 
 

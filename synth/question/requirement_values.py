@@ -124,7 +124,7 @@ def _numbers(model: Model, asked: Mapping[str, Any], rows: Mapping[str, float]) 
 
 
 def value_of(r: RequirementRecord, typed: Any) -> float:
-    """Return what was typed for a requirement in SI.
+    """Value of a requirement as typed, in SI.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def value_of(r: RequirementRecord, typed: Any) -> float:
 
 
 def missing(r: RequirementRecord) -> InputError:
-    """Return what is said of a requirement that must be stated and is not."""
+    """Message for a requirement that must be stated and is not."""
     of_power = f"; from a power, {TORQUE_OF_POWER}" if parse_unit(r.unit).kind == "torque" else ""
     right = f"a value in {r.unit}, for example {_example(r)}{of_power}"
     return InputError(f"requirement {r.name}", None, right, ("requirements", r.name))

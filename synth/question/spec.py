@@ -87,7 +87,7 @@ class Spec:
         return replace(self, **given)
 
     def request(self) -> Request:
-        """Return what the spec asks of its one family."""
+        """Request to the one family of the spec."""
         from synth.model.registry import load  # NumPy comes with it; --help does without
         from synth.question.request import Request
 
@@ -103,7 +103,7 @@ class Spec:
         return SearchSettings(**{**usual, **self.stated(SEARCHED)})
 
     def stated(self, keys: Collection[str]) -> dict[str, Any]:
-        """Return what the spec states under some keys, without those under which it states nothing."""
+        """Entries of the spec under some keys, without those that are empty."""
         values = {name: getattr(self, name) for name in keys}
         return {name: value for name, value in values.items() if value is not None and value != {}}
 
@@ -304,7 +304,7 @@ _SLIPS = (
 
 
 def _yaml_advice(text: str, mark: Any, problem: str, slip: _Slip) -> str:
-    """Return what to type instead, for the slips that happen."""
+    """Suggestion for slips that happen often."""
     lines = text.splitlines()
     line = lines[mark.line] if mark is not None and mark.line < len(lines) else ""
     if "\t" in line[: len(line) - len(line.lstrip())] or "'\\t'" in problem:

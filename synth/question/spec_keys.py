@@ -39,7 +39,7 @@ A_DESIGN = "the variables, counts and choices of the design; without them it is 
 
 
 def shown_kind(value: Any) -> Any:
-    """Return what to show of a value that is of the wrong kind."""
+    """Excerpt of a value that is of the wrong kind."""
     if value is None:
         return Described("nothing")
     if isinstance(value, Mapping):
@@ -50,7 +50,7 @@ def shown_kind(value: Any) -> Any:
 
 
 def no_family(where: str) -> InputError:
-    """Return what is said of a spec that names no family; ``where`` is its name."""
+    """Message for a spec that names no family; ``where`` is its name."""
     from synth.model.registry import families  # costly to import; --help does without
 
     return InputError(f"{where}: family", None, f"the name of a family: {', '.join(families())}", ("family",))
@@ -301,7 +301,7 @@ def hint_at_key(key: Any) -> str:
 
 
 def read_keys(content: Any, where: str, keys: Collection[str]) -> dict[str, Any]:
-    """Return what some keys of a spec hold, checked; None or an empty mapping where nothing is stated.
+    """Checked content of some keys of a spec; None or an empty mapping where nothing is stated.
 
     Parameters
     ----------

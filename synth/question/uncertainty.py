@@ -38,7 +38,7 @@ class Uncertainty:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return what scatters, as the block names it, in the order of the positions of scenarios."""
+        """Scattering quantities, as the block names them, in the order of the positions of scenarios."""
         return (*self.ranges, *self.tolerance)
 
     def block(self) -> dict[str, Any]:
@@ -140,7 +140,7 @@ def _scattering(ranges: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def name_in_block(key: str, names: Mapping[str, str]) -> str:
-    """Return what a key of a block means, by its public name; ``names`` has those of a problem by all spellings."""
+    """Public name for a key of a block; ``names`` has those of a problem by all spellings."""
     if key in KEYS:
         return key
     slot, dot, column = key.partition(".")

@@ -177,7 +177,7 @@ def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tupl
 
 
 def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
-    """Return what a text says of a quantity: sense and SI value of each limit."""
+    """Limits on a quantity in a text: sense and SI value of each."""
     label = f"limits: {name}"
     if isinstance(text, str) and ".." in text:
         first, last = text.split("..", 1)

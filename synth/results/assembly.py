@@ -54,7 +54,7 @@ def ranked(
 
 
 def scale_of(designs: Sequence[Design], objectives: Mapping[str, str], scale: Scale | None = None) -> Scale | None:
-    """Return what designs are measured by where they are ranked; None where there is nothing to measure.
+    """Scale by which designs are ranked; None where there is nothing to measure.
 
     ``scale``: of the whole front, where that is known.
     """

@@ -83,7 +83,7 @@ class NamedQuantity:
         return self.kind in ("step", "derived", "helper")
 
     def word(self, number: float) -> str | None:
-        """Return what a number stands for: the label of a choice, or a text that formulas ask for."""
+        """Meaning of a number: the label of a choice, or a text that formulas ask for."""
         if self.kind == "choice":
             whole = float(number).is_integer() and 0 <= number < len(self.labels)
             return self.labels[int(number)] if whole else None
@@ -403,7 +403,7 @@ def _input(q: NamedQuantity, design: Design) -> float:
 
 
 def part_value(row: Mapping[str, Any], columns: Iterable[str]) -> float:
-    """Return what a row says in the first of several columns that has a value.
+    """Cell of a row in the first of several columns that has a value.
 
     Parameters
     ----------
@@ -417,7 +417,7 @@ def part_value(row: Mapping[str, Any], columns: Iterable[str]) -> float:
 
 
 def _told(record: Any) -> dict[str, Any]:
-    """Return what is said of a record: fields that are not as usual."""
+    """Fields of a record that differ from the usual ones."""
     usual = {f.name: f.default for f in type(record).__dataclass_fields__.values()}
     told: dict[str, Any] = {}
     for name, value in vars(record).items():

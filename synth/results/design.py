@@ -35,12 +35,12 @@ class PartRow(Mapping[str, Any]):
 
     @classmethod
     def read(cls, told: Mapping[str, Any]) -> PartRow:
-        """Return what a file says of it."""
+        """Entry of a file."""
         cells = {name: x for name, x in told.items() if name not in ("table", "hash", "units")}
         return cls(told["table"], told["hash"], cells, dict(told.get("units", {})))
 
     def record(self) -> dict[str, Any]:
-        """Return what files say of it."""
+        """Entries of files."""
         cells = {name: finite(x) for name, x in self.items()}
         return {**cells, "units": dict(self.units)} if self.units else cells
 
@@ -249,7 +249,7 @@ def design_columns(frame: Frame, choices: Iterable[str], slots: Iterable[str]) -
 
 
 def design_row(frame: Frame, design: Design) -> list[Any]:
-    """Return what belongs under ``design_columns``; None where there is no value."""
+    """Cells under ``design_columns``; None where there is no value."""
     early, late = _order(frame)
     row: list[Any] = [shown_value(design.values[n], frame.units[n]) for n in early]
     row += [*design.choices.values(), *(str(part) for part in design.parts.values())]

@@ -120,7 +120,7 @@ def size_of(tree: Expression) -> int:
 
 
 def value_of(tree: Expression, values: Mapping[str, float]) -> float:
-    """Return what a tree comes to; not-a-number where it does not exist, infinite where a number is divided by zero.
+    """Value of a tree; not-a-number where it does not exist, infinite where a number is divided by zero.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def _power(base: float, exponent: float) -> float:
 
 
 def _beyond(tree: Expression, numbers: list[float]) -> float:
-    """Return what arithmetic of floats gives where ``math`` refuses: infinity, or not-a-number."""
+    """Result of float arithmetic where ``math`` refuses: infinity, or not-a-number."""
     if any(map(math.isnan, numbers)):
         return math.nan
     if tree[0] == "f" and tree[1] in ("ln", "log1p") and numbers[0] == (0.0 if tree[1] == "ln" else -1.0):

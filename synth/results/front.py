@@ -88,7 +88,7 @@ class ParetoFront:
         return replace(self, frame=self.frame.placed(folder), designs=[d.placed(folder) for d in self.designs])
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text; without what cannot be derived, with a warning.
+        """Files that ``save`` writes: file name -> text; without those that cannot be derived, with a warning.
 
         Tables are named from the folder where the files will stand.
 

@@ -21,7 +21,7 @@ def record_text(content: Mapping[str, Any]) -> str:
 
 
 def changed(content: Mapping[str, Any]) -> str:
-    """Return what the checksum says against the content of a front.json; nothing where it fits."""
+    """Fault of the checksum of a front.json; empty where it fits the content."""
     if "digest" not in content:
         return "front.json has no checksum; it was not written by this version"
     try:
@@ -43,7 +43,7 @@ def result_digest(content: Mapping[str, Any]) -> str:
 
 
 def design_record(design: Design) -> dict[str, Any]:
-    """Return what front.json says of a design."""
+    """Entry of a design in front.json."""
     return {
         "rank": design.rank,
         "score": design.score,

@@ -43,7 +43,7 @@ class NextRow:
     typed: bool = False
 
     def __str__(self) -> str:
-        """Return what to take, in one short line."""
+        """Row to take, in one short line."""
         needed = f"{typed_quantity(self.needed, self.unit, 5)} {'typed' if self.typed else 'needed'}"
         if self.designation is None or self.value is None:
             ends = "has no row" if self.last is None else f"ends at {typed_quantity(self.last, self.unit, 5)}"
@@ -54,12 +54,12 @@ class NextRow:
         return f"{line} with {self.beside}" if self.beside else f"{line}, for which {self.beside_table} has no row"
 
     def record(self) -> dict[str, Any]:
-        """Return what front.json says of it."""
+        """Entry of front.json."""
         return asdict(self)
 
     @classmethod
     def read(cls, told: Mapping[str, Any]) -> NextRow:
-        """Return what a front.json says of it."""
+        """Record from its entry of a front.json."""
         designation, beside_table, beside = (
             None if told[key] is None else str(told[key]) for key in ("designation", "beside_table", "beside")
         )

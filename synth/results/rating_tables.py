@@ -49,7 +49,7 @@ def yield_text(share: float) -> str:
 
 
 def rating_row(design: Design) -> list[Any]:
-    """Return what belongs under ``COLUMNS``; nothing of a design that was not rated."""
+    """Cells under ``COLUMNS``; empty for a design that was not rated."""
     told = design.robust
     if not told:
         return [None] * len(COLUMNS)

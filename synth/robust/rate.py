@@ -52,7 +52,7 @@ class Ratings:
         return pd.DataFrame(rows, columns=columns)
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Files that ``save`` writes: file name -> text."""
         told = {
             "family": self.designs[0].frame.family if self.designs else None,
             "robust": dict(self.asked),
@@ -84,7 +84,7 @@ class Ratings:
 
 
 def rater_for(frame: Frame, asked: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:
-    """Return what rates the designs of a frame.
+    """Rating function for the designs of a frame.
 
     Parameters
     ----------

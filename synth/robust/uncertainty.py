@@ -58,7 +58,7 @@ class Range:
 
 
 def _between(low: Any, high: Any, position: Any) -> Any:
-    """Return what lies between two ends; the ends themselves are exact."""
+    """Interval between two ends; the ends themselves are exact."""
     if isinstance(position, float):
         if position in (0.0, 1.0):
             return high if position else low
@@ -77,7 +77,7 @@ class Member:
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """Return what tells it from others."""
+        """Key that identifies it."""
         return self.kind, self.name, self.column
 
 
@@ -117,7 +117,7 @@ class Scattered:
 
 
 def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list[Scattered]:
-    """Return what scatters in a problem, in the order of the block, tolerances last.
+    """Scattering quantities of a problem, in the order of the block, tolerances last.
 
     Raises
     ------

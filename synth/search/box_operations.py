@@ -127,7 +127,7 @@ class BoxOperations:
     def contract(
         self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int | None = None, every_goal: bool = False
     ) -> Boxes:
-        """Return what survives of the boxes, tightened and snapped to the grid.
+        """Remaining boxes, tightened and snapped to the grid.
 
         ``cutoffs`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
         that only settle ties. ``passes``: sweeps over the formulas, if not as many as usual.

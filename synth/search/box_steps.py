@@ -103,7 +103,7 @@ class BoxStep:
         return boxes
 
     def _without_small(self, found: Subtrees) -> Boxes:
-        """Return what can be split; what cannot is evaluated, and noted if it stays open."""
+        """Boxes that can be split; the others are evaluated, and noted if they stay open."""
         if len(found.small):
             self._open.append(left_open(self.form, found.small, self.rule, self.heuristics))
         return found.halves

@@ -24,7 +24,7 @@ class Clock:
     open: list[Boxes] = field(default_factory=list)
 
     def open_of(self, left: Boxes, under_way: bool) -> Boxes:
-        """Return what a tree has open: the boxes at hand where it was stopped under way, else those it has left."""
+        """Unresolved boxes of a tree: those at hand where it was stopped under way, else those it has left."""
         return Boxes.joined(self.open) if under_way and self.open else left
 
     def check(self, boxes: Sequence[Boxes] = ()) -> None:

@@ -21,7 +21,7 @@ from synth.tuning import TUNING, Tuning
 
 
 def rows_of_question(question: QuestionBounds, log_goals: Sequence[bool]) -> Rows:
-    """Return what a solver knows of the limits and objectives of a question.
+    """Limits and objectives of a question as a solver needs them.
 
     Parameters
     ----------

@@ -141,7 +141,7 @@ class CornerTable:
         return result
 
     def _least_of_block(self, k: int, pair: tuple[int, int], before: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return what is least in the block that is begun in the order of the first of a pair of objectives."""
+        """Least values in the block that is begun in the order of the first of a pair of objectives."""
         number, begun = np.divmod(before, self._block)
         place = self._place[pair].reshape(self._blocks, self._block)[number]
         value = self._value[pair[0], k].reshape(self._blocks, self._block)[number]

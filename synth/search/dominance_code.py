@@ -42,11 +42,11 @@ class DominanceCode:
             function.restype = None
 
     def from_table(self, numbers: Mapping[str, int], arrays: Mapping[str, np.ndarray], lower: np.ndarray) -> np.ndarray:
-        """Return what :class:`CornerTable` tells of boxes: its numbers and arrays by the names in the C source."""
+        """Numbers and arrays of a :class:`CornerTable` by the names in the C source."""
         return _answer(self._loaded.from_table, _record(_Table, numbers, arrays), lower)
 
     def from_sets(self, numbers: Mapping[str, int], arrays: Mapping[str, np.ndarray], lower: np.ndarray) -> np.ndarray:
-        """Return what :class:`CoverSets` tells of boxes: its numbers and arrays by the names in the C source."""
+        """Numbers and arrays of :class:`CoverSets` by the names in the C source."""
         return _answer(self._loaded.from_sets, _record(_Sets, numbers, arrays), lower)
 
 

@@ -104,7 +104,7 @@ def note_open_boxes(state: FrontState) -> None:
 
 
 def _sizes(state: FrontState) -> np.ndarray:
-    """Return what the gap of objectives that may be zero is a share of on this front, in phi."""
+    """Reference in phi of the gap of objectives that may be zero, on this front."""
     objectives, m = state.form.objectives, state.task.m
     declared = np.where(objectives.declared[:m], objectives.finest[:m] / state.task.settings.gap, 0.0)
     sizes: np.ndarray = np.maximum(ranges(state.phi_listed()), declared)

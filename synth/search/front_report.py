@@ -69,7 +69,7 @@ def further_designs(state: FrontState, candidates: Sequence[Candidate]) -> list[
 
 
 def _scale(state: FrontState) -> Scale | None:
-    """Return what the designs of the front are measured by; None where it is not known."""
+    """Scale by which designs of the front are ranked; None where it is not known."""
     return None if state.scored is None else state.scored.scale
 
 
@@ -158,7 +158,7 @@ def front_found(
 
 
 def _certificate(state: FrontState, designs: Sequence[Design], interrupted: bool) -> Certificate:
-    """Return what is proven: of all combinations, of those solved one by one, or nothing."""
+    """Statement of the proof: of all combinations, of those solved one by one, or none."""
     task, proof = state.task, state.proof
     kind = "global" if proof.closed else "exhaustive" if proof.exhausted and not interrupted else "heuristic"
     gap = (task.settings.gap if designs else None) if kind == "global" else proven_gap(state)
@@ -185,7 +185,7 @@ def _excluded(state: FrontState) -> int:
 
 
 def _statistics(state: FrontState) -> SearchStatistics:
-    """Return what the search has cost."""
+    """Cost of the search."""
     form, counters = state.form, state.counters
     return replace(
         offered(state.task.instance),

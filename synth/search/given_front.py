@@ -31,7 +31,7 @@ class GivenFront:
 
     @classmethod
     def nothing(cls, objectives: int) -> GivenFront:
-        """Return what stands for no earlier search."""
+        """Stand-in for no earlier search."""
         return cls(np.empty((0, objectives)), None, np.full(objectives, math.inf))
 
     def places(self, phi: np.ndarray, rounded: float) -> list[int]:

@@ -45,7 +45,7 @@ class TabledPruningRule(PruningRule, Protocol):
     """A rule whose cutoffs the kernel may read from tables."""
 
     def tables(self, form: Formulation) -> CutoffTables | None:
-        """Return what :meth:`cutoffs` and :meth:`possible_gain` say as tables; None where they cannot say it."""
+        """Tables for :meth:`cutoffs` and :meth:`possible_gain`; None where there are none."""
 
 
 class EpsilonCover:
@@ -103,7 +103,7 @@ class EpsilonCover:
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
     def tables(self, form: Formulation) -> CutoffTables | None:
-        """Return what the cutoffs are as tables, for one objective or two."""
+        """Tables of the cutoffs, for one objective or two."""
         columns, bounded = self.columns, form.bounded
         if reaches_beyond(self, bounded) or len(columns) > 2:
             return None
@@ -236,7 +236,7 @@ class NonImprovement:
         return steps[:, 0], np.maximum.accumulate(steps[::-1, 1])[::-1]
 
     def tables(self, form: Formulation) -> CutoffTables | None:
-        """Return what the cutoffs are as tables, for two objectives."""
+        """Tables of the cutoffs, for two objectives."""
         columns = self.columns
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
@@ -276,7 +276,7 @@ def beating(rows: np.ndarray, phi: np.ndarray, tie: float) -> np.ndarray:
 def _covered_from(
     form: Formulation, known: Archive, tolerance: np.ndarray
 ) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """Return what designs cover of two objectives, in signed values."""
+    """Region that designs cover of two objectives, in signed values."""
     pairs = zip((0, 1), known.covering(tolerance), strict=True)
     first, second = known.columns
     return tuple(

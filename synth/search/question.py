@@ -40,7 +40,7 @@ class Question:
         return replace(self, settings=self.settings.within(seconds))
 
     def record(self) -> SettingsRecord:
-        """Return what a front keeps of the question beside its frame, as files keep it."""
+        """Record of the question that a front keeps beside its frame, as files keep it."""
         request, settings = self.request, self.settings
         return SettingsRecord(
             points=settings.points,
@@ -93,7 +93,7 @@ class Question:
         return FrontSearch(task, progress)
 
     def report(self, explained: bool = True) -> Report:
-        """Return what the front is to tell; ``explained``: why, where nothing is feasible."""
+        """Front with its claim; ``explained``: why, where nothing is feasible."""
         return Report(weights=list(self.weights.values()), settings=self.record(), explained=explained)
 
 

@@ -28,7 +28,7 @@ class RelaxedBoxes:
         self.relaxation = LogRelaxation(form.bounding.propagation, self.settings)
 
     def tighten(self, boxes: Boxes, cutoffs: np.ndarray) -> Boxes:
-        """Return what survives of boxes that were tightened limit by limit; ``cutoffs`` bound phi, a row per box."""
+        """Remaining boxes after tightening limit by limit; ``cutoffs`` bound phi, a row per box."""
         kept = []
         for first in range(0, len(boxes), self.settings.at_once):
             deadline.check()

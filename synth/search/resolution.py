@@ -72,7 +72,7 @@ def gap_tolerance(gap: float, log: np.ndarray, finest: np.ndarray, sizes: np.nda
 
 
 def ranges(phi: np.ndarray) -> np.ndarray:
-    """Return what a gap of objectives that may be zero is a share of: their range, or size where they have none."""
+    """Reference of the gap of objectives that may be zero: their range, or size where they have none."""
     span = np.ptp(phi, axis=0)
     sizes: np.ndarray = np.where(span > 0, span, np.abs(phi).max(axis=0))
     return sizes

@@ -209,7 +209,7 @@ def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 
 def _followers_of(form: Formulation, values: RequirementValues) -> dict[str, dict[str, float]]:
-    """Return what moves with each requirement of a question; worked out once."""
+    """Quantities that move with each requirement of a question; computed once."""
     known = form.followers.get(values)
     if known is None:
         known = form.followers[values] = followers(form.model, values)

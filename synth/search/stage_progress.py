@@ -86,7 +86,7 @@ class StageProgress:
             )
 
     def _designs(self) -> Mapping[str, Any]:
-        """Return what is to be told of the designs known, where it is time for that."""
+        """Progress report on the known designs, where one is due."""
         now = time.monotonic()
         if now - self._told < self._limits.pause:
             return {}

@@ -50,7 +50,7 @@ class FailedTokens:
 
 
 def network_of(address: str) -> str:
-    """Return what is counted together: an address, or the network of one of IPv6.
+    """Network that is counted as one: an address, or the network of one of IPv6.
 
     Examples
     --------

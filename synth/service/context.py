@@ -66,7 +66,7 @@ class ServiceContext:
     ending: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def read(self, function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-        """Return what a quick look into the database finds.
+        """Result of a quick look into the database.
 
         A file is read in less time than it takes to hand over to a thread; a database elsewhere may let one wait.
         """
@@ -102,12 +102,12 @@ class WriteProbe:
 
 
 async def in_thread(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-    """Return what a function finds that may wait: everything that writes, or reads much."""
+    """Result of a function that may wait: everything that writes, or reads much."""
     return await run_sync(lambda: function(*args, **kwargs))
 
 
 async def context_of(request: Request) -> ServiceContext:
-    """Return what the routes of this server share."""
+    """Shared objects of the routes of this server."""
     found: ServiceContext = request.app.state.context
     return found
 

@@ -237,7 +237,7 @@ def register_errors(
 
 
 def _for_the_log(error: Exception) -> dict[str, Any]:
-    """Return what the log tells of an error: of one in another process where it was raised there."""
+    """Log fields of an error: of one in another process where it was raised there."""
     if isinstance(error, EngineFailedError):
         return {"error": error.failure.kind, "where": list(error.failure.where)}
     return {"error": type(error).__name__}
@@ -274,7 +274,7 @@ def _of_input(error: InputError) -> ServiceError:
 
 
 def _of_http(error: HTTPException, methods: Collection[str] = ()) -> ServiceError:
-    """Return what the framework refuses; where a path cannot be asked so, the methods by which it can.
+    """Answer to what the framework refuses; where a path cannot be asked so, the methods by which it can.
 
     The framework itself knows those of the first route that has the path.
     """
@@ -291,7 +291,7 @@ def _of_http(error: HTTPException, methods: Collection[str] = ()) -> ServiceErro
 
 
 def _of_validation(error: RequestValidationError) -> ServiceError:
-    """Return what a schema has refused: where, and what would be right; JSON that cannot be read is no input."""
+    """Refusal by a schema: where, and what would be right; JSON that cannot be read is no input."""
     found = error.errors()
     if any(fault["type"] == "json_invalid" for fault in found):
         return ServiceError(400, "the body is not JSON", "not_json")

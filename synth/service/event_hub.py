@@ -97,7 +97,7 @@ class Listener:
         self._news.set()
 
     async def next(self, within: float) -> StreamEvent | None:
-        """Return what comes next; None where nothing comes in time, or any more."""
+        """Next event; None where none comes in time, or any more."""
         if not self._waiting and not self.closed:
             try:
                 async with asyncio.timeout(within):
@@ -167,7 +167,7 @@ class EventHub:
         return {job for listener in self._listeners for job in listener.jobs}
 
     def read(self, jobs: Collection[str]) -> tuple[list[Happening], dict[str, Standing]]:
-        """Return what has happened since the last round, and how some jobs stand."""
+        """Events since the last round, and the state of some jobs."""
         if self._floor is None:
             self._floor = self._store.last_event()
         found: list[Happening] = []

@@ -34,7 +34,7 @@ async def ready(context: Context) -> JSONResponse:
 
 
 async def why_not_ready(context: ServiceContext) -> list[str]:
-    """Return what is missing, in words; nothing where all is well."""
+    """Missing parts, in words; empty where all is well."""
     settings = context.settings
     if context.ending.is_set():
         return ["the server is ending"]

@@ -91,7 +91,7 @@ class ServiceMetrics:
         self._seconds.labels(route).observe(seconds)
 
     def questions(self, pool: str) -> QuestionFigures:
-        """Return what counts the questions to a kind of engine processes."""
+        """Counter of the questions to a kind of engine processes."""
         return QuestionFigures(pool, *self._questions)
 
     def text(self) -> bytes:

@@ -267,7 +267,7 @@ class BodyCheck:
         return most
 
     def _bounded(self, receive: Receive, most: int) -> Receive:
-        """Return what receives a body until it is too large, or too slow.
+        """Receiver of a body that ends where it is too large, or too slow.
 
         Its errors are those of the framework: readers of forms let them through, and no others.
         """
@@ -316,7 +316,7 @@ class BodyCheck:
 
     @staticmethod
     def _again(body: bytes, receive: Receive) -> Receive:
-        """Return what gives a body that was read already, and then what comes."""
+        """Receiver that gives a body that was read already, and then what follows."""
         waiting = [body]
 
         async def received() -> Message:

@@ -19,7 +19,7 @@ LIVED = 2.0  # times as long as the pause before it, that a process must live to
 
 
 def worker_command(settings: ServiceSettings) -> list[str]:
-    """Return what starts the worker of this machine; the database is told by a variable, as it may hold a password."""
+    """Command that starts the worker of this machine; a variable names the database, which may hold a password."""
     return [*COMMAND, "worker", "--slots", str(settings.workers), "--follow"]
 
 

@@ -60,7 +60,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
 
 
 def fault_of(told: Mapping[str, Any]) -> InputError:
-    """Return what a schema says of one place as a sentence of ours."""
+    """Fault that a schema has found in one place, in our words."""
     place = tuple(told["loc"])
     path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
     value = None if told["type"] == "missing" else _short(told.get("input"))

@@ -93,7 +93,7 @@ class NearEquals:
         return pd.DataFrame(rows, columns=columns)
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text; ``folder``: where that will stand."""
+        """Files that ``save`` writes: file name -> text; ``folder``: where they will stand."""
         told = {
             "family": self.reference.frame.family,
             "within": self.within,
@@ -561,7 +561,7 @@ class _Enumeration:
         return next((d.rank for d in self.front.designs if codec.number(d) == number and _same(d, design)), None)
 
     def _differences(self, combination: int) -> tuple[str, ...]:
-        """Return what is other than in the chosen design."""
+        """Differences from the chosen design."""
         own, its = self.instance.combinations.describe(self.own), self.instance.combinations.describe(combination)
         words = []
         for slot, (table, row) in its[0].items():

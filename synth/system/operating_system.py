@@ -107,7 +107,7 @@ def cores() -> int:
 
 
 def apart() -> dict[str, Any]:
-    """Return what ``subprocess.Popen`` is told so that Ctrl-C in the terminal does not reach a process."""
+    """Arguments of ``subprocess.Popen`` that keep Ctrl-C in the terminal from a process."""
     if sys.platform == "win32":
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.CREATE_NO_WINDOW}
     return {"start_new_session": True}

@@ -268,7 +268,7 @@ class Catalogs:
         return found
 
     def differences(self) -> tuple[str, ...]:
-        """Return what is not as a record has kept it: files that are away, and rows that have changed."""
+        """Differences from a record: files that are away, and rows that have changed."""
         found = [
             f"table {name}: {file} is not there; the rows kept with the designs are taken"
             for name, file in self.away().items()

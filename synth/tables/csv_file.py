@@ -14,14 +14,14 @@ from synth.tables.table_file import TableFile, table_file
 
 
 def read_csv_file(path: Path, plain: bool = False) -> CsvFile:
-    """Return what stands in a file; ``plain``: written in one way alone, as tables of ours are."""
+    """Content of a file; ``plain``: written in one way alone, as shipped tables are."""
     file = TableFile(path) if plain else table_file(path)
     raw = read_bytes(file.path, "catalogue file", "a CSV file")
     return read_csv_bytes(raw, file.path.name, plain, file.encoding)
 
 
 def read_csv_bytes(raw: bytes, name: str, plain: bool = False, encoding: str = "") -> CsvFile:
-    """Return what stands in the bytes of a file; ``name`` is that of it, for messages."""
+    """Content of the bytes of a file; ``name`` is that of the file, for messages."""
     found = delimited_text(raw, name, encoding)
     if plain and found.sentence():
         right = "columns separated by commas, decimal points, UTF-8"

@@ -65,7 +65,7 @@ class DelimitedText:
             yield number, self.numbers.read(cells)
 
     def sentence(self) -> str:
-        """Return what was recognised, in a sentence; nothing where it is written as is expected."""
+        """Recognised dialect, in a sentence; empty where the text is written as expected."""
         told = []
         if self.delimiter != "," or self.stated:
             says = " as its first line says" if self.stated else ""
@@ -206,7 +206,7 @@ def first_lines(raw: bytes, name: str, most: int, encoding: str = "") -> bytes:
 
 
 def _delimiter(head: str, written: DelimitedText) -> str:
-    """Return what stands between the columns: what gives the header most cells, and as many in every line."""
+    """Delimiter of columns: the one that gives the header most cells, and as many in every line."""
     present = [mark for mark in DELIMITERS if mark in head]
     if len(present) < 2:
         return present[0] if present else ","

@@ -140,7 +140,7 @@ def _is_japanese(raw: bytes) -> bool:
 
 
 def _doubt(raw: bytes, name: str, pages: list[str]) -> InputError:
-    """Return what is asked of a text that may be in several code pages: with a word as each of them has it."""
+    """Question about a text that may be in several code pages: with a word as each of them has it."""
     readings = [raw.decode(page).splitlines() for page in pages]
     lines = zip(*readings, strict=False)
     number, line = next((k, line) for k, line in enumerate(lines, start=1) if len(set(line)) > 1)

@@ -342,7 +342,7 @@ def _lines_of_sheet(path: Path, schema: Schema | None) -> tuple[Sheet, list[tupl
 
 
 def _holds_header(schema: Schema | None) -> Callable[[Sequence[str]], bool]:
-    """Return what tells whether cells are the header of a table: by its designations, or the columns of its data."""
+    """Test whether cells are the header of a table: by its designations, or the columns of its data."""
     wanted = {DESIGNATION}
     if schema is not None and schema.get(DESIGNATION) is None:
         wanted = {column.name for column in schema.columns}

@@ -41,7 +41,7 @@ class TableFile:
 
 
 def table_file(named: Path) -> TableFile:
-    """Return what a name says.
+    """Parts of a file name.
 
     Raises
     ------

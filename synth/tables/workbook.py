@@ -128,7 +128,7 @@ class Sheet:
             yield number, [r if isinstance(c, str) else t for r, t, c in zip(read, texts, cells, strict=True)]
 
     def sentence(self) -> str:
-        """Return what was recognised, in a sentence; nothing where there is one way to read it."""
+        """Recognised dialect, in a sentence; empty where there is one way to read the sheet."""
         sheet = f"{'hidden ' if self.unseen else ''}sheet {self.title}"
         told = [sheet] if self.several or self.unseen or self.hidden else []
         if self.hidden:
@@ -290,7 +290,7 @@ def without_hidden_rows(raw: bytes, name: str, field: str) -> bytes:
 
 
 def table_elsewhere(path: Path, field: str, fits: Callable[[list[str]], bool], name: str = "") -> str:
-    """Return what is right where the header of a table is not in the first row of the sheet that is meant.
+    """Hint where the header of a table is not in the first row of the sheet that is meant.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def table_elsewhere(path: Path, field: str, fits: Callable[[list[str]], bool], n
 
 
 def header_first(line: int, sheet: str = "") -> str:
-    """Return what is right where a header is not in the first line, or on another sheet than the first."""
+    """Hint where a header is not in the first line, or on another sheet than the first."""
     where = f"{line} of sheet {sheet}" if sheet else str(line)
     ways = [f"name that sheet (#{sheet} behind the name)"] if sheet else []
     ways += ["delete what is above it"] if line > 1 else []

@@ -208,7 +208,7 @@ def _code(counts: dict[str, int], stopped: str) -> int:
 
 
 def _checked(progress: Progress | None, check: Callable[[], None]) -> Progress:
-    """Return what shows progress, and stops where a signal has been lost."""
+    """Progress callback that also stops where a signal has been lost."""
 
     def show(state: Mapping[str, Any]) -> None:
         check()

@@ -52,7 +52,7 @@ class PlainConsole(Console):
     """A console that acts on the terminal by itself alone, never by what it is given to show."""
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
-        """Return what is shown, characters that act on a terminal written out."""
+        """Text with characters that act on a terminal written out."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else Segment(printable(segment.text), segment.style)
 
@@ -137,7 +137,7 @@ def named_file(name: str, kept: bool) -> str:
 
 
 def in_common(made: Sequence[Mapping[str, str]]) -> dict[str, str]:
-    """Return what several designs have in common of what they are made of; nothing of one alone."""
+    """Parts and counts that several designs share; empty for a single design."""
     return {n: text for n, text in made[0].items() if all(x.get(n) == text for x in made)} if len(made) > 1 else {}
 
 
@@ -362,7 +362,7 @@ def _limits(design: Design, states: Mapping[str, str]) -> Table:
 
 
 def _remarks(design: Design) -> list[str]:
-    """Return what else is to be said of a design."""
+    """Further remarks on a design."""
     not_asked = ", ".join(map(words, design.frame.not_asked))
     return [
         *(in_words(remark, design.names) for remark in design.not_checked),

@@ -124,7 +124,7 @@ def report(
 
 
 def _about(file: Path | None) -> dict[str, Any]:
-    """Return what a file says about a report."""
+    """About block of a report, read from a file."""
     if file is None:
         return {}
     from synth.question.spec import read_content

@@ -90,7 +90,7 @@ def pair(flag: str, text: str) -> tuple[str, str]:
 
 
 def objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
-    """Return what repeated flags ask for: names, or names with min or max."""
+    """Objectives from repeated flags: names, or names with min or max."""
     if not texts:
         return None
     if not any("=" in text for text in texts):
@@ -105,7 +105,7 @@ def objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
 
 
 def frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
-    """Return what frames are written as: file name -> text, a table and a drawing of each."""
+    """Files for frames: file name -> text, a table and a drawing of each."""
     draw = report("figure")
     files = {}
     for key, frame in frames.items():

@@ -96,7 +96,7 @@ def _made(design: Design) -> dict[str, str]:
 
 
 def _shared(study: Study) -> dict[str, str]:
-    """Return what the leading designs of all steps have in common."""
+    """Parts and counts that the leading designs of all steps share."""
     return in_common([_made(f.designs[0]) for f in study.fronts if f.designs])
 
 

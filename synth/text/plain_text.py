@@ -145,7 +145,7 @@ def as_list(names: Iterable[str]) -> str:
 
 
 def as_meant(cell: str) -> str:
-    """Return what the text of a cell was before ``defused``.
+    """Text of a cell before ``defused``.
 
     Examples
     --------
@@ -156,7 +156,7 @@ def as_meant(cell: str) -> str:
 
 
 def csv_cell(value: Any) -> Any:
-    """Return what is written into a cell of a table: numbers in full precision, text that does nothing."""
+    """Cell of a table: numbers in full precision, text that does nothing."""
     if isinstance(value, float):
         return repr(value)
     return "" if value is None else defused(printable(value)) if isinstance(value, str) else value

@@ -152,7 +152,7 @@ class _VariantColumns:
                     self.complete &= ~np.isnan(self.columns[slot, key])
 
     def column(self, entry: DataInput) -> FloatArray:
-        """Return what the variants have for an input that belongs to a slot, count or choice."""
+        """Values of the variants for an input that belongs to a slot, count or choice."""
         if entry.columns:
             return self.columns[entry.name, entry.column]
         return self.counts[entry.name] if entry.kind == "count" else self.choices[entry.name]

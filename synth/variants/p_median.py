@@ -80,7 +80,7 @@ class Chooser:
     # -- exact costs ---------------------------------------------------------------------------
 
     def cost(self, columns: Iterable[int]) -> float:
-        """Return what a choice costs; infinite where it leaves a row unserved."""
+        """Cost of a choice; infinite where it leaves a row unserved."""
         chosen = list(columns)
         if not chosen:
             return np.inf if self.rows else 0.0
@@ -268,7 +268,7 @@ class Chooser:
         return bound
 
     def _integer(self, number: int, free: NDArray[np.int_], deadline: float) -> tuple[list[int] | None, float]:
-        """Return what the mixed-integer program with the cuts so far proposes, and its bound."""
+        """Proposal of the mixed-integer program with the cuts so far, and its bound."""
         value, y, _ = self._master(number, free, True, deadline)
         if y is None:
             return None, value

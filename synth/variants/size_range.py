@@ -78,7 +78,7 @@ class SizeRange:
         return frame
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Files that ``save`` writes: file name -> text."""
         record = {
             "format": SIZE_RANGE_FORMAT,
             "objective": self.objective,

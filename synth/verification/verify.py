@@ -552,7 +552,7 @@ class VerificationRun:
         return ends
 
     def _sizes(self) -> np.ndarray:
-        """Return what a gap of an objective is a share of: its value, or what makes it the amount that is told."""
+        """Reference of the gap of an objective: its value, or the amount that the claim states."""
         return np.where(np.isnan(self.per_gap), np.abs(self.signed), self.per_gap)
 
     def _improvement(self, point: Point) -> tuple[float, int]:

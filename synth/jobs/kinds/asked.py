@@ -324,7 +324,7 @@ def records_of(sources: Sources, job: Any) -> Mapping[str, bytes]:
 
 
 def shown_job(records: Mapping[str, bytes]) -> Described:
-    """Return what to show of an earlier job that is not of the kind that is wanted."""
+    """Text shown for an earlier job that is not of the kind needed."""
     if any(name.startswith(TABLE) for name in records):
         return Described("a batch")
     named = _json_of(records, QUESTION).get("kind") if QUESTION in records else None
@@ -408,7 +408,7 @@ def is_comparison(records: Mapping[str, bytes]) -> bool:
 
 
 def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
-    """Return what a spec asks of one family.
+    """Request to one family in a spec.
 
     Raises
     ------

@@ -87,7 +87,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
 
 
 def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return what a table says, and which rows cannot be asked; of a long one the first, as far as time allows.
+    """Content of a table and the rows that cannot be asked; of a long one the first, as far as time allows.
 
     Raises
     ------

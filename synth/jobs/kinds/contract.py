@@ -127,7 +127,7 @@ class Mentioned:
 
 
 def mentioned(request: Any) -> Mentioned:
-    """Return what a request refers to; whatever is wrong with it is for ``read`` to say.
+    """Jobs and tables that a request refers to; whatever is wrong with them is for ``read`` to say.
 
     A job that is mentioned may refer to tables itself: by its own request, which is asked the same way.
 

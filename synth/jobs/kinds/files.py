@@ -132,12 +132,12 @@ def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, Any], s
 
 
 def _derived(front: ParetoFront) -> dict[str, str]:
-    """Return what follows from the record of a front alone, as its folder holds it."""
+    """Files that follow from the record of a front alone, as its folder holds it."""
     return front.record_files(str((front.record or {}).get("calculation", "")))
 
 
 def _explored(records: Mapping[str, bytes]) -> str:
-    """Return what the explorer shows of a front, whose drawings a page asks for one by one, or of a comparison."""
+    """Explorer record of a front, whose drawings a page asks for one by one, or of a comparison."""
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
         folder = Path(place, "front")
         unpack(records, folder)

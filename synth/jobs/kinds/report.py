@@ -99,7 +99,7 @@ class ReportAsked:
 
 
 def _about(given: Any) -> dict[str, Any] | None:
-    """Return what a report says of whom it is for; no entry names a file."""
+    """About block of a report; no entry names a file."""
     if given is None:
         return None
     with at("about"):

@@ -93,7 +93,7 @@ def _family(problem: DesignProblem, declared: Declaration) -> dict[str, Any]:
 
 
 def declaration(family: Any, options: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return what a family declares, as a form shows it.
+    """Declaration of a family, as a form shows it.
 
     Parameters
     ----------
@@ -283,7 +283,7 @@ class _Check:
             self._one_family(spec)
 
     def _caught(self, act: Callable[..., T], *given: Any) -> T | None:
-        """Return what a reader returns; None where it refuses, which is noted."""
+        """Value from a reader; None where it refuses, which is noted."""
         try:
             return act(*given)
         except InputError as fault:
@@ -297,7 +297,7 @@ class _Check:
     # -- entries by themselves -----------------------------------------------------------------
 
     def _entries(self, request: Any) -> dict[str, Any]:
-        """Return what stands under the keys of a spec and is of its kind."""
+        """Entries under the keys of a spec that are of the right kind."""
         if isinstance(request, Mapping):
             for key in [key for key in request if key not in self.keys]:
                 self._caught(known_keys, {key: 0}, self.keys)
@@ -306,7 +306,7 @@ class _Check:
         return {} if found is None else found[0]
 
     def _entry(self, key: str, value: Any) -> Any:
-        """Return what stands under one key, without what is not of its kind; None where nothing is left."""
+        """Entry under one key, without parts of a wrong kind; None where nothing is left."""
         if key not in MAPPINGS or not isinstance(value, Mapping):
             return value if self._fits(key, value) else None
         return {name: entry for name, entry in value.items() if self._fits(key, {name: entry})}

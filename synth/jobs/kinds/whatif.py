@@ -162,7 +162,7 @@ def _objectives(model: Model, stated: Any) -> list[str]:
 
 
 def _vary(stated: Any) -> dict[str, Any]:
-    """Return what varies as the verb takes it.
+    """Varied quantity as the verb takes it.
 
     Raises
     ------
@@ -190,7 +190,7 @@ def _ends(values: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def _stated_vary(stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what varies as it is stored."""
+    """Varied quantity as it is stored."""
 
     def entry(values: Any) -> Any:
         if isinstance(values, Mapping):

@@ -347,7 +347,7 @@ class JointOptima:
     def rule(
         self, asked: np.ndarray, form: Formulation | None = None, known: IncumbentPerScenario | None = None
     ) -> BestPerScenario:
-        """Return what prunes boxes of the questions asked; by default with what is known here."""
+        """Pruning rules for boxes of the questions asked; by default with the designs known here."""
         form, known = form or self.form, self.known if known is None else known
         if self.needs is None:
             return BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
@@ -355,7 +355,7 @@ class JointOptima:
         return BestPerScenario(form, known, lambda phi: np.full(len(phi), tolerance), asked, self.needs.to_beat)
 
     def in_infeasibility_mode(self) -> JointTree:
-        """Return what tries with boxes that carry what limits share, which helps where limits leave little room."""
+        """Search with boxes that carry the resources limits share, which helps where limits are tight."""
         form = self._prepared(infeasibility=True)
         form.counters.solved_combinations = self.form.counters.solved_combinations
         form.bounding.branching.adopt(self.form.bounding.branching.statistics())
@@ -367,7 +367,7 @@ class JointOptima:
         return form.boxes.roots(self.limits.side_by_side) if self.instance.floors else form.boxes.root()
 
     def none_known(self) -> IncumbentPerScenario:
-        """Return what will hold the best design of each question."""
+        """Table for the best design of each question."""
         return IncumbentPerScenario(
             self.instance, self.sought, self.form.n, len(self.form.goals), self.fixed_cutoffs, self.tuning
         )

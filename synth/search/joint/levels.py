@@ -155,7 +155,7 @@ class LevelProof:
             search.form.bounding.branching.adopt(learned)
 
     def learned(self) -> BranchingStatistics:
-        """Return what solved problems have taught about where to split."""
+        """Branching knowledge learned from solved problems."""
         return self.search.form.bounding.branching.statistics()
 
     def try_known(self) -> None:
@@ -204,7 +204,7 @@ class LevelProof:
         by_turns(ways, budget, first, between)
 
     def levels(self, proven_alone: bool = False) -> list[Level]:
-        """Return what is proven of each level; what is open is told by the lower bounds of its boxes.
+        """Proven bound of each level; open ones follow from the lower bounds of their boxes.
 
         ``proven_alone``: only of levels that are proven, which spares those bounds.
         """
@@ -245,7 +245,7 @@ class LevelProof:
 
 
 def levels_told(cutoffs: Cutoffs, best: np.ndarray, corners: Mapping[int, np.ndarray | None]) -> list[Level]:
-    """Return what is told of levels.
+    """Statement about levels.
 
     A level that follows another one says what both say: nothing in either range is better than the least of both, but
     for what is open in either.

@@ -137,7 +137,7 @@ def _itself(tree: BestTree) -> Callable[[], BestTree]:
 
 
 def _ends(state: FrontState, k: int, trees: list[BestTree]) -> list[Level]:
-    """Return what each tree has proven of an objective; each of them speaks of all designs."""
+    """Bound of an objective from each tree; each of them covers all designs."""
     least = float(state.form.archive.phi[:, k].min(initial=np.inf)) + state.task.tuning.tolerances.rounded
     nowhere, tolerance = np.full(state.task.m, np.inf), state.rule.tolerance
     closed = [t for t in trees if not len(t.left)]
@@ -186,7 +186,7 @@ class BestByTurns:
             self.looked += budget.looked
 
     def left(self) -> Boxes:
-        """Return what the tree has open that tells most; the state goes on with its formulation."""
+        """Unresolved boxes with the weakest bound; the state goes on with its formulation."""
         phi = [t.form.objectives.phi_of(t.left.bounds)[:, self.k].min(initial=np.inf) for t in self.pair]
         most = self.pair[int(np.argmax(phi))]
         if most.form is not self.state.form:

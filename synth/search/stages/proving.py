@@ -57,7 +57,7 @@ def _worth_proving(state: FrontState) -> list[Candidate]:
 
 
 def _staircase(state: FrontState) -> NonImprovement:
-    """Return what tells which designs improve those of the front."""
+    """Criterion for designs that improve those of the front."""
     proven, rule = state.proof.designs, state.rule
     state.proof.staircase = NonImprovement(state.front, rule.columns, rule.tolerance, state.form.archive, proven)
     return state.proof.staircase

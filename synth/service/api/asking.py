@@ -183,7 +183,7 @@ def tagged(
 
 
 def tagged_json(request: Request, told: Any, version: str) -> Response:
-    """Return what depends on the code or the tables of this server alone, with their digest as the tag."""
+    """Answer that depends on the code or the tables of this server alone, with their digest as the tag."""
     content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
     return tagged(request, content, JSON, f'"{version}"')
 

@@ -156,7 +156,7 @@ def _entry(found: Catalogue) -> CatalogueEntry:
 
 
 def difference(before: Catalogue, after: Catalogue) -> CatalogueDiff:
-    """Return what differs between two versions: rows are known by their first cell, columns by their heading."""
+    """Differences between two versions: rows are known by their first cell, columns by their heading."""
     old, new = _cells(text_of(before).csv), _cells(text_of(after).csv)
     old_columns, new_columns = _columns(old), _columns(new)
     both = [column for column in new_columns if column in old_columns]

@@ -182,7 +182,7 @@ class _Telling:
         ]
 
     def _missed(self, after: int, standing: dict[str, Job | None]) -> list[StreamEvent]:
-        """Return what has happened since an event that was seen, as far as a stream holds; no end but the last."""
+        """Events since one that was seen, as far as a stream holds them; no end but the last."""
         found: list[StreamEvent] = []
         for name, job in standing.items():
             happened = self.context.store.happenings(after, job=name, most=self.context.settings.stream_queue)
@@ -201,7 +201,7 @@ class _Telling:
         return parts
 
     def _said(self, told: StreamEvent) -> list[bytes]:
-        """Return what is said of something; nothing where it was said before."""
+        """Event on something; None where it was sent before."""
         if told.job not in self.open or told.id in self.known:
             return []
         if told.id is not None:

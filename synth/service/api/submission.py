@@ -33,7 +33,7 @@ class Wish:
     seconds_limit: float | None = None
 
     def body(self) -> str:
-        """Return what tells it from another wish."""
+        """Content by which a submission is told from another one with the same key."""
         told = (self.kind, self.request, self.title, self.parent, self.priority, self.seconds_limit)
         return body_digest(list(told))
 

@@ -95,7 +95,7 @@ class PageRoute(APIRoute):
     """Answers refusals as people read them: with a page, or with the way to sign in."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return what answers a request."""
+        """Handler of a request."""
         handler = super().get_route_handler()
 
         async def handle(request: Request) -> Response:

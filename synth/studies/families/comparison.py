@@ -117,7 +117,7 @@ class Comparison:
         return pd.DataFrame(rows, columns=columns)
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
-        """Return what ``save`` writes into its folder: file name -> text; ``folder``: where that will stand."""
+        """Files that ``save`` writes into its folder: file name -> text; ``folder``: where they will stand."""
         width = max(2, len(str(len(self.designs))))
         found = {
             "designs.csv": csv_text(*self._table()),

@@ -48,7 +48,7 @@ class Outcomes:
     chosen: bool
 
     def of(self, one: Applicant) -> FamilyOutcome:
-        """Return what becomes of a family."""
+        """Outcome of a family."""
         d = one.declaration
         quantities: Mapping[str, Any] = {**d.variables, **d.counts, **d.derived}
         meanings = {n: quantities[n].text for n in self.front.objectives if n in quantities}
@@ -69,7 +69,7 @@ class Outcomes:
         return self._without_place(member, told) if member.designs else _without_design(member, told)
 
     def _without_place(self, member: Competitor, told: FamilyOutcome) -> FamilyOutcome:
-        """Return what becomes of a family none of whose designs is listed."""
+        """Outcome of a family none of whose designs is listed."""
         if any(m is member for m, _ in self.every):
             reason = "it has designs that nothing beats, but there is no room for them among so few points"
             return replace(told, outcome="beaten", sentence=reason)
@@ -106,7 +106,7 @@ class Outcomes:
 
 
 def _without_design(member: Competitor, told: FamilyOutcome) -> FamilyOutcome:
-    """Return what becomes of a family of which no design was found."""
+    """Outcome of a family of which no design was found."""
     if member.front.interrupted:
         reason = f"no design was found until it was stopped ({member.front.interrupted})"
         return replace(told, outcome="stopped", sentence=reason)

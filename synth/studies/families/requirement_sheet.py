@@ -49,7 +49,7 @@ class Applicant:
     misfits: list[str] = field(default_factory=list)
 
     def robust(self, sheet: Sheet) -> dict[str, Any]:
-        """Return what scatters: by the sheet of all, and its own."""
+        """Scatter of the sheet of all, and of its own."""
         return {**sheet["robust"], **self.own["robust"]}
 
     def effort(self) -> tuple[int, int]:
@@ -59,7 +59,7 @@ class Applicant:
         return len(d.variables) + len(d.slots), math.prod(kinds)
 
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
-        """Return what it is asked: the sheet of all and its own, and by what designs are ranked."""
+        """Question of the family: the sheet of all and its own, and the objectives of the ranking."""
         asked: dict[str, Any] = {key: {**sheet[key], **self.own[key]} for key in ("limits", "fix", "parts")}
         requirements = {**sheet["requirements"], **self.own["requirements"]}
         return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **asked, **ranked)

@@ -104,7 +104,7 @@ class ExplainedQuestion:
             Instance(whole)
 
     def _pins(self, fix: Mapping[str, Any]) -> dict[str, Pin]:
-        """Return what is pinned to a number, and the counts of which comparisons leave some values."""
+        """Quantities pinned to a number, and counts of which comparisons leave some values."""
         model, found = self.instance.model, dict[str, Pin]()
         for k, variable in enumerate(model.variables):
             if variable.name in fix:

@@ -178,7 +178,7 @@ class Explanation:
         return notebook_html("Why nothing is feasible", [self.message, *self.not_settled], columns, rows, level)
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Files that ``save`` writes: file name -> text."""
         return {
             "explanation.csv": frame_csv(self.to_frame()),
             "explanation.json": json.dumps(self._told(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
@@ -194,7 +194,7 @@ class Explanation:
         return [target / name for name in files]
 
     def _told(self) -> dict[str, Any]:
-        """Return what explanation.json holds."""
+        """Content of explanation.json."""
         return {
             "feasible": self.feasible,
             "message": self.message,
@@ -246,6 +246,6 @@ def roundings(value: float, unit: str, up: bool) -> tuple[str, ...]:
 
 
 def as_given(si: float, unit: str) -> str:
-    """Return what stands in a question, beside what is needed: with as many digits, whole parts in full."""
+    """Present value in a question, beside the one needed: with as many digits, whole parts in full."""
     whole = math.floor(math.log10(abs(shown))) + 1 if (shown := float(from_si(si, unit))) else 0
     return written_quantity(si, unit, max(WAYS_OUT.digits, whole))

@@ -41,7 +41,7 @@ class _Change:
     rounded: str = ""  # what is told in place of the text, where that has all digits
 
     def words(self, k: int) -> str:
-        """Return what changes, at the k-th of the values."""
+        """Changes at the k-th of the values."""
         return f"{self.shown} {self.rounded or self.texts[k]} instead of {self.given}"
 
 

@@ -78,7 +78,7 @@ class Patches:
         return patch
 
     def _word(self, key: str, name: str) -> str:
-        """Return what the user calls something under a key of the spec; its name where it does not stand there."""
+        """User's name for something under a key of the spec; its own name where it does not stand there."""
         stated, names = getattr(self.request, key), self.question.names
         return next((str(word) for word in stated if names.get(str(word)) == name), name)
 

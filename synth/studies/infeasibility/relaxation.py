@@ -123,7 +123,7 @@ class Relaxed(DesignProblem):
         return replace(limit, limit=limit.limit * np.exp(sign * amount))
 
     def _refusals(self, moved: _Substitution) -> tuple[list[Refusal], list[Limit]]:
-        """Return what is refused outright, and limits in place of what is refused for something that moves.
+        """Outright refusals, and limits in place of refusals of something that moves.
 
         That is refused where it has moved to.
         """

@@ -36,7 +36,7 @@ class Trial:
 def trials(
     question: ExplainedQuestion, fired: Sequence[FiredGuard], conflict: Sequence[str], physics: bool
 ) -> list[Trial]:
-    """Return what is tried alone.
+    """Changes that are tried alone.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class SingleWays:
         self.search, self.patches, self.question = search, patches, search.question
 
     def way(self, trial: Trial) -> Relaxation | str | None:
-        """Return what one thing alone must become; None where nothing would do, a sentence where that is not settled.
+        """Value that one thing alone must take; None where nothing would do, a sentence where that is not settled.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class SingleWays:
         return way
 
     def _giving(self, trial: Trial, most: float) -> Giving:
-        """Return what gives way for a trial."""
+        """Relaxed requirement of a trial."""
         if trial.kind == PIN:
             return Giving(give={}, most=most, pins=[self.question.pins[trial.name]])
         names = self.question.at_corners(trial.name) if trial.kind == LIMIT else [trial.name]

@@ -106,7 +106,7 @@ class Prices:
         return pd.DataFrame([[getattr(row, c) for c in COLUMNS] for row in self.rows], columns=list(COLUMNS))
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Files that ``save`` writes: file name -> text."""
         table = csv_text(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
         store = PriceStore(None, self.fingerprint, self.front)
         self._enter(store)
@@ -156,7 +156,7 @@ class PriceStore:
         return cls(folder / f"stopped_{fingerprint[:8]}", fingerprint, front)
 
     def _read(self, path: Path) -> dict[int, list[dict[str, Any]]] | None:
-        """Return what an earlier run of the same question has finished; None where there was none."""
+        """Finished part of an earlier run of the same question; None where there was none."""
         try:
             content = read_json(path, "prices", "prices that clutchsynth has written")
             if content["format"] != PRICES_FORMAT or content["fingerprint"] != self.fingerprint:
@@ -166,7 +166,7 @@ class PriceStore:
             return None
 
     def text(self) -> str:
-        """Return what stands in the file."""
+        """Content of the file."""
         content = {
             "format": PRICES_FORMAT,
             "fingerprint": self.fingerprint,

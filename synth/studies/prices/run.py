@@ -285,7 +285,7 @@ class _Case:
         return best
 
     def _still(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what :meth:`_without_a_step` tells of other parts, and of more that are like the best of them."""
+        """Results of :meth:`_without_a_step` for other parts, and for more that are like the best of them."""
         total = self.again.instance.combinations.count
         values, start, near = self._without_a_step(self.others)
         whole, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]

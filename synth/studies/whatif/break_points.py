@@ -39,7 +39,7 @@ class Kept(Protocol):
     """Where results are kept."""
 
     def value(self, key: str, fingerprint: str) -> Any:
-        """Return what is kept under a key for a question, or None."""
+        """Stored result under a key for a question, or None."""
 
     def keep(self, key: str, fingerprint: str, value: Any) -> None:
         """Keep something for a question."""
@@ -196,7 +196,7 @@ class _Oracle:
                 self._take(w, _Best(best_design(front, w.objective), proven))
 
     def _shared_bounds(self, question: Question) -> SharedBounds:
-        """Return what holds for all values between the steps, for questions like one."""
+        """Bounds for all values between the steps, for questions like one."""
         common = joint_key(question)
         if common not in self.shared_bounds:
             ends = [q for q in self._at_steps(next(iter(question.chosen))) if joint_key(q) == common]

@@ -279,7 +279,7 @@ class _Run:
         return left
 
     def _shown(self, says: str, begin: float, share: float) -> Progress | None:
-        """Return what makes of the progress of one part that of the study; ``begin`` and ``share`` of the whole."""
+        """Progress callback of one part, mapped to the study; ``begin`` and ``share`` of the whole."""
         tell = self.progress
         if tell is None:
             return None

@@ -45,7 +45,7 @@ def at_value(request: Request, varied: Varied, value: Value) -> Request:
 
 
 def _rater_of(request: Request) -> Rater | None:
-    """Return what rates designs over the range; None where nothing scatters.
+    """Rating function over the range; None where nothing scatters.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def _with_option(request: Request, name: str, word: str) -> DesignProblem:
 
 
 def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
-    """Return what scatters, with one thing over another range or, for "none", without it."""
+    """Scatter of a problem, with one entry over another range or, for "none", without it."""
     names = _declared(request).names()
 
     def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
 
 
 def _without(request: Request, given: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return what is given by name or symbol, without one name."""
+    """Values given by name or symbol, without one name."""
     spellings = _declared(request).names()
     return {word: value for word, value in given.items() if spellings.get(str(word)) != name}
 

@@ -57,7 +57,7 @@ class Study(StudyAnswers):
         return pd.DataFrame(rows, columns=columns)
 
     def curves(self) -> dict[str, pd.DataFrame]:
-        """Return what is drawn, by file name, as the hooks of families do: objectives over what is varied, fronts."""
+        """Drawings by file name, as the hooks of families make them: objectives over the varied quantity, fronts."""
         return curves_of(self)
 
     def _repr_html_(self) -> str:
@@ -74,7 +74,7 @@ class Study(StudyAnswers):
     # -- files ---------------------------------------------------------------------------------
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Files that ``save`` writes: file name -> text."""
         found = {"whatif.csv": csv_text(*steps_table(self)), "breaks.csv": csv_text(*breaks_table(self))}
         draw = report("figure")
         if draw is not None and self.feasible:

@@ -71,7 +71,7 @@ class Composition:
 
     @staticmethod
     def of(design: Design, objective: str) -> Composition:
-        """Return what a design is made of."""
+        """Parts and counts of a design."""
         kinds = design.frame.kinds
         return Composition(
             {slot: str(row) for slot, row in design.parts.items()},
@@ -112,7 +112,7 @@ class Break:
 
     @property
     def kind(self) -> str:
-        """Return what changes: feasible, parts, counts or choices, the first that applies."""
+        """First change that applies: feasible, parts, counts or choices."""
         if self.before is None or self.after is None:
             return "feasible"
         for kind in ("parts", "choices", "counts"):

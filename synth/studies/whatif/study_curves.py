@@ -20,7 +20,7 @@ NO_DESIGN = "no design"
 
 
 def curves_of(study: StudyAnswers) -> dict[str, pd.DataFrame]:
-    """Return what is drawn, by file name, as the hooks of families do."""
+    """Drawings by file name, as the hooks of families make them."""
     found = {"whatif": _objective_curves(study)}
     fronts = _front_curves(study)
     return found if fronts is None else {**found, "fronts": fronts}
@@ -118,7 +118,7 @@ def _same(a: Break, b: Break) -> bool:
 
 
 def _note(study: StudyAnswers, k: int, group: Sequence[Break]) -> str:
-    """Return what happens at a break point: where, for what, and from which parts and counts to which."""
+    """Description of a break point: where, for which objective, and from which parts and counts to which."""
     first = group[0]
     place = study.varied[k].measured(first.value)
     beside = f" ({_words(study, k, first.others)})" if first.others else ""
@@ -209,7 +209,7 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
 
 
 def _nowhere(study: StudyAnswers, k: int, groups: Sequence[tuple[Value, ...]]) -> list[str]:
-    """Return what a footer says of values beside those along the axis that have no design anywhere."""
+    """Footer for values beside those along the axis that have no design anywhere."""
     empty = [g for g in dict.fromkeys(_without(s.values, k) for s in study.steps) if g not in groups]
     if not empty or len(study.varied) == 1:
         return []
@@ -283,7 +283,7 @@ def _value(design: Design | None, name: str) -> float:
 
 
 def _left_out(drawn: int, count: int, what: str) -> list[str]:
-    """Return what a footer says where not all is drawn."""
+    """Footer where not all is drawn."""
     return [f"{drawn} of {count} {what} drawn"] if drawn < count else []
 
 

@@ -32,7 +32,7 @@ class _Columns:
 
     @classmethod
     def of(cls, study: StudyAnswers) -> _Columns:
-        """Return what the designs of a study have."""
+        """Columns of the designs of a study."""
         frames = [f.frame for f in study.fronts]
         designs = [d for f in study.fronts for d in f.designs]
         objectives = study.objectives()
@@ -112,7 +112,7 @@ def breaks_table(study: StudyAnswers) -> tuple[list[str], Rows]:
 
 
 def _sides(b: Break, units: dict[str, str]) -> list[Any]:
-    """Return what is reached on both sides of a break, and what of."""
+    """Values reached on both sides of a break, and of which objectives."""
     sides = (b.before, b.after)
     unit = units.get(b.objective)
     reached = [None if side is None or unit is None else finite_from_si(side.value, unit, None) for side in sides]

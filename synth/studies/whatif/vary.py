@@ -56,12 +56,12 @@ class Varied:
 
     @property
     def label(self) -> str:
-        """Return what a column of its values is called, without the unit."""
+        """Heading of a column of its values, without the unit."""
         return f"{PLACES.get(self.kind, '')}{self.name}{self.sign and ' ' + self.sign}"
 
     @property
     def in_words(self) -> str:
-        """Return what it is for people: ``largest mass allowed``, ``friction pair``."""
+        """Name for people: ``largest mass allowed``, ``friction pair``."""
         name = words(self.name)
         if self.kind == "weight":
             return f"weight of {name}"
@@ -174,7 +174,7 @@ def _read_one(key: str, values: Any, model: Model, chosen: Sequence[str]) -> Var
 
 
 def _in_place(place: str, word: str, key: str, values: Any, model: Model) -> Varied:
-    """Return what is varied of parts, options or what scatters, with its values."""
+    """Varied parts, options or scatter, with their values."""
     d = model.declaration
     if place == "parts":
         name = model.name_of(word, "vary", list(d.slots), "a slot", ())
@@ -294,7 +294,7 @@ def _may_be_decimal(whole: str, decimals: str) -> bool:
 
 
 def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
-    """Return what from:to:step stands for; the end belongs to it where a step meets it."""
+    """Values of from:to:step; the end is one of them where a step meets it."""
     first, last, step = numbers
     if step == 0 or (last - first) * step < 0:
         raise InputError(field, text, f"a step that leads from the first value to the last, as in {RANGE}")

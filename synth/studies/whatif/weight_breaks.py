@@ -42,7 +42,7 @@ def weight_breaks(steps: Steps, along: int, answered: Sequence[StudyStep], limit
 
 
 def _leader(front: ParetoFront, name: str) -> Leader:
-    """Return what tells which design comes first at a weight of one objective, the others being as they are."""
+    """Comparison that decides which design comes first at a weight of one objective, the others being as they are."""
     names, weights = list(front.frame.objectives), front.settings["weights"]
     values = np.array([[d.values[n] for n in names] for d in front.designs])
 
