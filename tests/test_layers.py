@@ -37,11 +37,8 @@ LAYERS = (
     ("__init__", "__main__"),
 )
 MODULE = re.compile(r"synth(\.\w+)+(:\w+)?")  # as entry points and tables of tasks name a module, or what is in it
-# A kind of job whose home is above the queue that lists it; a method of a front that needs what is above results.
-NAMED_FROM_BELOW = {
-    ("synth.jobs.kinds", "synth.variants.size_range_kind"),
-    ("synth.results.front", "synth.analysis.reporting"),
-}
+# A kind of job whose home is above the queue that lists it.
+NAMED_FROM_BELOW = {("synth.jobs.kinds", "synth.variants.size_range_kind")}
 LEVELS = {place: level for level, places in enumerate(LAYERS) for place in places}
 
 

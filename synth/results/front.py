@@ -16,6 +16,7 @@ from synth.order.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
+from synth.results.door import door
 from synth.results.drawings import front_picture, report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text, result_digest
 from synth.results.least_infeasible import LeastInfeasible
@@ -109,12 +110,10 @@ class ParetoFront:
         InputError
             The calculation of a front that was loaded cannot be read.
         """
-        import synth  # it knows how formulas are read; results do not
-
         if self.question is not None:
-            calculation = derived(CALCULATION, lambda: synth.calculation(self))
+            calculation = derived(CALCULATION, lambda: door().calculation(self))
         else:  # one that was saved before there were calculations has none
-            calculation = synth.calculation(self) if (self.record or {}).get("calculation") else None
+            calculation = door().calculation(self) if (self.record or {}).get("calculation") else None
         if calculation is None:
             return {}
         record = self.record_files(calculation.digest, folder)[FRONT_FILE]
@@ -162,9 +161,7 @@ class ParetoFront:
         InputError
             When the problem or its tables cannot be had.
         """
-        import synth  # it knows who checks; results do not
-
-        return synth.verify(self, problem, catalogs, time_limit)
+        return door().verify(self, problem, catalogs, time_limit)
 
     def improve(
         self,
@@ -196,9 +193,7 @@ class ParetoFront:
         InputError
             When the question cannot be posed again.
         """
-        import synth  # it knows who searches; results do not
-
-        return synth.improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
+        return door().improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
 
     def report(
         self,
@@ -245,10 +240,7 @@ class ParetoFront:
             Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
             it is written.
         """
-        from importlib import import_module  # results do not know who reports them
-
-        write = import_module("synth.analysis.reporting").report
-        place: Path = write(
+        written = door().report(
             self,
             folder,
             design=design,
@@ -259,8 +251,8 @@ class ParetoFront:
             fonts=fonts,
             problem=problem,
             catalogs=catalogs,
-        ).complete()
-        return place
+        )
+        return written.complete()
 
     def explore(
         self, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None
@@ -283,12 +275,7 @@ class ParetoFront:
         InputError
             The formulas of a loaded front cannot be read, or reports are not installed.
         """
-        from importlib import import_module  # results do not know who reports them
-
-        frame: NotebookFrame = import_module("synth.analysis.reporting").explore(
-            self, height, about=about, problem=problem, catalogs=catalogs
-        )
-        return frame
+        return door().explore(self, height, about=about, problem=problem, catalogs=catalogs)
 
     @property
     def result_digest(self) -> str:
