@@ -320,7 +320,7 @@ class _Writer:
         return self.helper(tree)
 
     def _fails(self, tree: Expression) -> bool:
-        """Tell whether the cell of a tree may hold an error."""
+        """True if the cell of a tree may hold an error."""
         kind = tree[0]
         if kind == "q":
             return tree[1] in self.doubtful
@@ -334,7 +334,7 @@ class _Writer:
 
 
 def may_fail(expression: Expression, doubtful: Collection[str]) -> bool:
-    """Tell whether the cell of a tree may hold an error, given the quantities whose cells may."""
+    """True if the cell of a tree may hold an error, given the quantities whose cells may."""
     return _Writer({}, None, frozenset(doubtful))._fails(expression)
 
 

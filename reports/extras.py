@@ -23,7 +23,7 @@ class Formats:
         self._lacking: dict[str, ExtraNeededError] = {}
 
     def make(self, word: str) -> bool:
-        """Tell whether a format is asked for and can be made here."""
+        """True if a format is asked for and can be made here."""
         if word not in self.words:
             return False
         if word in EXTRAS:

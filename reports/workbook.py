@@ -179,7 +179,7 @@ class _Live:
         sheet.text(row, SOURCE, q.source, "small")
 
     def _follows(self, q: NamedQuantity) -> bool:
-        """Tell whether an input is a formula of others until something is typed in its place."""
+        """True if an input is a formula of others until something is typed in its place."""
         if q.kind != "requirement" or q.expression is None or q.name in self.design.frame.requirements:
             return False
         own, recorded = self.formulas.value(q.expression), self.found.values[q.name]

@@ -211,7 +211,7 @@ class Formulas:
         return found
 
     def _seen_by_no_guard(self, calculation: Calculation, x: LimitRule) -> bool:
-        """Tell whether a limit must be judged by quantities that may not exist."""
+        """True if a limit must be judged by quantities that may not exist."""
         own = set(x.needs)
         if not all(own.issuperset(self._quantities[name].needs) for name in self._behind(x)):
             return True

@@ -163,7 +163,7 @@ def special(
 
 
 def _is_symbol(value: Any) -> bool:
-    """Tell whether a value is a symbol, without importing CasADi for numbers: formulas are used without it, too."""
+    """True if a value is a symbol, without importing CasADi for numbers: formulas are used without it, too."""
     casadi = sys.modules.get("casadi")
     return casadi is not None and isinstance(value, casadi.SX)
 

@@ -137,7 +137,7 @@ def textbook(tree: Expression) -> Expression:
 
 
 def negligible_in(tree: Expression) -> bool:
-    """Tell whether a tree has a number that readers are not shown."""
+    """True if a tree has a number that readers are not shown."""
     if tree[0] == "+" and any(t[0] == "n" and 0 < abs(t[1]) <= NEGLIGIBLE for t in tree[1]):
         return True
     return any(map(negligible_in, parts_of(tree)))
@@ -363,7 +363,7 @@ def _told_fraction(number: float) -> Fold | None:
 
 
 def _is_short(number: float) -> bool:
-    """Tell whether a number is best written as a decimal."""
+    """True if a number is best written as a decimal."""
     return len(f"{number:.15g}".replace(".", "").strip("0")) <= SHORT_DECIMAL
 
 

@@ -54,7 +54,7 @@ class SymbolParts:
 
     @property
     def italic(self) -> bool:
-        """Tell whether the base is a letter, which is set in italics; words stand upright."""
+        """True if the base is a letter, which is set in italics; words stand upright."""
         return len(self.base) == 1
 
 

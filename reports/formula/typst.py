@@ -109,7 +109,7 @@ def _row(items: Sequence[Layout]) -> str:
 
 
 def _is_high(layout: Layout) -> bool:
-    """Tell whether a layout has a fraction or cases in it, which stand above each other."""
+    """True if a layout has a fraction or cases in it, which stand above each other."""
     if isinstance(layout, Row):
         return any(map(_is_high, layout.items))
     if isinstance(layout, Call):

@@ -105,7 +105,7 @@ class Steps:
         )
 
     def _closes(self, q: NamedQuantity) -> bool:
-        """Tell whether the units of a formula give the unit of its result, so that numbers carry theirs."""
+        """True if the units of a formula give the unit of its result, so that numbers carry theirs."""
         assert q.expression is not None
         found = dimension_of(q.expression, self.quantities)
         declared = parse_unit(q.unit).dimension if q.unit else None

@@ -369,7 +369,7 @@ def _is_wide(part: Inline, widest: float) -> bool:
 
 
 def _is_below(cell: Cell, widest: float) -> bool:
-    """Tell whether a cell is a formula that is too wide for its column, however it is broken."""
+    """True if a cell is a formula that is too wide for its column, however it is broken."""
     if not isinstance(cell, LAYOUTS) or isinstance(cell, (Letter, Amount, Word)):
         return False
     return max(map(width, _lines_of(cell, widest))) > MOST_SHRUNK * widest

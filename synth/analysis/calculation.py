@@ -436,7 +436,7 @@ class _Parts:
         return self.found
 
     def fits(self, root: int) -> bool:
-        """Tell whether a formula is told as one."""
+        """True if a formula is told as one."""
         return self._measured(root).fits
 
     def _shorten(self, root: int) -> None:

@@ -193,7 +193,7 @@ def _expression(expression: Any, unit: str, fixed_rows: Mapping[str, float]) -> 
 
 
 def _closes_last(text: str) -> bool:
-    """Tell whether the bracket that opens first closes last."""
+    """True if the bracket that opens first closes last."""
     depth = 0
     for position, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")

@@ -137,7 +137,7 @@ class _RefusedChoices:
             yield known
 
     def fires(self, requirements: RequirementValues) -> bool:
-        """Tell whether nothing that is offered escapes with these values of the requirements."""
+        """True if nothing that is offered escapes with these values of the requirements."""
         return all(_at(self.when, values) > 0.5 for values in self._places(requirements))
 
     def told(self) -> FiredGuard:

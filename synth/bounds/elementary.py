@@ -35,12 +35,12 @@ class OuterFunction:
 
     @property
     def rising(self) -> bool:
-        """Tell whether it rises all the way."""
+        """True if it rises all the way."""
         return min(self.first, self.last) >= 0
 
     @property
     def falling(self) -> bool:
-        """Tell whether it falls all the way."""
+        """True if it falls all the way."""
         return max(self.first, self.last) <= 0
 
     def ends(self, argument: Ends) -> Ends:

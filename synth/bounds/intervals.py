@@ -42,12 +42,12 @@ _least = np.minimum.reduce  # a third of the cost of np.min, which counts at som
 
 
 def _surely(values: Any) -> bool:
-    """Tell whether no value is negative (not-a-number counts as unknown)."""
+    """True if no value is negative (not-a-number counts as unknown)."""
     return bool((_least(values) if np.ndim(values) else values) >= 0.0)
 
 
 def _surely_above(values: Any) -> bool:
-    """Tell whether all values are above zero."""
+    """True if all values are above zero."""
     return bool((_least(values) if np.ndim(values) else values) > 0.0)
 
 

@@ -125,7 +125,7 @@ class AtomTable:
             self._atoms[k] = replace(self._atoms[k], ends=(a, b) if sign > 0 else (0.0 - b, 0.0 - a))
 
     def nonzero(self, term: Term) -> bool:
-        """Tell whether a term is surely not zero."""
+        """True if a term is surely not zero."""
         return all(self._atoms[atom].nonzero for atom, p in term.powers.items() if p > 0)
 
     def elasticity(self, term: Term) -> np.ndarray:

@@ -122,7 +122,7 @@ class QuestionBounds:
         return own
 
     def surely_positive(self, node: int) -> bool:
-        """Tell whether a node is positive wherever a design is feasible (rows without a value do not count)."""
+        """True if a node is positive wherever a design is feasible (rows without a value do not count)."""
         return bool(self.root.low[node] > 0 or self._least_known.get(node, 0.0) > 0)
 
     def range_of(self, node: int) -> tuple[float, float]:

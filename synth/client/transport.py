@@ -144,7 +144,7 @@ class Transport:
                     data.append(value)
 
     def is_lost(self, error: Exception) -> bool:
-        """Tell whether an error says that the connection broke, and nothing about what was asked."""
+        """True if an error says that the connection broke, and nothing about what was asked."""
         return isinstance(error, self._lost)
 
 

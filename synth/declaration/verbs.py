@@ -457,7 +457,7 @@ class Declaration:
         return found.text(column)[found.row_index(designation)] if found.has(column) else ""
 
     def has_column(self, table: str, column: str) -> bool:
-        """Tell whether a catalogue table has a column: a user's own may lack those that are not required."""
+        """True if a catalogue table has a column: a user's own may lack those that are not required."""
         return self.catalogs.table(table).has(column)
 
     def numbers(self, table: str, column: str) -> np.ndarray:

@@ -104,12 +104,12 @@ KINDS = (FRONT, NEAR_EQUALS, RATING, PRICES, EXPLANATION, STUDY, BATCH, SIZE_RAN
 
 
 def holds(folder: Path, kind: ResultKind) -> bool:
-    """Tell whether a result of this kind stands in a folder; what was stopped before anything was found is none."""
+    """True if a result of this kind stands in a folder; what was stopped before anything was found is none."""
     return any((folder / mark).exists() and not _found_nothing(folder / mark, kind) for mark in kind.marks)
 
 
 def _found_nothing(record: Path, kind: ResultKind) -> bool:
-    """Tell whether a record says that a search was stopped before it had found anything."""
+    """True if a record says that a search was stopped before it had found anything."""
     if not kind.found:
         return False
     try:
@@ -192,7 +192,7 @@ def save_result(
 
 
 def loses_nothing(folder: Path, files: Mapping[str, str], names: Iterable[str], but: str = "") -> bool:
-    """Tell whether every line of these tables stands in the new ones too, but for those that contain a text."""
+    """True if every line of these tables stands in the new ones too, but for those that contain a text."""
     for name in names:
         try:
             earlier = (folder / name).read_text(encoding="utf-8").splitlines()
@@ -396,7 +396,7 @@ def _refuse_held(folder: Path, names: Iterable[str], then: str) -> None:
 
 
 def _is_inside(name: str) -> bool:
-    """Tell whether a name is one of a file in a folder or below it."""
+    """True if a name is one of a file in a folder or below it."""
     path = PureWindowsPath(name)  # knows drives and both strokes; where they mean nothing, no name of ours has them
     return bool(path.parts) and ".." not in path.parts and not path.anchor and "\\" not in name and "\0" not in name
 

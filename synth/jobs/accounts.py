@@ -289,7 +289,7 @@ class Accounts:
         return done.rowcount == 1
 
     def any_token(self) -> bool:
-        """Tell whether a token was ever made: from then on nobody is anybody without one.
+        """True if a token was ever made: from then on nobody is anybody without one.
 
         Revoked ones count: the last one revoked must not open the service for all.
         """
@@ -297,7 +297,7 @@ class Accounts:
             return connection.scalar(sa.select(Token.id).limit(1)) is not None
 
     def any_valid(self) -> bool:
-        """Tell whether somebody can get in with a token."""
+        """True if somebody can get in with a token."""
         with self.engine.connect() as connection:
             return connection.scalar(sa.select(Token.id).where(*_valid()).limit(1)) is not None
 

@@ -456,7 +456,7 @@ class BatchJob:
         return found is not None
 
     def _is_single(self) -> bool:
-        """Tell whether each row asks for one best design only."""
+        """True if each row asks for one best design only."""
         return self.settings["points"] == 1 or self._has_one_objective()
 
     def _has_one_objective(self) -> bool:

@@ -102,11 +102,11 @@ class EngineProcess:
         return int(self._process.pid or 0)
 
     def is_alive(self) -> bool:
-        """Tell whether the process is there."""
+        """True if the process is there."""
         return self._process.is_alive()
 
     def is_worn(self) -> bool:
-        """Tell whether it should be replaced before it gets more work: caches grow."""
+        """True if it should be replaced before it gets more work: caches grow."""
         return self.calls >= self.settings.calls or resident(self.pid) > self.settings.worn
 
     def warm(self, limit: float) -> bool:
@@ -265,7 +265,7 @@ class EnginePool:
                 self._idle.put(engine)
 
     def is_empty(self) -> bool:
-        """Tell whether no process is free."""
+        """True if no process is free."""
         return self._idle.empty()
 
     def take(self, timeout: float) -> EngineProcess | None:

@@ -207,7 +207,7 @@ class Cluster(Executor):
         return max(2 * self._threads, 2)
 
     def alive(self) -> bool:
-        """Tell whether the scheduler is there."""
+        """True if the scheduler is there."""
         return bool(self._client.status == "running")
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -296,10 +296,10 @@ def _quiet_client(client: type[Any]) -> type[Any]:
 
 
 def is_foreign(error: BaseException) -> bool:
-    """Tell whether a scheduler or worker could not read what it was sent, as its program is another one."""
+    """True if a scheduler or worker could not read what it was sent, as its program is another one."""
     return isinstance(error, ImportError) or (isinstance(error, RuntimeError) and "deserializ" in str(error))
 
 
 def is_lost(future: Future[Any]) -> bool:
-    """Tell whether work was lost with whoever held it, which says nothing about the work."""
+    """True if work was lost with whoever held it, which says nothing about the work."""
     return future.cancelled() or isinstance(future.exception(), (CancelledError, OSError))

@@ -144,7 +144,7 @@ class JobQueue(JobTable):
         return [job for *_, job in sorted(queue)]
 
     def interactive_waits(self, code: str) -> bool:
-        """Tell whether a unit is open that somebody waits for."""
+        """True if a unit is open that somebody waits for."""
         has_open = sa.exists().where(WorkUnit.job == Job.id, WorkUnit.state == OPEN)
         asked = sa.select(sa.exists().where(Job.state.in_(LIVE), Job.code == code, Job.priority > 0, has_open))
         with self.engine.connect() as connection:

@@ -15,7 +15,7 @@ def new_owner() -> str:
 
 
 def has_died(owner: str) -> bool:
-    """Tell whether an owner was a process of this machine that is gone; of other machines only the lease tells."""
+    """True if an owner was a process of this machine that is gone; of other machines only the lease tells."""
     parts = owner.rsplit("/", 3)
     if len(parts) != 4 or parts[0] != socket.gethostname():
         return False

@@ -177,7 +177,7 @@ class Runner:
         self._patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, most, alone))
 
     def _others_work(self) -> bool:
-        """Tell whether units are left that other processes have; wait a little for them."""
+        """True if units are left that other processes have; wait a little for them."""
         left = sum(self._patiently(lambda: self.store.open_units(self.job)))
         if left:
             self.store.release_dead(self.job)

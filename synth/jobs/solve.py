@@ -75,7 +75,7 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
-    """Tell whether questions are a group, and all of it; what is left of one is answered alone."""
+    """True if questions are a group, and all of it; what is left of one is answered alone."""
     groups = [question.get(GROUP) for question in questions.values()]
     return bool(groups) and groups[0] is not None and groups.count(groups[0]) == len(groups) == groups[0]["rows"]
 

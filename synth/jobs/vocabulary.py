@@ -119,7 +119,7 @@ class Universe:
                 }
 
     def knows(self, name: str) -> bool:
-        """Tell whether a heading means something: a name of any family, or a symbol of one that rows name."""
+        """True if a heading means something: a name of any family, or a symbol of one that rows name."""
         return name in STRUCTURE or name in self.words or name in self.symbols
 
     def suggestion(self, name: str, unit: str | None, present: Set[str] = frozenset()) -> str | None:

@@ -288,7 +288,7 @@ class DerivativeSweeps:
         return self.graph.moving[k] and self.graph.nodes[k].op not in FLAT
 
     def _sized(self, k: int) -> bool:
-        """Tell whether a node is by its form either never zero or zero for all values of the variables."""
+        """True if a node is by its form either never zero or zero for all values of the variables."""
         if k not in self._never_zero:
             node = self.graph.nodes[k]
             moving = [a for a in node.args if self._moves(a)]

@@ -98,7 +98,7 @@ def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
 
 
 def holds(residuals: Any, guard: bool, tolerance: Any = TOLERANCE) -> Any:
-    """Tell whether a limit holds: within the tolerance, for a guard strictly."""
+    """True if a limit holds: within the tolerance, for a guard strictly."""
     return residuals < 0.0 if guard else residuals <= tolerance
 
 
@@ -139,7 +139,7 @@ def most_used(used: Mapping[str, float | None]) -> list[str]:
 
 
 def binds(used: float | None, sense: str) -> bool:
-    """Tell whether a limit is reached; an equality always is and says nothing.
+    """True if a limit is reached; an equality always is and says nothing.
 
     Examples
     --------

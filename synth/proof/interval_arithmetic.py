@@ -21,7 +21,7 @@ ANYTHING: Pair = (-INF, INF)
 
 
 def is_thin(pair: Pair) -> bool:
-    """Tell whether both ends are the same value."""
+    """True if both ends are the same value."""
     low, high = pair
     return low is high or (not isinstance(low, Ref) and not isinstance(high, Ref) and low == high)
 

@@ -110,7 +110,7 @@ class ProofLimits:
         return 1.0 if gap is None else min(1.0, gap / (self.per_gap * self.cut_tolerance))
 
     def agree(self, a: float | None, b: float, scale: float = 0.0) -> bool:
-        """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself.
+        """True if two numbers are the same as far as numbers can tell; not-a-number is the same as itself.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class ProofLimits:
         return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=self.same, abs_tol=rounding)
 
     def close(self, a: float, b: float) -> bool:
-        """Tell whether two relative differences are the same."""
+        """True if two relative differences are the same."""
         return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= self.same
 
 

@@ -47,12 +47,12 @@ def entries(value: Any) -> list[Any]:
 
 
 def compares(entry: Any) -> bool:
-    """Tell whether an entry is a limit, with a sign or a range, and no value of a set."""
+    """True if an entry is a limit, with a sign or a range, and no value of a set."""
     return isinstance(entry, str) and COMPARES.search(entry) is not None
 
 
 def is_list(value: Any) -> bool:
-    """Tell whether a list of entries is meant: a list, or a text in square brackets."""
+    """True if a list of entries is meant: a list, or a text in square brackets."""
     if isinstance(value, str):
         return value.strip().startswith("[")
     return isinstance(value, (list, tuple, range, np.ndarray, AbstractSet))

@@ -40,7 +40,7 @@ class Example:
 
     @property
     def is_design(self) -> bool:
-        """Tell whether it states a design, which is evaluated, and no question."""
+        """True if it states a design, which is evaluated, and no question."""
         return "values" in self.spec
 
 

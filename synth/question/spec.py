@@ -62,7 +62,7 @@ class Spec:
 
     @property
     def compares(self) -> bool:
-        """Tell whether several families are asked."""
+        """True if several families are asked."""
         return asks_several(self.family)
 
     def merged(self, **flags: Any) -> Spec:

@@ -17,7 +17,7 @@ GAP_EXPECTED = "a fraction from 1e-6 to 0.5, for example 0.001"
 
 
 def is_gap(value: Any) -> bool:
-    """Tell whether something can be the gap of a question: by how much a design may be better that is not excluded."""
+    """True if something can be the gap of a question: by how much a design may be better that is not excluded."""
     return is_number(value) and LEAST_GAP <= value <= LARGEST_GAP
 
 
@@ -71,7 +71,7 @@ def refuse_values(values: Mapping[str, Any] | None, where: str) -> None:
 
 
 def asks_several(family: Any) -> bool:
-    """Tell whether several families are asked."""
+    """True if several families are asked."""
     return not isinstance(family, str) or family == "any"
 
 

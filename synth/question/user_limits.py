@@ -111,7 +111,7 @@ class UserLimits:
                 self._allow(name, conditions, "limits")
 
     def _asks_set(self, name: str, conditions: Any) -> bool:
-        """Tell whether what is asked of a quantity holds a set of allowed values, which only a count can have."""
+        """True if what is asked of a quantity holds a set of allowed values, which only a count can have."""
         if not is_list(conditions) or (len(conditions) and all(map(compares, entries(conditions)))):
             return False
         if name not in self._model.declaration.counts:
@@ -192,7 +192,7 @@ def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
 
 
 def contradict(first: str, one: float, second: str, other: float) -> bool:
-    """Tell whether two limits on one quantity leave nothing between them."""
+    """True if two limits on one quantity leave nothing between them."""
     lows = [b for s, b in ((first, one), (second, other)) if s in ("at_least", "equal")]
     highs = [b for s, b in ((first, one), (second, other)) if s in ("at_most", "equal")]
     return bool(lows and highs and max(lows) > above(min(highs), MARGINS.end))

@@ -79,7 +79,7 @@ class NamedQuantity:
 
     @property
     def computed(self) -> bool:
-        """Tell whether it follows from others in every design."""
+        """True if it follows from others in every design."""
         return self.kind in ("step", "derived", "helper")
 
     def word(self, number: float) -> str | None:
@@ -98,7 +98,7 @@ class NamedQuantity:
 
     @property
     def is_text(self) -> bool:
-        """Tell whether it stands for a text of a row."""
+        """True if it stands for a text of a row."""
         return self.kind in ("part", "row") and self.columns[0].startswith(CODE_OF)
 
 

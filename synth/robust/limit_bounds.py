@@ -56,7 +56,7 @@ class MonotoneLimit:
         return not np.isnan(self.worst).any()
 
     def holds_everywhere(self, limit: Constraint, value: float, bound: float) -> bool:
-        """Tell whether a limit whose sides are these at the worst point is within the tolerance everywhere."""
+        """True if a limit whose sides are these at the worst point is within the tolerance everywhere."""
         small, large = (value, bound) if limit.sense == "at_most" else (bound, value)
         return bool(holds(1.0 - large / small if self.log else (small - large) / self.size, limit.guard))
 

@@ -38,7 +38,7 @@ class TreeOutcome:
 
     @property
     def closed(self) -> bool:
-        """Tell whether everything is covered."""
+        """True if everything is covered."""
         return not len(self.open) and not self.full
 
 

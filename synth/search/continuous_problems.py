@@ -99,7 +99,7 @@ class ContinuousProblems:
 
     @property
     def has_edges(self) -> bool:
-        """Tell whether limits or objectives read the larger or smaller of two things that move."""
+        """True if limits or objectives read the larger or smaller of two things that move."""
         moving, nodes = self.model.program.dependence(range(self.n)), self.model.program.nodes
         return any(
             nodes[k].op in (ca.OP_FMAX, ca.OP_FMIN) and all(moving[a] for a in nodes[k].args) for k in self.kinks

@@ -112,7 +112,7 @@ def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Cand
 
 
 def _gives_away(own: Candidate, other: Candidate, strict: np.ndarray) -> bool:
-    """Tell whether a design that ties is worse where even what a tie may give away is more than the claim allows."""
+    """True if a design that ties is worse where even what a tie may give away is more than the claim allows."""
     m = len(strict)
     return bool(np.any(other.phi[:m][strict] > own.phi[:m][strict]))
 

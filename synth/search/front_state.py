@@ -340,7 +340,7 @@ class FrontState:
         return proof
 
     def hopeless(self, looked: int, waiting: int) -> bool:
-        """Tell whether a front of two objectives will hardly close at once, by its boxes."""
+        """True if a front of two objectives will hardly close at once, by its boxes."""
         limits = self.task.limits.by_levels
         return self.task.m == 2 and looked >= limits.soon and waiting > limits.stays_open * looked
 

@@ -125,7 +125,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tun
 
 
 def passed_over(journal: Path | None) -> bool:
-    """Tell whether the study of a question begins anew although one is kept, which was computed in another way."""
+    """True if the study of a question begins anew although one is kept, which was computed in another way."""
     if journal is None or journal.exists():
         return False
     return any(journal.parent.glob(f"{journal.stem.split('_')[0]}_*{journal.suffix}"))

@@ -63,7 +63,7 @@ class PrimalHeuristics:
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
-        """Tell whether boxes are worth a solver: points say as much once designs are known, but along a whole front.
+        """True if boxes are worth a solver: points say as much once designs are known, but along a whole front.
 
         Before that, optima tell what is worth splitting. Of a whole front they are worth it as long as designs are
         looked for; then points are enough where values are makeable, unless a proof goes on for long: boxes do not
@@ -76,12 +76,12 @@ class PrimalHeuristics:
 
     @property
     def _known_before(self) -> bool:
-        """Tell whether makeable designs were chosen before: what is better than they are points show."""
+        """True if makeable designs were chosen before: what is better than they are points show."""
         return self.rule.proves and bool(self.form.gridded.any())
 
     @property
     def content(self) -> bool:
-        """Tell whether hardly any designs seem to be left, so that boxes may go further before the next look.
+        """True if hardly any designs seem to be left, so that boxes may go further before the next look.
 
         Where few designs of a front are known they are hard to find, and each spares many boxes.
         """

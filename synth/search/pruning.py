@@ -314,5 +314,5 @@ def rows_of_use(form: Formulation, rule: PruningRule, combinations: np.ndarray) 
 
 
 def reaches_beyond(rule: PruningRule, bounded: int) -> bool:
-    """Tell whether a search speaks of more than the first objectives."""
+    """True if a search speaks of more than the first objectives."""
     return max(rule.columns) >= bounded or bool(np.any(np.isfinite(rule.fixed_cutoffs[bounded:])))

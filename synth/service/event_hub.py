@@ -59,7 +59,7 @@ def end_of(job: str, standing: Standing | None) -> StreamEvent:
 
 
 def _has_ended(standing: Standing | None) -> bool:
-    """Tell whether a job has ended: one that has gone on since, as far as events tell, has not."""
+    """True if a job has ended: one that has gone on since, as far as events tell, has not."""
     return standing is None or standing.state not in LIVE
 
 

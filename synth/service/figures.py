@@ -27,6 +27,6 @@ async def figures(request: Request, context: Context) -> Response:
 
 
 def is_local(request: Request) -> bool:
-    """Tell whether a request was made at this machine, and not through a proxy that runs on it."""
+    """True if a request was made at this machine, and not through a proxy that runs on it."""
     own = is_loopback(address_of(request)) and is_loopback(host_name(header(request.scope, "host")))
     return own and not any(header(request.scope, name) for name in FORWARDED)

@@ -25,7 +25,7 @@ async def alive() -> dict[str, str]:
 
 @router.get("/readyz", responses={503: {"description": "Not ready; `reasons` tells why."}})
 async def ready(context: Context) -> JSONResponse:
-    """Tell whether jobs can be asked for and will be worked at."""
+    """True if jobs can be asked for and will be worked at."""
     reasons = await why_not_ready(context)
     if not reasons:
         return JSONResponse({"status": "ready", "reasons": []})

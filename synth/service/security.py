@@ -159,7 +159,7 @@ class HostCheck:
         await self.app(scope, receive, send)
 
     def is_ours(self, host: str) -> bool:
-        """Tell whether a host, as the header has it, is this service."""
+        """True if a host, as the header has it, is this service."""
         name = host_name(host)
         if name in self.names or is_loopback(name):
             return True
@@ -200,7 +200,7 @@ class CrossSiteCheck:
         await self.app(scope, receive, send)
 
     def is_own(self, scope: Scope) -> bool:
-        """Tell whether a request comes from a page of this service, or from a program."""
+        """True if a request comes from a page of this service, or from a program."""
         site, origin = header(scope, "sec-fetch-site"), header(scope, "origin")
         if site and site not in ("same-origin", "none"):
             return False

@@ -304,7 +304,7 @@ class ServiceSettings:
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether an address is one of this machine alone.
+    """True if an address is one of this machine alone.
 
     Examples
     --------

@@ -573,7 +573,7 @@ class _Enumeration:
 
 
 def _same(one: Design, other: Design) -> bool:
-    """Tell whether two designs of the same parts have the same sizes."""
+    """True if two designs of the same parts have the same sizes."""
     sizes = [n for n, kind in one.frame.kinds.items() if kind == "variable"]
     return all(math.isclose(one.values[n], other.values[n], rel_tol=MARGINS.same) for n in sizes)
 

@@ -48,7 +48,7 @@ def locked(path: Path) -> int | None:
 
 
 def is_taken(path: Path) -> bool:
-    """Tell whether another process has a file to itself."""
+    """True if another process has a file to itself."""
     try:
         handle = os.open(path, os.O_RDWR | SAFELY)
     except OSError:
@@ -75,7 +75,7 @@ def unlock(path: Path, handle: int) -> None:
 
 
 def is_at(handle: int, path: Path) -> bool:
-    """Tell whether an open file is still the one at a path."""
+    """True if an open file is still the one at a path."""
     try:
         return os.path.samestat(os.fstat(handle), path.stat())
     except FileNotFoundError:

@@ -38,7 +38,7 @@ else:
 
 
 def is_alive(process: int) -> bool:
-    """Tell whether there is a process of a number; so it counts where the system does not tell."""
+    """True if there is a process of a number; so it counts where the system does not tell."""
     import psutil  # on Windows the way of POSIX to ask would end the process
 
     return bool(psutil.pid_exists(process))
@@ -179,7 +179,7 @@ else:
 
 
 def is_held(path: Path) -> bool:
-    """Tell whether another program has a file open in a way that keeps it from being replaced, as on Windows."""
+    """True if another program has a file open in a way that keeps it from being replaced, as on Windows."""
     if OPEN_FILES_CAN_GO:
         return False
     try:
@@ -281,7 +281,7 @@ def _local_data() -> Path:
 
 
 def reader_has_gone(error: OSError) -> bool:
-    """Tell whether an error says that nobody reads any more what is written into a pipe."""
+    """True if an error says that nobody reads any more what is written into a pipe."""
     return isinstance(error, BrokenPipeError) or (
         sys.platform == "win32" and error.errno == errno.EINVAL and error.filename is None
     )

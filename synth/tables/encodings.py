@@ -117,7 +117,7 @@ def _recognised(raw: bytes, name: str) -> tuple[str, str]:
 
 
 def _fits(raw: bytes, page: str) -> bool:
-    """Tell whether all letters of a text in a code page are of one language, and all signs are such as tables have."""
+    """True if all letters of a text in a code page are of one language, and all signs are such as tables have."""
     try:
         text = raw.decode(page)
     except UnicodeDecodeError:
@@ -129,7 +129,7 @@ def _fits(raw: bytes, page: str) -> bool:
 
 
 def _is_japanese(raw: bytes) -> bool:
-    """Tell whether a text is Japanese in Shift-JIS beyond doubt: of kana and common characters, in pairs of bytes."""
+    """True if a text is Japanese in Shift-JIS beyond doubt: of kana and common characters, in pairs of bytes."""
     try:
         text = "".join(letter for letter in raw.decode(JAPANESE) if letter > "\x7f")
     except UnicodeDecodeError:

@@ -61,11 +61,11 @@ class NumberColumn:
         return self.numbers > self.others
 
     def has_commas(self) -> bool:
-        """Tell whether its numbers have decimal commas and no points; what is wrong with both the reader says."""
+        """True if its numbers have decimal commas and no points; what is wrong with both the reader says."""
         return self.is_numeric and self.certain and not (self.points or self.thousands)
 
     def has_more(self, title: str) -> bool:
-        """Tell whether its numbers have an apostrophe before them or, in a column with a unit, blanks in them."""
+        """True if its numbers have an apostrophe before them or, in a column with a unit, blanks in them."""
         return self.is_numeric and (self.apostrophes or (self.blanks and "[" in title))
 
     def doubt(self, elsewhere: bool) -> tuple[int, str] | None:

@@ -499,6 +499,6 @@ def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name:
 
 
 def is_frame(value: object) -> bool:
-    """Tell whether something is a pandas frame: whoever holds one has imported pandas, and looking must not."""
+    """True if something is a pandas frame: whoever holds one has imported pandas, and looking must not."""
     pandas = sys.modules.get("pandas")
     return pandas is not None and isinstance(value, pandas.DataFrame)

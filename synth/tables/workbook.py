@@ -48,7 +48,7 @@ def split_sheet(path: Path) -> tuple[Path, str]:
 
 
 def is_workbook(path: Path) -> bool:
-    """Tell whether a file, perhaps with a sheet named, is a workbook."""
+    """True if a file, perhaps with a sheet named, is a workbook."""
     return table_file(path).is_workbook
 
 
@@ -383,7 +383,7 @@ def _tags(raw: bytes, place: str) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _has_formulas(raw: bytes) -> bool:
-    """Tell whether a workbook, which has been opened before, has a formula anywhere: most have none."""
+    """True if a workbook, which has been opened before, has a formula anywhere: most have none."""
     with zipfile.ZipFile(io.BytesIO(raw)) as archive:
         for entry in archive.infolist():
             if not entry.filename.endswith(".xml") or "worksheets/" not in entry.filename:

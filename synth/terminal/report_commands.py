@@ -133,7 +133,7 @@ def _about(file: Path | None) -> dict[str, Any]:
 
 
 def _is_batch(source: Path) -> bool:
-    """Tell whether a folder is that of a batch, without importing what batches need where it is not."""
+    """True if a folder is that of a batch, without importing what batches need where it is not."""
     from synth.folders.output_folder import settle
     from synth.results.front_record import FRONT_FILE
     from synth.results.loading import COMPARISON

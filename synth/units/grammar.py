@@ -524,7 +524,7 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
 
 
 def is_unit(text: str) -> bool:
-    """Tell whether a text names a unit."""
+    """True if a text names a unit."""
     try:
         _resolve(text, None)
     except RefusedUnit:

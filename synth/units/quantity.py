@@ -185,7 +185,7 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
 
 
 def is_date(text: str) -> bool:
-    """Tell whether a text is a date or a time, as table programs write them for what they took for one."""
+    """True if a text is a date or a time, as table programs write them for what they took for one."""
     return _DATE.fullmatch(text.strip()) is not None
 
 

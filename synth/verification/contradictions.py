@@ -145,7 +145,7 @@ def _misfits(values: Any, record: type, place: str) -> Iterator[str]:
 
 
 def _fits(value: Any, hint: Any) -> bool:
-    """Tell whether a value that was read from JSON is of a type.
+    """True if a value that was read from JSON is of a type.
 
     Examples
     --------

@@ -528,7 +528,7 @@ class VerificationRun:
         return [[p for p, near in zip(points, row, strict=True) if near and p is not None] for row in bounding]
 
     def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
-        """Tell whether a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
+        """True if a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
         values, limits, _ = self._evaluate(point)
         signed = self._signed_values(values)
         if not (np.isfinite(signed).all() and np.any(np.all(signed < ends, axis=1))):
@@ -589,7 +589,7 @@ class VerificationRun:
         return gap, decisive
 
     def _judge(self, outcome: ProofOutcome, claim: str, what: str, left: str = "") -> bool:
-        """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open.
+        """True if a proof closed; else note the design that refutes the claim, or that the claim stays open.
 
         ``left``: what is open.
         """
@@ -621,7 +621,7 @@ class VerificationRun:
 
 
 def _is_text(found: str, name: str, text: str) -> bool:
-    """Tell whether a file says a text; a table may do so in any style."""
+    """True if a file says a text; a table may do so in any style."""
     return found == text or (name.endswith(".csv") and any(found == style.text(text) for style in STYLES.values()))
 
 

@@ -72,7 +72,7 @@ def _told(content: Any) -> _Told:
 
 
 def is_comparison(folder: str | Path) -> bool:
-    """Tell whether a folder holds a comparison of families."""
+    """True if a folder holds a comparison of families."""
     return (Path(folder) / COMPARISON).is_file()
 
 

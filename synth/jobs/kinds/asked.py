@@ -400,7 +400,7 @@ def front_of(asked: Mapping[str, Any], sources: Sources) -> tuple[ParetoFront, C
 
 
 def is_comparison(records: Mapping[str, bytes]) -> bool:
-    """Tell whether records are those of several families."""
+    """True if records are those of several families."""
     return COMPARISON in records
 
 

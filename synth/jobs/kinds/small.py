@@ -291,7 +291,7 @@ class _Check:
             return None
 
     def _late(self) -> bool:
-        """Tell whether enough is wrong, and time is over for finding more."""
+        """True if enough is wrong, and time is over for finding more."""
         return bool(self.faults) and time.monotonic() > self.end
 
     # -- entries by themselves -----------------------------------------------------------------
@@ -312,7 +312,7 @@ class _Check:
         return {name: entry for name, entry in value.items() if self._fits(key, {name: entry})}
 
     def _fits(self, key: str, value: Any) -> bool:
-        """Tell whether an entry is of its kind; note where it is not."""
+        """True if an entry is of its kind; note where it is not."""
         faults: list[InputError] = []
         if value is not None:
             with noted(faults):

@@ -63,7 +63,7 @@ def _rescale(state: FrontState) -> None:
 
 
 def _too_few(state: FrontState) -> bool:
-    """Tell whether fewer designs are chosen than asked for, and there may be more."""
+    """True if fewer designs are chosen than asked for, and there may be more."""
     if len(state.front) >= state.task.settings.points or not state.proof.closed or state.proof.complete:
         return False
     return state.may_find_more and not (state.by_levels and proven_at_gap(state))
@@ -86,14 +86,14 @@ def _look_for_more(state: FrontState) -> bool:
 
 
 def _covered_at_gap(state: FrontState) -> bool:
-    """Tell whether everything is covered as finely as the gap; a front at once is covered now."""
+    """True if everything is covered as finely as the gap; a front at once is covered now."""
     if proven_at_gap(state):
         return True
     return not state.by_levels and cover_everything(state, state.rule, state.task.limits.boxes).closed
 
 
 def _stand_for_all(state: FrontState) -> bool:
-    """Tell whether the designs of the front cover all that are known."""
+    """True if the designs of the front cover all that are known."""
     listed, known = state.phi_listed(), state.form.archive.phi[:, : state.task.m]
     covered = np.all(listed[None, :, :] - state.rule.tolerance <= known[:, None, :], axis=2).any(axis=1)
     return bool(covered.all())

@@ -55,5 +55,5 @@ def _at_once(state: FrontState, rule: EpsilonCover, node_limit: float) -> tuple[
 
 
 def _scarce(state: FrontState) -> bool:
-    """Tell whether boxes hardly close: because unknowns are many, or designs few."""
+    """True if boxes hardly close: because unknowns are many, or designs few."""
     return state.node_limit < state.task.limits.boxes or len(state.form.archive) < state.task.settings.points

@@ -43,7 +43,7 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
 
 
 def _none_nearer(state: FrontState, rule: NearestIdeal) -> bool:
-    """Tell whether what is covered proves already that no design comes nearer to the ideal than the rule asks for."""
+    """True if what is covered proves already that no design comes nearer to the ideal than the rule asks for."""
     least = _covered_from(state)
     return least is not None and bool(rule.scored.scores(least).min() >= rule.enough)
 
@@ -58,7 +58,7 @@ def _covered_from(state: FrontState) -> np.ndarray | None:
 
 
 def first_is_listed(state: FrontState) -> bool:
-    """Tell whether the design that comes first is listed, with what is best in each objective, and none is beaten."""
+    """True if the design that comes first is listed, with what is best in each objective, and none is beaten."""
     m, rounded = state.task.m, state.task.tuning.tolerances.rounded
     phi, scored = state.form.archive.phi[:, :m], state.scored
     if scored is None or not len(state.front):
@@ -108,7 +108,7 @@ def _least_in(state: FrontState, k: int, cutoffs: np.ndarray, node_limit: int) -
 
 
 def _is_least(state: FrontState, k: int, cutoffs: np.ndarray, design: Candidate) -> bool:
-    """Tell whether what is covered proves already that nothing within cutoffs is better than a design."""
+    """True if what is covered proves already that nothing within cutoffs is better than a design."""
     least = _covered_from(state)
     if least is None:
         return False

@@ -52,12 +52,12 @@ def seek_beside(state: FrontState, rule: EpsilonCover) -> None:
 
 
 def many_combinations(state: FrontState) -> bool:
-    """Tell whether combinations are more than are solved one by one."""
+    """True if combinations are more than are solved one by one."""
     return state.task.instance.combinations.count > state.task.limits.few_combinations
 
 
 def few_known(state: FrontState) -> bool:
-    """Tell whether of many combinations so few designs are known, but not none, that it is worth looking harder."""
+    """True if of many combinations so few designs are known, but not none, that it is worth looking harder."""
     return many_combinations(state) and 0 < len(state.form.archive) < state.task.tuning.heuristics.primal.scarce
 
 

@@ -42,7 +42,7 @@ def seek_levels(state: FrontState) -> None:
 
 
 def _best_in_both(state: FrontState) -> bool:
-    """Tell whether one design is the best known in both objectives: once they are proven, it covers everything."""
+    """True if one design is the best known in both objectives: once they are proven, it covers everything."""
     phi = state.form.archive.phi[:, : state.task.m]
     return bool(len(phi)) and bool(np.all(phi <= phi.min(axis=0), axis=1).any())
 
@@ -205,7 +205,7 @@ def proven_by_levels(state: FrontState, phi: np.ndarray) -> np.ndarray:
 
 
 def _covered(state: FrontState, first: float, second: float) -> bool:
-    """Tell whether it is proven that nothing within a cutoff of the first objective is better in the second."""
+    """True if it is proven that nothing within a cutoff of the first objective is better in the second."""
     return any(level.within[CAPPED] >= first and level.least >= second for level in _closed(state))
 
 

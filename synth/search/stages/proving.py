@@ -15,7 +15,7 @@ from synth.search.stages.trees import close_open_boxes
 
 
 def proven_at_gap(state: FrontState) -> bool:
-    """Tell whether everything is covered as finely as the gap."""
+    """True if everything is covered as finely as the gap."""
     cover = state.proof.finest_cover
     return cover is not None and float(np.max(cover.tolerance / state.rule.tolerance)) <= 1.0
 

@@ -166,7 +166,7 @@ def _check(place: Sequence[Any], scope: Sequence[Any]) -> str:
 
 
 def knows(request: Request, etag: str) -> bool:
-    """Tell whether a client has said that it has this version."""
+    """True if a client has said that it has this version."""
     stated = header(request.scope, "if-none-match")
     known = [entry.strip().removeprefix("W/") for entry in stated.split(",")]
     return etag.removeprefix("W/") in known or known == ["*"]
@@ -194,7 +194,7 @@ def tag_of(content: bytes) -> str:
 
 
 def accepts_gzip(request: Request) -> bool:
-    """Tell whether a client takes an answer that is packed with gzip.
+    """True if a client takes an answer that is packed with gzip.
 
     Examples
     --------

@@ -219,7 +219,7 @@ async def read_request(request: Request, found: OwnJob, principal: Reader) -> Re
 
 
 def wants_yaml(accept: str) -> bool:
-    """Tell whether a client prefers YAML to JSON: it names it, and JSON not before.
+    """True if a client prefers YAML to JSON: it names it, and JSON not before.
 
     Examples
     --------

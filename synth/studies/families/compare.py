@@ -327,7 +327,7 @@ class _Comparing:
 
 
 def _done(member: Competitor | None) -> bool:
-    """Tell whether a family has been searched to the end."""
+    """True if a family has been searched to the end."""
     return member is not None and not member.front.interrupted
 
 

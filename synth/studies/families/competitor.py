@@ -48,7 +48,7 @@ class Competitor:
 
     @property
     def incomplete(self) -> bool:
-        """Tell whether designs are missing that did not stand the range: others may have been left out for them."""
+        """True if designs are missing that did not stand the range: others may have been left out for them."""
         return bool(self.front.statistics.get("robust", {}).get("taken_off"))
 
     def with_what_it_had(self, before: Competitor | None) -> Competitor:

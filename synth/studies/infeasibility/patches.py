@@ -85,7 +85,7 @@ class Patches:
     # -- what they do --------------------------------------------------------------------------
 
     def works(self, patch: Mapping[str, Any], found: Design) -> bool:
-        """Tell whether a design is one of the question with a patch."""
+        """True if a design is one of the question with a patch."""
         asked = self._with(patch)
         try:
             problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)

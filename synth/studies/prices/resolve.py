@@ -76,7 +76,7 @@ class Resolver:
         return [(among[x.quantity], x) for x in self.instance.limits.bounding if x.quantity in among]
 
     def holds_range(self, number: int) -> tuple[bool, bool]:
-        """Tell whether a limit on a size is the lower, and the upper, end of its range."""
+        """True if a limit on a size is the lower, and the upper, end of its range."""
         k, x = self.ranges[number]
         return (
             x.sense != "at_most" and bool(x.bound >= self.form.lower[k]),

@@ -350,14 +350,14 @@ class _Between:
         return None if design is None else self.oracle.known[self._wanted(value, design, hint)].design
 
     def _beats(self, one: Design | None, other: Design | None) -> bool:
-        """Tell whether a design is better than another by more than counts as equal; none is worse than any."""
+        """True if a design is better than another by more than counts as equal; none is worse than any."""
         if one is None or other is None:
             return one is not other and other is None
         a, b = (self.sign * d.values[self.objective] for d in (one, other))
         return a < b - self.oracle.limits.same * max(abs(a), abs(b))
 
     def _holds(self, holder: Design | None, value: float) -> Asking:
-        """Tell whether a design's parts are (still) the best at a value, or as good as the best."""
+        """True if a design's parts are (still) the best at a value, or as good as the best."""
         yield [self._wanted(value)]
         best = self._best(value).design
         if holder is None or best is None:

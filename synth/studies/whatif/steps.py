@@ -221,7 +221,7 @@ class Steps:
         self._learned[robust.names] = robust if known is None else known.with_scenarios(robust.scenarios)
 
     def stands(self, values: Sequence[Value], design: Design) -> bool:
-        """Tell whether a design is shown to keep its limits over the whole range, if that is asked at some values."""
+        """True if a design is shown to keep its limits over the whole range, if that is asked at some values."""
         rater = _rater_of(self._at(values))
         return rater is None or rater.asked.mode == RATE or bool(rater.one(design)["holds"])
 

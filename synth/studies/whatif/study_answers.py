@@ -158,7 +158,7 @@ class StudyAnswers:
 
     @property
     def feasible(self) -> bool:
-        """Tell whether any step has a design."""
+        """True if any step has a design."""
         return any(front.designs for front in self.fronts)
 
     def objectives(self) -> dict[str, str]:

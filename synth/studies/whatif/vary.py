@@ -51,7 +51,7 @@ class Varied:
 
     @property
     def numeric(self) -> bool:
-        """Tell whether there is something between two values."""
+        """True if there is something between two values."""
         return self.kind in ("requirement", "limit", "weight")
 
     @property
@@ -289,7 +289,7 @@ def _refuse_decimal_comma(field: str, text: str) -> None:
 
 
 def _may_be_decimal(whole: str, decimals: str) -> bool:
-    """Tell whether digits on both sides of a comma may be one number; ``500,600`` is none that anybody types."""
+    """True if digits on both sides of a comma may be one number; ``500,600`` is none that anybody types."""
     return not (len(decimals) >= len(whole) >= 3 and int(decimals) >= int(whole))
 
 
