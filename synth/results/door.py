@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 if TYPE_CHECKING:
     from synth.results.calculation import Calculation
@@ -22,49 +21,25 @@ class Report(Protocol):
 
 
 class Door(Protocol):
-    """Verbs about a front, as the facade has them."""
+    """Verbs about a front, as the facade has them; options are those of the methods of a front."""
 
-    def calculation(self, asked: ParetoFront, /) -> Calculation:
+    def calculation(self, front: ParetoFront, /) -> Calculation:
         """How every number of the designs is computed."""
         ...
 
-    def verify(self, front: ParetoFront, problem: Any, catalogs: Any, time_limit: float, /) -> Verification:
+    def verify(self, front: ParetoFront, problem: object, catalogs: object, time_limit: float, /) -> Verification:
         """Check without help of the search."""
         ...
 
-    def improve(
-        self,
-        front: ParetoFront,
-        problem: Any,
-        catalogs: Any,
-        /,
-        *,
-        time_limit: float | None,
-        workers: int,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-    ) -> ParetoFront:
+    def improve(self, front: ParetoFront, /, **options: object) -> ParetoFront:
         """Search on from the designs."""
         ...
 
-    def report(
-        self,
-        front: ParetoFront,
-        folder: str | Path,
-        /,
-        *,
-        design: Any,
-        full: int,
-        formats: Sequence[str],
-        about: Any,
-        length: str,
-        fonts: Sequence[str | Path],
-        problem: Any,
-        catalogs: Any,
-    ) -> Report:
+    def report(self, front: ParetoFront, folder: str | Path, /, **options: object) -> Report:
         """Write report and sheets."""
         ...
 
-    def explore(self, front: ParetoFront, height: int, /, *, about: Any, problem: Any, catalogs: Any) -> NotebookFrame:
+    def explore(self, front: ParetoFront, height: int, /, **options: object) -> NotebookFrame:
         """Frame of the explorer for a notebook."""
         ...
 

@@ -193,7 +193,8 @@ class ParetoFront:
         InputError
             When the question cannot be posed again.
         """
-        return door().improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
+        options = {"time_limit": time_limit, "workers": workers, "progress": progress}
+        return door().improve(self, problem=problem, catalogs=catalogs, **options)
 
     def report(
         self,

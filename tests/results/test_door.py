@@ -7,17 +7,21 @@ import inspect
 import pytest
 
 from synth.results.door import Door, door
+from synth.results.front import ParetoFront
 
-VERBS = [name for name, member in vars(Door).items() if inspect.isfunction(member) and not name.startswith("_")]
+VERBS = {"calculation", "verify", "improve", "report", "explore"}
 
 
-@pytest.mark.parametrize("name", VERBS)
+@pytest.mark.parametrize("name", sorted(VERBS))
 def test_the_facade_takes_what_methods_give(name: str) -> None:
     asked = list(inspect.signature(getattr(Door, name)).parameters.values())[1:]
     positional = [None for parameter in asked if parameter.kind is parameter.POSITIONAL_ONLY]
-    named = {parameter.name: None for parameter in asked if parameter.kind is parameter.KEYWORD_ONLY}
-    inspect.signature(getattr(door(), name)).bind(*positional, **named)
+    method = inspect.signature(getattr(ParetoFront, name, Door.calculation)).parameters
+    options = set(method) - {"self", "front", "folder", "height"}
+    given = {name: None for name in options} if asked[-1].kind is asked[-1].VAR_KEYWORD else {}
+    inspect.signature(getattr(door(), name)).bind(*positional, **given)
 
 
-def test_every_verb_is_one_of_those_five() -> None:
-    assert set(VERBS) == {"calculation", "verify", "improve", "report", "explore"}
+def test_every_verb_is_tried() -> None:
+    own = {name for name, member in vars(Door).items() if inspect.isfunction(member) and not name.startswith("_")}
+    assert own == VERBS
