@@ -76,7 +76,7 @@ def row_name(batch: BatchRecord, row: BatchRow) -> str:
 
 
 def short_reason(row: BatchRow) -> str:
-    """Return why a row has no design in a few words, where it is told at length elsewhere."""
+    """Reason why a row has no design in a few words, where it is given at length elsewhere."""
     if row.status in ("infeasible", "not_found") and row.causes:
         return f"misses {', '.join(map(words, row.causes))}"
     return row.reason
@@ -113,7 +113,7 @@ def _state(batch: BatchRecord) -> State:
 
 
 def _leads(batch: BatchRecord) -> list[Block]:
-    """Return where the sections are that somebody looks for in a long file."""
+    """Places of the sections that somebody looks for in a long file."""
     told: list[Cell] = []
     if batch.chosen is not None:
         told.append(said("In full: ", Link(row_name(batch, batch.chosen.row), "#row")))
@@ -330,7 +330,7 @@ def _failures(batch: BatchRecord) -> list[Block]:
 
 
 def _shares(counts: Mapping[str, int], most: int) -> dict[str, int]:
-    """Return how many of each are told: all of what is rare, and of the rest alike.
+    """Number of rows told of each kind: all of what is rare, and of the rest alike.
 
     Examples
     --------

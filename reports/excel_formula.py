@@ -159,7 +159,7 @@ def _factor(unit: str, turned: bool = False) -> tuple[str, str]:
 
 
 def _depth(text: str) -> int:
-    """Return how many brackets stand inside each other."""
+    """Depth of nested brackets."""
     deepest = depth = 0
     for letter in text:
         depth += (letter == "(") - (letter == ")")

@@ -277,7 +277,7 @@ def cell(row: int, column: int, fixed: bool = False) -> str:
 
 
 def lines_of(text: str, letters: float) -> int:
-    """Return how many lines a text takes in a cell; what is very long is read in the cell itself.
+    """Number of lines that a text takes in a cell; what is very long is read in the cell itself.
 
     Examples
     --------

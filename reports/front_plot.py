@@ -76,7 +76,7 @@ class Axis:
         return Axis(name, unit, first, last, tuple(t for t in every if first <= t <= last), True)
 
     def share(self, value: float) -> float:
-        """Return where on the axis a value lies, from 0 to 1."""
+        """Position of a value on the axis, from 0 to 1."""
         if self.log:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
@@ -100,7 +100,7 @@ class Drawn:
     families: Sequence[str] = ()
 
     def why_not(self) -> str:
-        """Return why there is nothing to draw; nothing where there is."""
+        """Reason why there is nothing to draw; empty where there is something."""
         if not self.designs:
             return "there is no design"
         if len(self.objectives) < 2:

@@ -34,7 +34,7 @@ def label_spots(
     gap: float = 1.0,
     whole: bool = False,
 ) -> list[Box | None]:
-    """Return where the name of each point stands; None where there is no room for it.
+    """Positions of the names of points; None where there is no room.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
 
 
 def dear(design: Design, name: str) -> str:
-    """Return that being best in an objective costs a design much for little, where its note says so."""
+    """Remark that being best in an objective costs a design much for little, where its note says so."""
     _, found, more = next((n for n in design.note.split("; ") if f" {name}," in n), "").partition(f" {name}")
     return more if found else ""
 

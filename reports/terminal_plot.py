@@ -146,7 +146,7 @@ def _sentences(drawn: Drawn) -> list[str]:
 
 
 def _rows(axis: Axis) -> int:
-    """Return how many rows the field has: so many that ticks are equally far apart, where they are on the axis."""
+    """Number of rows of the field: so many that ticks are equally far apart, where they are on the axis."""
     steps = len(axis.ticks) - 1
     even = [k + 1 for k in range(steps, MOST_ROWS, steps) if k + 1 >= FEWEST_ROWS and not axis.log]
     return min(even, key=lambda rows: (abs(rows - ROWS), -rows), default=ROWS)

@@ -225,7 +225,7 @@ class at:
 
 
 def where_raised(error: BaseException) -> list[str]:
-    """Return where an error was raised, innermost first, without what it says: that may be what somebody has asked."""
+    """Places where an error was raised, innermost first, without its message, which may repeat input."""
     frames = traceback.extract_tb(error.__traceback__)
     return [f"{frame.filename}:{frame.lineno} {frame.name}" for frame in reversed(frames)][:PLACES]
 

@@ -233,7 +233,7 @@ def _front_balloons(size: Sizes, weights: Sequence[Placed], springs: Sequence[Pl
 
 
 def _clearance(point: XY, seats: Sequence[tuple[XY, Placed]], but: int = 0) -> float:
-    """Return how far a point is from flyweights and rings of springs, ``but`` for those of one set [mm]."""
+    """Distance of a point from flyweights and rings of springs, ``but`` for those of one set [mm]."""
     return min(
         abs(math.dist(point, centre) - one.half) - one.wire
         if one.wire

@@ -45,7 +45,7 @@ class LeverClutch(DesignProblem):
         return lever_curves.over_speed(self, spec, design, self.kind)
 
     def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
-        """Return where the flyweights stand at a speed, what presses and what can be carried.
+        """State of the flyweights at a speed, the pressing force and the torque that can be carried.
 
         Parameters
         ----------

@@ -35,7 +35,7 @@ class Balance:
 
 
 def balance(knots: Sequence[tuple[float, float]], force_at: Callable[[float], float], outward: bool) -> Balance:
-    """Return where the force of the flyweights is what holds them.
+    """Positions of the flyweights at which their force equals what holds them.
 
     Speeding up they leave a position as soon as they exceed what holds them there, so that they stand at the first
     position that balances, seen from rest; slowing down at the first one seen from the end. The two differ where the

@@ -207,7 +207,7 @@ class CentrifugalTwoSpring(DesignProblem):
         return frames
 
     def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
-        """Return where the flyweights stand at a speed, what presses and what can be carried.
+        """State of the flyweights at a speed, the pressing force and the torque that can be carried.
 
         Parameters
         ----------

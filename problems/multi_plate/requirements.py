@@ -147,7 +147,7 @@ class PackRequirements(Block):
     )
 
     def carrying(self, teeth: Any) -> Any:
-        """Return how many of all teeth of a plate carry."""
+        """Number of teeth of a plate that carry."""
         return teeth
 
     def gap(self, duty: Duty, ring: Ring) -> Any:
@@ -201,7 +201,7 @@ class PracticePackRequirements(PackRequirements):
     )
 
     def carrying(self, teeth: Any) -> Any:
-        """Return how many of all teeth of a plate carry: the share lug_share."""
+        """Number of teeth of a plate that carry: the share lug_share."""
         return self.lug_share * teeth
 
     def gap(self, duty: Duty, ring: Ring) -> Any:

@@ -74,7 +74,7 @@ class _Shape:
         return [((x, y), self.angle), ((0.0, 1.0), beside), ((-x, -y), self.angle), ((0.0, -1.0), beside)]
 
     def corner(self, angle: float) -> float:
-        """Return how far from the middle, along the guides, two of them meet whose directions have an angle."""
+        """Distance from the middle, along the guides, at which two of them meet whose directions have an angle."""
         return self.roller / math.tan(angle / 2)
 
     def guides(self) -> tuple[Vertex, ...]:

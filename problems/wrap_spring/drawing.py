@@ -96,7 +96,7 @@ class _Spring:
         return min(((o[0][0] + o[1][0]) / 2 for o in lower), key=lambda x: abs(x - share * self.length))
 
     def lengths(self) -> list[Dimension]:
-        """Return how far the coils go on the hubs and over the gap."""
+        """Extent of the coils on the hubs and over the gap."""
         y = self.outside
         found = [
             Dimension((0.0, y), (self.grip_end, y), "grip_length", "top"),

@@ -141,7 +141,7 @@ class _Dxf:
         )  # fmt: skip
 
     def _at(self, point: XY) -> XY:
-        """Return where a point of the paper is in the model."""
+        """Point of the paper in the coordinates of the model."""
         return point[0] * self.larger, point[1] * self.larger
 
     # -- the part ----------------------------------------------------------------------------------
@@ -357,7 +357,7 @@ def _words(placed: PlacedMeasure, enlarged: float) -> str:
 
 
 def _digits(measured: Measured) -> dict[str, int]:
-    """Return how many decimals a dimension has where they are not those of its style."""
+    """Decimals of a dimension where they are not those of its style."""
     return {"dimdec": 4} if not isinstance(measured, Angle) and measured.measure < 0.1 else {}
 
 

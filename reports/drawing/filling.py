@@ -23,7 +23,7 @@ class Filling(StrEnum):
 
 
 def filling(area: Area, item: Item | None, scale: float) -> Filling:
-    """Return how an area of a part is filled at a scale."""
+    """Filling of an area of a part at a scale."""
     if not area.cut or item is None or item.filling is Hatch.NONE:
         return Filling.WHITE
     if thickness(area) * scale < THIN * (1 + 1e-6):

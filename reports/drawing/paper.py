@@ -142,7 +142,7 @@ class PlacedView:
     bounds: tuple[Stroke, ...] = ()
 
     def on_paper(self, point: XY) -> XY:
-        """Return where a point of the part is on paper."""
+        """Point of the part in the coordinates of the paper."""
         return self.origin[0] + self.scale * point[0], self.origin[1] + self.scale * point[1]
 
 

@@ -177,7 +177,7 @@ class _Compared:
         return list(dict.fromkeys([NOT_COVERED, *outside]))
 
     def nothing(self) -> dict[str, Any]:
-        """Return that there is no design; why not, each family tells."""
+        """Sentence that there is no design; each family states the reason."""
         sentence = str(self.content["sentence"])
         message = f"{sentence[:1].upper()}{sentence[1:]}."
         return {"message": message, "conflicts": [], "nearest": []}

@@ -147,7 +147,7 @@ class RecordOf:
     # -- how far it is proven ------------------------------------------------------------------
 
     def certificate(self) -> dict[str, Any]:
-        """Return how far the front is proven, and what is no part of the proof."""
+        """Sentence on how far the front is proven, and what is no part of the proof."""
         c, front = self.front.certificate, self.front
         level, head = front_state(front)
         word = WORDS.get(c.kind, "Not proven")
@@ -176,7 +176,7 @@ class RecordOf:
         }
 
     def _offered(self) -> list[str]:
-        """Return how many rows each slot was offered, and how many of them may be used here."""
+        """Number of rows offered to each slot, and of those that may be used here."""
         statistics = self.front.statistics
         offered, used = statistics.get("rows_offered") or {}, statistics.get("rows_used") or {}
         return [
@@ -197,7 +197,7 @@ class RecordOf:
         return told
 
     def nothing(self) -> dict[str, Any] | None:
-        """Return why there is no design; None where there is one."""
+        """Reason why there is no design; None where there is one."""
         told = self.front.explanation
         if self.front.designs or not told:
             return None

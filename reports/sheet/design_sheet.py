@@ -237,7 +237,7 @@ class _Sheet:
         return TableRow((name, condition, numbers, used, words), mark=mark, used=verdict.used)
 
     def _over_a_range(self) -> list[Block]:
-        """Return how limits stand what scatters: each at its worst point."""
+        """Robustness of limits: each at its worst point."""
         rating = self.design.robust
         if not rating or not rating.limits:
             return self._at_corners()
@@ -404,7 +404,7 @@ def as_sentence(text: str) -> str:
 
 
 def over_range_in_words(design: Design) -> str:
-    """Return how a design stands what scatters."""
+    """Robustness of a design."""
     rating = design.robust
     holds = "holds (proven)" if rating.holds else "DOES NOT HOLD" if rating.holds is False else "is NOT SHOWN to hold"
     told = f"Over the range that scatters it {holds}"

@@ -86,7 +86,7 @@ def calculation(
     limits: Mapping[str, Any] | None = None,
     problem: Any = None,
 ) -> Calculation:
-    """Return how every number of a design is computed.
+    """Calculation of every number of a design.
 
     Parameters
     ----------

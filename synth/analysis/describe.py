@@ -203,7 +203,7 @@ def _closes_last(text: str) -> bool:
 
 
 def _looked_up(r: NextRowRecord) -> str:
-    """Return which row is named, in short."""
+    """Name of a row, in short."""
     beside = f", with its row of {r.beside.table}" if r.beside else ""
     return f"next {r.column} of {r.table}{beside}"
 

@@ -141,7 +141,7 @@ def told_by(instance: SearchSpace, result: Evaluation, points: np.ndarray, rows:
 
 
 def _where_known(used: np.ndarray, residuals: np.ndarray) -> list[float | None]:
-    """Return how much of a limit designs use; None where it does not exist."""
+    """Used share of a limit per design; None where it does not exist."""
     return [None if gone else u for u, gone in zip(used.tolist(), np.isnan(residuals).tolist(), strict=True)]
 
 

@@ -227,5 +227,5 @@ def _at(made: tuple[Any, list[str]], values: Mapping[str, float]) -> float:
 
 
 def _gap(small: float, large: float) -> float:
-    """Return how far what should be smaller lies above the other, as a fraction; negative where it does not."""
+    """Excess of what should be smaller over the other, as a fraction; negative where there is none."""
     return (small - large) / max(abs(small), abs(large), 1e-300)

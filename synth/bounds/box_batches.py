@@ -156,13 +156,13 @@ class Prepared:
         }
 
     def parts(self, boxes: int, workers: int) -> list[int]:
-        """Return where parts of so many boxes end that threads share, from 0 on."""
+        """Ends of parts of so many boxes that threads share, from 0 on."""
         parts = max(1, boxes // self.sizes.part) if workers > 1 else 1
         return [boxes * k // parts for k in range(parts + 1)]
 
 
 def _per_unit(grid: np.ndarray) -> float:
-    """Return how many values of a grid there are per unit, on average."""
+    """Number of values of a grid per unit, on average."""
     return (len(grid) - 1) / (grid[-1] - grid[0]) if len(grid) > 1 else 0.0
 
 

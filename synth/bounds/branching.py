@@ -187,7 +187,7 @@ class BranchingWeights:
 
     @property
     def learned(self) -> int:
-        """Return how many solved problems were learned from."""
+        """Number of solved problems learned from."""
         return int(self._statistics.count.sum())
 
     def statistics(self) -> BranchingStatistics:
@@ -230,7 +230,7 @@ class BranchingWeights:
         return ScoreTables(steep.astype(np.float32), [s.astype(np.float32) for s in spreads])
 
     def _share(self, name: str) -> float:
-        """Return how much a variable or factor counts for where to split: little if others make up for it."""
+        """Weight of a variable or factor for splitting: little if others make up for it."""
         model, goals = self._question.model, self._question.goals[: self._question.bounded]
         unless, asked = model.declaration.late.get(name), {goal.node for goal in goals}
         if unless is None or any(model.quantity_node[objective] in asked for objective in unless):
@@ -238,7 +238,7 @@ class BranchingWeights:
         return self._settings.late
 
     def _spread(self, tree: ClusterTree, influence: np.ndarray) -> np.ndarray:
-        """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""
+        """Spread of limits and objectives over each cluster (clusters, limits + objectives)."""
         factor, question = tree.factor, self._question
         low, high = tree.hull(factor.columns) if factor.columns.size else (np.zeros((len(tree), 0)),) * 2
         with np.errstate(all="ignore"):

@@ -120,7 +120,7 @@ def _places(columns: np.ndarray) -> np.ndarray:
 
 
 def _halved(place: np.ndarray, weights: np.ndarray) -> np.ndarray | None:
-    """Return which rows go into the first half, or None where all are equal."""
+    """Rows of the first half, or None where all are equal."""
     if len(place) < 2 or not place.shape[1]:
         return None
     plain = place.max(axis=0) - place.min(axis=0)
@@ -163,7 +163,7 @@ class Cells:
         return np.zeros((1, len(self.trees)), dtype=np.int32)
 
     def size(self, cells: np.ndarray) -> np.ndarray:
-        """Return how many combinations each cell stands for, as floats: products may pass 2**63."""
+        """Number of combinations in each cell, as floats: products may pass 2**63."""
         result = np.ones(len(cells))
         for f, tree in enumerate(self.trees):
             result = result * tree.size[cells[:, f]]

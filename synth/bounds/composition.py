@@ -285,7 +285,7 @@ class TermComposition:
         return self._atom(k, first.sign, curvature, elasticity, nonzero)
 
     def _select(self, k: int, node: Node, terms: Sequence[Term | None]) -> Term | None:
-        """Return where: one of two; a condition on choices alone says which, without a jump in the inputs."""
+        """Shape of where: one of two; a condition on choices alone selects, without a jump in the inputs."""
         condition = node.args[0]
         low, high = self.ends[condition]
         if low > 0.5:

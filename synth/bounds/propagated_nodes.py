@@ -93,7 +93,7 @@ class PropagatedNodes:
         self.variables = [k for k in self.order if self.kind[k] == VARIABLE]
 
     def position(self, variable: int) -> int:
-        """Return which variable a node is."""
+        """Number of the variable of a node."""
         return int(self.program.nodes[variable].constant)
 
     def _kinds(self) -> tuple[list[int], list[int]]:

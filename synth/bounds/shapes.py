@@ -39,11 +39,11 @@ class Shape:
     text: str = ""
 
     def rising(self) -> np.ndarray:
-        """Return which inputs it rises with."""
+        """Inputs with which it rises."""
         return (self.elasticity[:, 0] >= -FLAT) & (self.elasticity[:, 1] > 0)
 
     def falling(self) -> np.ndarray:
-        """Return which inputs it falls with."""
+        """Inputs with which it falls."""
         return (self.elasticity[:, 1] <= FLAT) & (self.elasticity[:, 0] < 0)
 
     def open(self) -> np.ndarray:

@@ -175,7 +175,7 @@ class RemoteJob:
 
 
 def _failure(found: Mapping[str, Any]) -> Exception:
-    """Return why a job has no result, as an error of ours."""
+    """Reason why a job has no result, as an error of ours."""
     error = found.get("error") or {}
     problems = error.get("problems") or []
     if problems:

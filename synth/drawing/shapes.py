@@ -172,7 +172,7 @@ def flattened(outline: Sequence[Vertex], step: float = math.pi / 18) -> list[XY]
 
 
 def thickness(area: Area) -> float:
-    """Return how thick an area is: the short side of the rectangle with its surface and its perimeter [mm].
+    """Thickness of an area: the short side of the rectangle with its surface and its perimeter [mm].
 
     >>> thickness(Area(rectangle(0, 2, 10, 20), 1))
     2.0

@@ -223,7 +223,7 @@ def save_files(folder: str | Path, files: Mapping[str, str | bytes], drop: Itera
 
 
 def place_for_stopped(folder: Path, kind: ResultKind) -> Path:
-    """Return where a run that is stopped leaves what it has: the folder, or one beside an earlier result in it."""
+    """Place for the result of a run that is stopped: the folder, or one beside an earlier result in it."""
     if not holds(folder, kind):
         return folder
     number = 1
@@ -275,7 +275,7 @@ class Replacement:
             file.write(file_text(name, content))
 
     def _place(self, name: str) -> Path:
-        """Return where a file is written, below its folder."""
+        """Path at which a file is written, below its folder."""
         if not _is_inside(name):
             raise ValueError(name)
         path = self.staged(name)
@@ -293,7 +293,7 @@ class Replacement:
         self.names.append(name)
 
     def staged(self, name: str) -> Path:
-        """Return where a file is that has been written."""
+        """Path of a file that has been written."""
         return self.staging / "files" / name
 
     def drop(self, names: Iterable[str]) -> None:

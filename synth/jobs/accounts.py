@@ -341,7 +341,7 @@ class Accounts:
         return None if row is None else replace(_principal(row), session=wanted)
 
     def lapsed(self, principals: Collection[Principal]) -> set[Principal]:
-        """Return those who would not be let in again: their token has ended, or they were or have signed out."""
+        """Accounts that would not be let in again: their token has ended, or they were or have signed out."""
         tokens = {one.token for one in principals if one.token is not None}
         sessions = {one.session for one in principals if one.session is not None}
         in_time = BrowserSession.expires > moment()

@@ -44,7 +44,7 @@ def digest(value: Any) -> str:
 
 
 def way_back(file: str) -> str:
-    """Return how a SQLite file is replaced by its backup."""
+    """Instructions for replacing a SQLite file by its backup."""
     old = ", ".join(f"{file}{ending}" for ending in ("", *BESIDE))
     return f"to go back to a backup, end all that uses it, move {old} away, and copy the backup to {file}"
 
@@ -333,7 +333,7 @@ class Database:
             connection.execute(sa.text(f"UPDATE {VERSION_TABLE} SET version_num = version_num"))
 
     def free_space(self) -> int | None:
-        """Return how many bytes are free where a SQLite file is; None of a server, which looks after its own."""
+        """Free bytes where a SQLite file is; None of a server, which looks after its own."""
         if self.engine.dialect.name != "sqlite":
             return None
         return shutil.disk_usage(Path(str(self.engine.url.database)).absolute().parent).free

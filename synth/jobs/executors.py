@@ -92,7 +92,7 @@ class Processes(Executor):
             return fresh
 
     def found(self) -> int:
-        """Return how many rows of the groups that are under way have designs by now."""
+        """Number of rows with designs by now, of the groups that are under way."""
         return sum(int(worker.found.value) for worker in self._all)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:

@@ -223,7 +223,7 @@ class JobQueue(JobTable):
         return False
 
     def wanted(self, jobs: Iterable[str]) -> set[str]:
-        """Return those of some jobs that have not ended."""
+        """Jobs among some that have not ended."""
         with self.engine.connect() as connection:
             return set(connection.scalars(sa.select(Job.id).where(Job.id.in_(list(jobs)), Job.state.in_(LIVE))))
 
@@ -235,7 +235,7 @@ class JobQueue(JobTable):
             )
 
     def open_units(self, job: str) -> tuple[int, int]:
-        """Return how many units are open, and how many somebody works on."""
+        """Numbers of units that are open, and that somebody works on."""
         with self.engine.begin() as connection:
             counted = connection.execute(
                 sa.select(WorkUnit.state, sa.func.count()).where(WorkUnit.job == job).group_by(WorkUnit.state)

@@ -222,12 +222,12 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
 
 
 def status_of(row: Answered) -> str:
-    """Return how a row stands: the status of its front, or bad_input, refused, failed, not_solved."""
+    """State of a row: the status of its front, or bad_input, refused, failed, not_solved."""
     return "bad_input" if row.key is None else row.status or "not_solved"
 
 
 def explanation_of(row: Answered) -> str:
-    """Return why a row has no designs, or was stopped; empty where there is nothing to explain."""
+    """Reason why a row has no designs, or was stopped; empty where there is nothing to explain."""
     if row.faults:
         return "; ".join(fault["sentence"] for fault in row.faults)
     content = row.content or {}

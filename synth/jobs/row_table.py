@@ -103,7 +103,7 @@ class RowTable:
             yield from ((line, tuple(map(as_meant, cells))) for line, cells in self._text.lines())
 
     def sentence(self) -> str:
-        """Return how the file is written, if not as is expected: delimiters, encoding, decimal commas, which sheet."""
+        """Dialect of the file, if not the expected one: delimiters, encoding, decimal commas, sheet."""
         if not isinstance(self.source, Path):
             return ""
         return self._sheet.sentence() if is_workbook(self.source) else self._text.sentence()

@@ -36,7 +36,7 @@ class PackedRecord:
 
 
 def standings(queue: JobQueue, jobs: Collection[str]) -> dict[str, Standing]:
-    """Return how some jobs stand; those that are gone are missing."""
+    """States of some jobs; those that are gone are missing."""
     asked = sa.select(Job.id, Job.state, Job.outcome, Job.updated, Job.progress)
     with queue.engine.connect() as connection:
         found = connection.execute(asked.where(Job.id.in_(list(jobs))))
@@ -65,7 +65,7 @@ def traces(
     before: tuple[float, str] | None = None,
     most: int = 50,
 ) -> list[JobTrace]:
-    """Return which jobs there are of all tenants, the latest first.
+    """Jobs of all tenants, the latest first.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def packed_record(queue: JobQueue, job: str, name: str) -> PackedRecord | None:
 
 
 def uploads_kept(queue: JobQueue, tenant: int) -> int:
-    """Return how many files are kept that a tenant has brought."""
+    """Number of files kept that a tenant has uploaded."""
     asked = sa.select(sa.func.count()).select_from(Upload).where(Upload.tenant == tenant, Upload.expires > moment())
     with queue.engine.connect() as connection:
         return int(connection.scalar(asked) or 0)

@@ -163,7 +163,7 @@ class Universe:
 
 
 def edit_distance(a: str, b: str, most: int) -> int:
-    """Return how many letters must be typed, left out or changed to make one word of the other, up to a number.
+    """Number of letters typed, left out or changed to make one word of the other, up to a limit.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ SMALL = 1e-6  # SI; above it requirements are compared by their ratio
 
 
 def place(values: Sequence[float]) -> tuple[float, ...]:
-    """Return where requirements (SI) stand among others: steps of the same ratio are equally wide.
+    """Position of requirements (SI) among others: steps of the same ratio are equally wide.
 
     Examples
     --------

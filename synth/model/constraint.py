@@ -100,7 +100,7 @@ class Constraint:
 
 
 def void_limits(constraints: Sequence[Constraint], data: Sequence[InputValue], count: int) -> np.ndarray:
-    """Return which limits do not count for which designs (designs, limits): an optional column has no value.
+    """Limits that do not count for some designs (designs, limits): an optional column has no value.
 
     Parameters
     ----------

@@ -266,12 +266,12 @@ class InteriorPointBatch:
         return np.where(self._first(self.missing), 0.0, self.weights)
 
     def _first(self, missing: np.ndarray) -> np.ndarray:
-        """Return which lanes only look for a point where all rows exist and hold."""
+        """Lanes that only look for a point where all rows exist and hold."""
         first: np.ndarray = (missing > 0) | self.restoring
         return first
 
     def _absent(self, form: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return which rows do not exist at a point, and how many; clear what must not count there."""
+        """Rows that do not exist at a point, and their number; what must not count there is cleared."""
         layout = self.layout
         wanted = self.counts.copy()
         wanted[layout.constraints :] |= self.weights != 0

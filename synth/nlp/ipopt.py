@@ -89,7 +89,7 @@ class Branches:
         return (node.args[0], node.args[1]) if len(node.args) == 2 else (node.args[0], node.args[0])
 
     def at(self, inputs: Sequence[Any]) -> tuple[tuple[bool, ...], np.ndarray]:
-        """Return which pieces hold at a point, and the size of both sides of every condition."""
+        """Pieces that hold at a point, and the size of both sides of every condition."""
         if self._evaluate is None:
             return (), np.empty(0)
         with np.errstate(all="ignore"):

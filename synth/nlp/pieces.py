@@ -190,7 +190,7 @@ class Pieces:
         return ways, np.nan_to_num(apart / size, nan=np.inf), size
 
     def live(self, ways: np.ndarray) -> np.ndarray:
-        """Return which decisions matter where they all go these ways: a branch that is not taken is not looked at."""
+        """Decisions that matter where they all go these ways: a branch that is not taken is not looked at."""
         program, count = self.program, len(ways)
         number = {k: position for position, k in enumerate(self.decisions)}
         nothing, everything = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)

@@ -103,7 +103,7 @@ def holds(residuals: Any, guard: bool, tolerance: Any = TOLERANCE) -> Any:
 
 
 def utilisation(value: Any, limit: Any, sense: str) -> Any:
-    """Return how much of a limit is used, for people: value/limit, or limit/value for ``at_least``.
+    """Used share of a limit, for people: value/limit, or limit/value for ``at_least``.
 
     Where a side is not positive it is 0 (holds) or infinite (violated); an equality that holds counts as 1.
     """

@@ -123,7 +123,7 @@ class Scale:
         return np.where(self.nadir > self.ideal, self.nadir - self.ideal, 1.0)
 
     def units(self, signed: np.ndarray) -> np.ndarray:
-        """Return where designs (designs, objectives) stand; an objective without a span tells nothing of them."""
+        """Positions of designs (designs, objectives) on the scale; an objective without a span does not count."""
         return np.where(self.nadir > self.ideal, np.maximum(signed - self.ideal, 0.0) / self.span, 0.0)
 
     def scores(self, signed: np.ndarray, weights: Sequence[float] | np.ndarray) -> np.ndarray:

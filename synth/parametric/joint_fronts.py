@@ -159,7 +159,7 @@ class JointFrontSearch:
         return search
 
     def _levels(self, ends: Mapping[int, tuple[Candidate, Candidate]]) -> tuple[np.ndarray, list[Candidate]]:
-        """Return where to cap the first objective of each question, and designs that are good between the ends."""
+        """Cap of the first objective of each question, and designs that are good between the ends."""
         numbers = list(ends)
         low, high = (np.array([pair[k].phi[0] for pair in ends.values()]) for k in range(2))
         places = np.unique(np.linspace(0, len(numbers) - 1, self.limits.places).round().astype(int))

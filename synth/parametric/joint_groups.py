@@ -41,5 +41,5 @@ def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1
 
 
 def _most(question: Question) -> int:
-    """Return how many questions such as this the numbers of combinations reach for."""
+    """Number of questions such as this for which the numbers of combinations suffice."""
     return question.tuning.joint.numbers // question.instance.combinations.count

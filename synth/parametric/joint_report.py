@@ -113,7 +113,7 @@ class JointReport:
                 yield Candidate(codec.joined(number, codec.own(c.combination)), c.variables, c.phi), also
 
     def explanation(self, number: int) -> LeastInfeasible:
-        """Return why the question at a position has no design: what comes nearest."""
+        """Reason why the question at a position has no design: what comes nearest."""
         counters, codec = self.form.counters, self.instance.combinations
         searched, first = set(counters.solved_combinations), codec.joined(number, 0)
         rng = np.random.default_rng(self.questions[number].settings.seed)

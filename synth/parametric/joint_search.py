@@ -119,7 +119,7 @@ class JointSearch:
         told(self.progress, self.search, open_boxes)
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
-        """Return where to look first, from designs of similar questions."""
+        """First boxes to look into, from designs of similar questions."""
         first = self.search.instance.each[0].combinations
         like = [first.find(d) for d in designs]
         return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}

@@ -58,7 +58,7 @@ class Clusters:
     def _halves(
         own: np.ndarray, void: np.ndarray, low: np.ndarray, high: np.ndarray, log: np.ndarray, scale: np.ndarray
     ) -> tuple[np.ndarray | None, float]:
-        """Return which rows go to the left, and how far the rows are apart."""
+        """Rows that go to the left, and the distance between rows."""
         partly = void.any(axis=0) & ~void.all(axis=0)
         if partly.any():
             return void[:, int(np.argmax(partly))], FAR  # a limit that is void for some rows only bounds none

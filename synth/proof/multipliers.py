@@ -72,7 +72,7 @@ class StraightRows:
         self._shape = len(rows), width
 
     def multipliers(self, box: Sequence[np.ndarray], halves: np.ndarray) -> np.ndarray:
-        """Return how much each row counts where the largest of them is as small as it can be in a box.
+        """Weights of the rows for which the largest row in a box is as small as it can be.
 
         They are the multipliers of that linear problem, which of the limits that do not touch are zero.
 

@@ -107,7 +107,7 @@ class _Step:
                 self._down[k] = do("fmin", self._down[k], self._distance(room, do("negative", high)))
 
     def _distance(self, room: Expr, slope: Expr) -> Expr:
-        """Return how far an input may go from its best end, at a slope of at least this; any way where it falls."""
+        """Room of an input from its best end, at a slope of at least this; unlimited where it falls."""
         if sign_of(slope) < 0 or (not isinstance(slope, Ref) and slope == 0):
             return INF
         return self._do("divide", room, self._do("fmax", slope, TINY * TINY) if isinstance(slope, Ref) else slope)
@@ -120,7 +120,7 @@ class _Step:
         return new_low, high if pair[1] is high else do("fmin", high, do("add", pair[1], pad))
 
     def _reached(self, k: int) -> Pair:
-        """Return how far the rows let a coordinate go from its best ends."""
+        """Room that the rows leave a coordinate from its best ends."""
         do, (low, high) = self._do, self._ends[k]
         up, down = self._up[k], self._down[k]
         if self._coordinates[k].log:

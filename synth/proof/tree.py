@@ -477,7 +477,7 @@ class ProofTree:
         return ProofGrowth(self, regions, emphasis, confirm)
 
     def _emphasis(self, regions: Clusters, levels: np.ndarray, near: Sequence[Sequence[Point]]) -> np.ndarray:
-        """Return how much each row counts (rows, clusters of regions), by the designs near the regions."""
+        """Weight of each row (rows, clusters of regions), by the designs near the regions."""
         found = np.zeros((self._emphasised, len(regions.first)))
         for node in reversed(range(len(regions.first))):  # what a cluster is split into comes after it
             if regions.left[node] < 0:
@@ -619,7 +619,7 @@ class ProofTree:
         return ProofBoxes(real[:, kept], whole[:, kept]), alive[kept]
 
     def _widths(self, boxes: ProofBoxes, regions: Clusters) -> np.ndarray:
-        """Return how wide each group of a box is; 0 where it cannot be split."""
+        """Width of each group of a box; 0 where it cannot be split."""
         v, m = len(self._variables), len(self._ladders)
         result = np.zeros((self._groups, len(boxes)))
         for c in self._coordinates:

@@ -61,7 +61,7 @@ def select(model: Model, catalogs: Catalogs, rules: Mapping[str, Any], limits: U
 
 
 def offers(part: Part, table: Table) -> np.ndarray:
-    """Return which rows of a table meet the conditions of the slot."""
+    """Rows of a table that meet the conditions of the slot."""
     keep = np.ones(len(table), dtype=bool)
     for text in part.where:
         keep &= _meets_once(text, table)
@@ -99,7 +99,7 @@ def _undecided_of_user(text: str, table: Table) -> np.ndarray:
 def _rows_of(
     part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
 ) -> np.ndarray:
-    """Return which rows of the table may fill a slot; note those that are not complete."""
+    """Rows of the table that may fill a slot; those that are not complete are noted."""
     # Of shipped rows the family knows which its conditions leave out; a user learns which of theirs lack what decides.
     rules = [
         _Rule(text, _meets_once(text, table), table.once(("undecided", text), partial(_undecided_of_user, text, table)))
@@ -157,7 +157,7 @@ def _refuse_empty(
 
 
 def _meets(text: str, table: Table) -> np.ndarray:
-    """Return which rows meet one condition of a slot."""
+    """Rows that meet one condition of a slot."""
     condition = parse_condition(text)
     missing = [c for c in condition.columns if not table.has(c)]
     if missing and table.user_rows.all():
@@ -176,7 +176,7 @@ def _is_condition(rule: Any, table: Table) -> bool:
 
 
 def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
-    """Return which rows a rule of the user allows: a condition, a designation, or a list of these."""
+    """Rows that a rule of the user allows: a condition, a designation, or a list of these."""
     keep = np.zeros(len(table), dtype=bool)
     if _is_condition(rule, table):
         return parse_condition(rule).local().mask(table)
@@ -192,7 +192,7 @@ def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
 
 
 def _present(table: Table, names: Sequence[str]) -> np.ndarray:
-    """Return which rows have a value in one of some columns."""
+    """Rows with a value in one of some columns."""
     present = np.zeros(len(table), dtype=bool)
     for name in names:
         if table.has(name):

@@ -171,7 +171,7 @@ def _keep_partners(
 
 
 def allowed_together(model: Model, refusal: Refusal, slots: Sequence[SlotRows]) -> np.ndarray:
-    """Return which rows of some slots a refusal allows together; one axis per slot.
+    """Rows of some slots that a refusal allows together; one axis per slot.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ class Spec:
         return Request.of(load(family, **options), requirements, folder=self.folder, **asked)
 
     def settings(self, **usual: Any) -> SearchSettings:
-        """Return how the spec is searched; ``usual`` counts where it states nothing."""
+        """Search settings of the spec; ``usual`` counts where it states nothing."""
         from synth.question.settings import SearchSettings
 
         return SearchSettings(**{**usual, **self.stated(SEARCHED)})

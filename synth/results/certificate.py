@@ -31,7 +31,7 @@ def in_words(amounts: Mapping[str, float], units: Mapping[str, str]) -> str:
 
 
 def all_of(combinations: int) -> str:
-    """Return that all combinations are meant.
+    """Scope of all combinations.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def all_of(combinations: int) -> str:
 
 
 def none_of(combinations: int) -> str:
-    """Return that none is meant, without the verb's number in doubt.
+    """Scope of none, without the verb's number in doubt.
 
     Examples
     --------

@@ -115,7 +115,7 @@ def names_in(tree: Expression) -> Iterator[str]:
 
 
 def size_of(tree: Expression) -> int:
-    """Return how many quantities and numbers stand in a tree."""
+    """Number of quantities and numbers in a tree."""
     return 1 if tree[0] in ("q", "n") else sum(map(size_of, parts_of(tree)))
 
 

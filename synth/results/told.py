@@ -16,7 +16,7 @@ class Untold(Enum):
     UNTOLD = "untold"
 
     def __bool__(self) -> Literal[False]:
-        """Return that nothing is told."""
+        """False: nothing is told."""
         return False
 
 

@@ -41,7 +41,7 @@ class Ratings:
     interrupted: str = ""
 
     def sentence(self) -> str:
-        """Return how many designs keep their limits over the range, and how far that is certain."""
+        """Number of designs that keep their limits over the range, and how far that is certain."""
         return robust_sentence(self.designs)
 
     def to_frame(self) -> pd.DataFrame:

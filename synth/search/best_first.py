@@ -117,7 +117,7 @@ class OpenBoxes:
         return [b for own in self.levels for b in own]
 
     def progress(self) -> Progress:
-        """Return how much is open."""
+        """Number of unresolved boxes."""
         extent = sum(self.form.boxes.extent(b) for b in self.batches)
         return Progress(highest=self.highest, waiting=len(self), extent=extent)
 

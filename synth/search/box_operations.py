@@ -302,7 +302,7 @@ class BoxOperations:
         return points
 
     def extent(self, boxes: Boxes) -> float:
-        """Return how much of everything boxes hold together: combinations times shares of the ranges of variables.
+        """Measure of boxes together: combinations times shares of the ranges of variables.
 
         What is narrower than ``point_share`` of its range counts as that wide, so that one point is not nothing.
         """

@@ -81,7 +81,7 @@ class _Order:
             np.take(place, order[k], axis=1, out=self.place[k])
 
     def before(self, lower: np.ndarray) -> np.ndarray:
-        """Return how many points cover each box in each objective alone (objectives, boxes): the first in its order."""
+        """Number of points that cover each box in each objective alone (objectives, boxes): the first in its order."""
         pairs = zip(self.ordered, lower.T, strict=True)
         result = np.stack([np.searchsorted(x, own, self._side) for x, own in pairs])
         result[np.isnan(lower.T)] = 0
@@ -193,7 +193,7 @@ class CoverSets:
         return result
 
     def _first(self, k: int, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return which boxes are covered in all other objectives, and the first point that does so."""
+        """Boxes that are covered in all other objectives, and the first point that does so."""
         others = [j for j in range(len(before)) if j != k]
         rows = -(-before // self._block)
         common = self._inside[k, others[0]][rows[others[0]]]

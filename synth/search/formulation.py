@@ -146,7 +146,7 @@ class Formulation:
         return LogObjectives.of(positive, np.array([near.get(name, size) for name, size in usual]), declared)
 
     def unmoved(self, gridded: bool) -> np.ndarray:
-        """Return which limits no variable moves: of those that may move at all, or only the continuous ones of them.
+        """Limits that no variable moves: of those that may move at all, or only the continuous ones of them.
 
         That is a matter of the question, its ranges, pins and grids; how narrow a box has become does not count.
 

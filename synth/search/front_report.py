@@ -178,7 +178,7 @@ def _certificate(state: FrontState, designs: Sequence[Design], interrupted: bool
 
 
 def _excluded(state: FrontState) -> int:
-    """Return how many combinations bounds have excluded."""
+    """Number of combinations that bounds have excluded."""
     total, solved = state.task.instance.combinations.count, len(state.form.counters.solved_combinations)
     still_open = 0.0 if state.proof.closed else state.proof.open_combinations
     return int(max(total - max(still_open, solved), 0))

@@ -119,7 +119,7 @@ def choose_and_report(state: FrontState, frame: Frame, weights: Sequence[float])
 
 
 def explain(state: FrontState) -> LeastInfeasible:
-    """Return why nothing is feasible."""
+    """Reason why nothing is feasible."""
     searched = set(state.form.counters.solved_combinations)
     with state.progress.stage("explanation"):
         explanation = explain_infeasible(state.form, state.rng, proven=state.proof.closed)

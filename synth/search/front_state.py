@@ -79,7 +79,7 @@ class FrontTask:
         return self.settings.points + self.settings.points // 3 + 5
 
     def boxes_per_tree(self) -> int:
-        """Return how many boxes a tree may look into; with many unknowns they hardly close.
+        """Number of boxes that a tree may look into; with many unknowns they hardly close.
 
         Combinations that are few are solved one by one instead; where boxes for one best design over few combinations
         do not close soon, limits leave a sliver that they hardly ever close on.

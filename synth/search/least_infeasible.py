@@ -86,7 +86,7 @@ def _elastic(form: Formulation, count: int) -> Tasks:
 def _least_missed(
     form: Formulation, combinations: np.ndarray, rng: np.random.Generator
 ) -> list[tuple[float, int, np.ndarray]]:
-    """Return how far each combination stays from feasible, where that could be found, with the design.
+    """Distance of each combination from feasible, where that could be found, with the design.
 
     Limits that cannot all hold have many places where none of them gives way a little without another: combinations
     that are few are tried from several starts.

@@ -75,7 +75,7 @@ class MakeableValues:
         return held
 
     def middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return where ranges are halved.
+        """Middles at which ranges are halved.
 
         Parameters
         ----------

@@ -89,7 +89,7 @@ class NearestIdeal:
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how far a box could be below what it must keep."""
+        """Possible distance of a box below what it must keep."""
         with np.errstate(all="ignore"):
             distance = (self.cutoffs(lower) - lower)[:, self.columns]
         gain: np.ndarray = np.maximum(np.where(np.isnan(distance), np.inf, distance).min(axis=1, initial=np.inf), 0.0)

@@ -109,7 +109,7 @@ def _searched(
 
 
 def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tuning: Tuning = TUNING) -> Path | None:
-    """Return where the study of a question is kept, or None where no folder can be written.
+    """Place of the study of a question, or None where no folder can be written.
 
     What computes the answers belongs to its name: another version or processor must not go on with trials that it
     would value differently.

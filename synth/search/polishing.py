@@ -130,7 +130,7 @@ def _other_parts(
 
 
 def _slices(form: Formulation, count: int, each: int) -> list[slice]:
-    """Return which of so many designs are tried at once, with so many points each."""
+    """Batches of so many designs that are tried at once, with so many points each."""
     at_once = max(form.tuning.heuristics.polishing.tried_at_once // max(each, 1), 1)
     return [slice(first, first + at_once) for first in range(0, count, at_once)]
 

@@ -126,7 +126,7 @@ class LevelBound:
 
 
 def lowest(corners: np.ndarray) -> np.ndarray:
-    """Return those lower bounds (boxes, objectives) that no other one lies below: they tell what the others tell."""
+    """Lower bounds (boxes, objectives) below which no other one lies: they imply the others."""
     known = np.nan_to_num(corners, nan=-np.inf)
     # Of those that are equal to nine digits one stays.
     result: np.ndarray = known[non_dominated(known)] - TUNING.tolerances.tie

@@ -32,7 +32,7 @@ class PruningRule(Protocol):
         """
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how much better than needed a box could be: the least distance to a cutoff, 0 if it is of no use."""
+        """Possible gain of a box over what is needed: the least distance to a cutoff, 0 if it cannot improve."""
 
     def leading(self, archive: Archive) -> list[Candidate]:
         """Return the designs that are best, where there is one objective: they are made as good as they can be."""
@@ -79,7 +79,7 @@ class EpsilonCover:
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how much better than the designs known a box could be."""
+        """Possible gain of a box over the designs known."""
         if not len(lower):
             return np.empty(0)
         with np.errstate(all="ignore"):
@@ -201,7 +201,7 @@ class NonImprovement:
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how far below one of the designs a box could be."""
+        """Possible distance of a box below one of the designs."""
         own = lower[:, self.columns]
         with np.errstate(all="ignore"):
             distance = (self.cutoffs(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)

@@ -24,7 +24,7 @@ def _program(model: Model, refusal: Refusal) -> Program:
 
 
 def _pairs(instance: SearchSpace, cells: Cells, refusal: Refusal, factors: Sequence[int]) -> np.ndarray:
-    """Return which clusters of two factors hold a pair of rows that a refusal allows (clusters, clusters)."""
+    """Clusters of two factors that hold a pair of rows that a refusal allows (clusters, clusters)."""
     model, owner = instance.model, instance.owners()
     shape = tuple(instance.combinations.radix[f] for f in factors)
     data = instance.data(np.zeros(1, dtype=np.int64))

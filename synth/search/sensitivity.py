@@ -318,7 +318,7 @@ def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]
 
 
 def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
-    """Return which limits that no variable can move are active (designs, limits)."""
+    """Active limits that no variable can move (designs, limits)."""
     fixed = form.unmoved(gridded=True)
     tight = np.zeros((len(result.feasible), len(form.node_constraints)), dtype=bool)
     for j in np.flatnonzero(fixed):
@@ -330,6 +330,6 @@ def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
 
 
 def _speaking_of(form: Formulation, position: int) -> np.ndarray:
-    """Return which limits depend on a data input."""
+    """Limits that depend on a data input."""
     marked = form.model.program.dependence([form.n + position])
     return np.array([any(marked[k] for k in x.nodes) for x in form.constraints], dtype=bool)

@@ -27,7 +27,7 @@ ASK = {"WWW-Authenticate": 'Bearer realm="clutchsynth"'}
 
 
 def address_of(request: Request) -> str:
-    """Return where a request comes from, as far as trusted proxies tell."""
+    """Address of a request, as far as trusted proxies state it."""
     return request.client.host if request.client else ""
 
 

@@ -53,7 +53,7 @@ def remark_of(end: StreamEvent) -> StreamEvent:
 
 
 def end_of(job: str, standing: Standing | None) -> StreamEvent:
-    """Return how a job has ended, by how it stands; None stands for one that is gone."""
+    """End of a job, by its state; None stands for one that is gone."""
     state, outcome = (DELETED, None) if standing is None else (standing.state, standing.outcome)
     return StreamEvent(END, job, {"job": job, "state": state, "outcome": outcome})
 

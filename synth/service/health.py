@@ -49,7 +49,7 @@ async def why_not_ready(context: ServiceContext) -> list[str]:
 
 
 def _not_answered(context: ServiceContext) -> list[str]:
-    """Return why pages and programs would wait for answers."""
+    """Reasons why pages and programs would wait for answers."""
     facts, reasons = context.facts, list[str]()
     if facts.missing:
         there = f"{facts.wanted - facts.missing} of {facts.wanted} are there"

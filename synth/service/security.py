@@ -258,7 +258,7 @@ class BodyCheck:
             self.uploads.give_back(asker)
 
     def _most(self, media: str, length: str) -> int:
-        """Return how large a body of a kind may be; refuse one that says that it is larger."""
+        """Largest size of a body of a kind; one that announces more is refused."""
         most = self.most.get(media)
         if most is None:
             raise ServiceError(415, f"the body is {media or 'of no stated kind'}; expected {TAKEN}")
@@ -398,7 +398,7 @@ class _Odd:
 
 
 def _hooks(odd: list[_Odd]) -> dict[str, Any]:
-    """Return how JSON is read so that each oddity is noted, and stands in its place."""
+    """Reader of JSON that notes each oddity and keeps its place."""
 
     def noted(value: Any, right: str) -> _Odd:
         odd.append(_Odd(value, right))

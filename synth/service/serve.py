@@ -140,7 +140,7 @@ def serve(settings: ServiceSettings, say: Callable[[str], None]) -> None:
 
 
 def server_config(app: FastAPI, settings: ServiceSettings) -> uvicorn.Config:
-    """Return how uvicorn runs the application."""
+    """Configuration with which uvicorn runs the application."""
     return uvicorn.Config(
         app,
         http=bounded(settings.header_timeout, settings.target_limit, settings.idle_connections),

@@ -30,7 +30,7 @@ WORDS: Mapping[type, str] = types.MappingProxyType(
 
 
 def _own_folder() -> Path:
-    """Return where programs of this user keep what they must not lose."""
+    """Folder in which programs of this user keep what they must not lose."""
     return data_home() / "clutchsynth"
 
 

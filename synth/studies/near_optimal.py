@@ -74,7 +74,7 @@ class NearEquals:
     interrupted: str = ""
 
     def sentence(self) -> str:
-        """Return how many there are, and how far that is certain."""
+        """Number of near-equal designs, and how far that is certain."""
         share = percent(self.within)
         number = thousands(self.found)
         those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
@@ -251,7 +251,7 @@ class _Near:
         return np.tile(self.fixed_cutoffs[: lower.shape[1]] + self.tie, (len(lower), 1))
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how far within the cutoffs a box could be."""
+        """Possible distance of a box within the cutoffs."""
         with np.errstate(all="ignore"):
             distance = (self.fixed_cutoffs[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
         room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))

@@ -45,7 +45,7 @@ def is_alive(process: int) -> bool:
 
 
 def beginning(process: int) -> str:
-    """Return when a process began, in a clock that nobody sets; an empty text where the system does not tell."""
+    """Start time of a process, in a clock that nobody sets; an empty text where the system does not state it."""
     if sys.platform == "linux":
         try:
             told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace")

@@ -248,7 +248,7 @@ class Catalogs:
         return source.reference if isinstance(source, TableText) else str(self._path(source).resolve())
 
     def readings(self) -> tuple[str, ...]:
-        """Return how the user's own files were read that are not written as is expected, a sentence for each.
+        """Dialects of the user's own files that differ from the expected one, a sentence for each.
 
         Of a file that cannot be read nothing is told: whoever asks for its table learns what is wrong.
         """

@@ -43,5 +43,5 @@ class CsvFile:
         return head, rows
 
     def sentence(self) -> str:
-        """Return how it is written, if not as is expected."""
+        """Dialect of the file, if not the expected one."""
         return self.text.sentence()

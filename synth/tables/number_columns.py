@@ -114,7 +114,7 @@ PLAIN_NUMBERS = WrittenNumbers()
 
 
 def written_numbers(header: Sequence[str], columns: Sequence[NumberColumn], name: str) -> WrittenNumbers:
-    """Return how the numbers of columns are written; ``name`` is that of the table, for messages.
+    """Number style of columns; ``name`` is that of the table, for messages.
 
     Raises
     ------

@@ -180,7 +180,7 @@ class Sheet:
         return replace(found, numbers=numbers, hidden=tuple(filled))
 
     def _layout(self) -> tuple[set[int], str]:
-        """Return which rows are hidden, and some merged cells: readers that go line by line do not tell."""
+        """Hidden rows, and some merged cells: readers that go line by line do not see them."""
         with _book(self.raw, self.name, self.named_by) as book:
             place = book.worksheets[self.position]._worksheet_path
         hidden, line = set[int](), 0

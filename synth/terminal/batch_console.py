@@ -53,7 +53,7 @@ def print_table_remarks(job: BatchJob, continues: bool) -> None:
 
 
 def _more_lines(lines: Sequence[int], count: int) -> str:
-    """Return where else a fault stands: the first of so many lines."""
+    """Other places of a fault: the first of so many lines."""
     if not count:
         return ""
     listed = ", ".join(map(str, lines)) + (", ..." if count > len(lines) else "")

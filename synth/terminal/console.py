@@ -72,7 +72,7 @@ def console_on(stream: Any, width: int | None = None) -> Console:
 
 
 def _asked_width() -> int:
-    """Return how wide lines are where no terminal says it: as COLUMNS asks, which may be set to anything."""
+    """Width of lines where no terminal states it: as in COLUMNS, which may be set to anything."""
     asked = os.environ.get("COLUMNS", "")
     return max(int(asked), NARROWEST) if asked.isascii() and asked.isdigit() else WIDTH
 
@@ -393,7 +393,7 @@ def _limit_side(design: Design, name: str, side: int) -> str:
 
 
 def _limit_states(design: Design) -> dict[str, str]:
-    """Return how each limit stands: ok, VIOLATED, not checked (no column), or not defined (a guard fails)."""
+    """State of each limit: ok, VIOLATED, not checked (no column), or not defined (a guard fails)."""
     unchecked = {remark.removeprefix("not checked: ").split(",")[0] for remark in design.not_checked}
     states = {}
     for name in design.frame.limit_units:

@@ -142,7 +142,7 @@ def _told(b: Break, along: Varied, names: set[str]) -> list[str]:
 
 
 def _robust(study: Study) -> list[str]:
-    """Return how the designs of all steps stand what scatters, where anything does."""
+    """Robustness of the designs of all steps, where anything scatters."""
     designs = [d for f in study.fronts for d in f.designs]
     lines = [robust_sentence(designs)] if any(d.robust for d in designs) else []
     gone = sum(f.statistics["robust"].get("taken_off", 0) for f in study.fronts if "robust" in f.settings)

@@ -60,7 +60,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
 
 
 def _asked(stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Return how the variants are chosen, as ``synth.size_range`` takes it.
+    """Selection of the variants, as ``synth.size_range`` takes it.
 
     Raises
     ------

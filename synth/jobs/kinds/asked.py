@@ -428,7 +428,7 @@ def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
 
 
 def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:
-    """Return how a spec is searched. How many threads work at it is not for a request to say, and changes nothing.
+    """Search settings of a spec. How many threads work at it is not for a request to say, and changes nothing.
 
     Raises
     ------

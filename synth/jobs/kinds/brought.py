@@ -28,7 +28,7 @@ OF_ROWS = ("source", "confidence")  # that every row has, in any table
 
 
 def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return how a file is read, the header and the first rows of a file with rows for a batch.
+    """Dialect of a file with rows for a batch, its header and its first rows.
 
     Raises
     ------

@@ -55,7 +55,7 @@ class ReportAsked:
 
     @staticmethod
     def read(given: Mapping[str, Any]) -> ReportAsked:
-        """Return how a report is asked for by its keys.
+        """Options of a report by its keys.
 
         Raises
         ------

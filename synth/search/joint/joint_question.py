@@ -210,7 +210,7 @@ class BestPerScenario:
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how much better than needed a box could be."""
+        """Possible gain of a box over what is needed."""
         assert cell is not None
         cutoff = self._cutoff(cell)
         with np.errstate(all="ignore"):

@@ -13,7 +13,7 @@ from synth.search.resolution import ROOM
 
 
 def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[Candidate]:
-    """Return those designs, at most so many, that spread best; the best in each objective among them.
+    """Designs, at most so many, that spread best; the best in each objective among them.
 
     Designs that take the places of given ones stay before others.
     """

@@ -113,7 +113,7 @@ def refuse_live(job: Job) -> None:
 
 
 def entries(context: Context, limit: int | None) -> int:
-    """Return how many entries a page has.
+    """Number of entries of a page.
 
     Raises
     ------

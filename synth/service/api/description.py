@@ -36,7 +36,7 @@ class DescribedService(FastAPI):
 
 
 def _name(kind: str) -> str:
-    """Return how the schema of requests of a kind is called."""
+    """Name of the schema of requests of a kind."""
     return "".join(word.capitalize() for word in kind.split("_")) + "Question"
 
 

@@ -87,7 +87,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
 
 
 def seconds_limit(asked: float | None, most: float | None) -> float | None:
-    """Return how long a job may be worked at.
+    """Time limit of a job.
 
     Raises
     ------

@@ -40,7 +40,7 @@ class CommonFront:
         return signed
 
     def useful(self, designs: Sequence[Design]) -> list[Design]:
-        """Return those that no design known beats or equals."""
+        """Designs that no known design dominates or equals."""
         known = self.signed([d for m in self.members for d in m.designs])
         return [d for d, own in zip(designs, self.signed(designs), strict=True) if not beaten(known, own).any()]
 

@@ -67,7 +67,7 @@ class Comparison:
 
     @property
     def status(self) -> Status:
-        """Return how the comparison stands, as a front does."""
+        """State of the comparison, as of a front."""
         if self.designs:
             return Status.OPTIMAL if self.certificate.kind == "global" else Status.FEASIBLE
         return without_design(self.certificate, self.interrupted)
@@ -86,7 +86,7 @@ class Comparison:
         return sentences
 
     def sentence(self) -> str:
-        """Return how far the common front is proven."""
+        """Sentence on how far the common front is proven."""
         searched = sum(x.front is not None for x in self.outcomes)
         those = "the family" if searched == 1 else f"the {searched} families"
         count = self.certificate.combinations

@@ -227,7 +227,7 @@ def _check_tables(found: Sequence[Applicant], catalogs: Catalogs) -> None:
 
 
 def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
-    """Return why a family cannot serve a sheet, as predicates."""
+    """Reasons why a family cannot serve a sheet, as predicates."""
     reasons, d = [], one.declaration
     words = {
         "requirements": "does not understand",

@@ -139,7 +139,7 @@ class ExplainedQuestion:
         return next((x for x in self.own if x.name == name), None)
 
     def sign(self, limit: str) -> float:
-        """Return which way a limit gives way."""
+        """Direction in which a limit gives way."""
         return -1.0 if self.by_name[limit].sense == "at_least" else 1.0
 
     def at_corners(self, limit: str) -> list[str]:
@@ -152,7 +152,7 @@ class ExplainedQuestion:
         return [name for name in {**self.fix, **self.parts} if name in d.slots or name in d.choices]
 
     def room(self, name: str, sign: float, farthest: float) -> float:
-        """Return how far a requirement may move before it leaves its declared range, as a logarithm.
+        """Room of a requirement before it leaves its declared range, as a logarithm.
 
         Parameters
         ----------

@@ -169,7 +169,7 @@ class JointWay:
 def direction(
     question: ExplainedQuestion, name: str, single: Sequence[Relaxation], conflict: Sequence[str], flat: float
 ) -> float:
-    """Return which way a requirement asks less: as it helps alone, as a limit, or by the signs of all limits.
+    """Direction in which a requirement asks less: as it helps alone, as a limit, or by the signs of all limits.
 
     Parameters
     ----------

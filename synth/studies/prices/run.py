@@ -304,7 +304,7 @@ class _Case:
     def _reached(
         self, own: tuple[Solutions, np.ndarray, np.ndarray], values: np.ndarray, start: np.ndarray, near: np.ndarray
     ) -> np.ndarray:
-        """Return how good other parts become per move (parts, moves); infinite where they are not worth a look.
+        """Gain by other parts per move (parts, moves); infinite where they are not worth a look.
 
         What is ahead of the design without any move is noted, and no price.
         """
@@ -321,7 +321,7 @@ class _Case:
         return reached
 
     def _without_a_step(self, others: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how good other combinations are, where, and which of them a step may bring within reach."""
+        """Values of other combinations, their places, and those that a step may bring within reach."""
         form, k, count = self.again.form, self.k, len(others)
         still = np.full(count, -1)
         start = np.repeat(self.best.variables, count, axis=0)
@@ -466,7 +466,7 @@ class _Case:
         return more_or_less(abs(move.factor - 1.0), move.factor > 1)
 
     def _trouble(self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray]) -> str:
-        """Return why solving again with the parts of the design does not confirm a price; nothing where it does."""
+        """Reason why solving again with the parts of the design does not confirm a price; empty where it does."""
         found, kept, broken = own
         way = self._way(self.again.moves[number])
         if not kept[number] and broken[number] >= 0:
@@ -486,7 +486,7 @@ class _Case:
         return abs(again - slope) <= limits.share * max(abs(again), abs(slope)) + limits.room
 
     def _what_binds(self, found: Solutions, number: int) -> str:
-        """Return which limits begin or end to bind on the way, as what explains a bend."""
+        """Limits that begin or end to bind on the way, as the reasons of a bend."""
         before, after = self.best.multipliers[0], found.constraint_multipliers[number]
         names = self.again.limit_names
         binds = self.again.limits.binds

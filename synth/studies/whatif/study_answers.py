@@ -28,7 +28,7 @@ class StudyStep:
 
     @property
     def status(self) -> Status:
-        """Return how the step stands."""
+        """State of the step."""
         return Status.NOT_SOLVED if self.front is None else self.front.status
 
     @property

@@ -98,7 +98,7 @@ def _panels(
 
 
 def _marks(study: StudyAnswers) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return where break points are drawn, and what the number of each stands for, where there is room for that."""
+    """Places of break points in a drawing, and the meaning of each number, where there is room for that."""
     groups: list[list[Break]] = []
     for b in sorted(study.breaks, key=lambda b: b.value):
         # The same happens to several objectives at one place, each of which is located by itself.
@@ -248,7 +248,7 @@ def _title(study: StudyAnswers, what: Iterable[str]) -> str:
 
 
 def _footer(study: StudyAnswers, *legend: str) -> str:
-    """Return how far the steps are answered, and what stands for what."""
+    """Summary of the answered steps, and the key of signs."""
     solved = [f.certificate.kind for f in study.fronts]
     answered = f"{len(solved)} of {len(study.steps)} steps answered, {solved.count('global')} of them proven"
     return "; ".join([answered, *legend])
@@ -270,7 +270,7 @@ def _lines(single: bool, steps: Sequence[StudyStep | None], name: str) -> dict[s
 
 
 def _edge(places: Sequence[float], k: int, way: int, ends: Sequence[float]) -> float:
-    """Return how far, upwards (1) or downwards (-1), what holds at a place is shown: to the next end on the way."""
+    """Extent, upwards (1) or downwards (-1), of what holds at a place: to the next end on the way."""
     place, beyond = places[k], k + way
     if not 0 <= beyond < len(places):
         return place

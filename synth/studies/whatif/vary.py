@@ -307,7 +307,7 @@ def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
 
 
 def _end_missed(numbers: Sequence[float], reached: float, unit: str) -> str:
-    """Return where the steps of from:to:step end, if that is before its end; nothing where they meet it."""
+    """Last step of from:to:step, if that is before its end; None where they meet it."""
     first, last, step = numbers
     if (last - reached) / step < 1e-6:  # a float's rounding, not a step that is missing
         return ""
