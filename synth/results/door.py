@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, TypeVar, cast
 
 if TYPE_CHECKING:
     from synth.results.calculation import Calculation
-    from synth.results.front import ParetoFront
     from synth.results.notebook import NotebookFrame
     from synth.results.verification import Verification
 
 
-class Report(Protocol):
+Front = TypeVar("Front")  # the class of fronts imports this module
+
+
+class ReportOnDisk(Protocol):
     """A report that is written."""
 
     def complete(self) -> Path:
@@ -23,23 +25,23 @@ class Report(Protocol):
 class Door(Protocol):
     """Verbs about a front, as the facade has them; options are those of the methods of a front."""
 
-    def calculation(self, front: ParetoFront, /) -> Calculation:
+    def calculation(self, front: object, /) -> Calculation:
         """How every number of the designs is computed."""
         ...
 
-    def verify(self, front: ParetoFront, problem: object, catalogs: object, time_limit: float, /) -> Verification:
+    def verify(self, front: object, problem: object, catalogs: object, time_limit: float, /) -> Verification:
         """Check without help of the search."""
         ...
 
-    def improve(self, front: ParetoFront, /, **options: object) -> ParetoFront:
+    def improve(self, front: Front, /, **options: object) -> Front:
         """Search on from the designs."""
         ...
 
-    def report(self, front: ParetoFront, folder: str | Path, /, **options: object) -> Report:
+    def report(self, front: object, folder: str | Path, /, **options: object) -> ReportOnDisk:
         """Write report and sheets."""
         ...
 
-    def explore(self, front: ParetoFront, height: int, /, **options: object) -> NotebookFrame:
+    def explore(self, front: object, height: int, /, **options: object) -> NotebookFrame:
         """Frame of the explorer for a notebook."""
         ...
 
