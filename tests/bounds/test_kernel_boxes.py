@@ -264,6 +264,22 @@ def test_every_rule_agrees(first, range_, capped):
     assert capped or min(alive) > 0
 
 
+EXTREME = np.array([0.0, -0.0, 5e-324, -5e-324, 1e-300, -1e-300, 1e-16, -1e-16, 1.0, -1.0, 2.0, -2.0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, len(USES), AT_A_TIME))
+def test_every_rule_agrees_at_zeros_and_at_the_smallest_numbers(first):
+    for seed in (1, 2):
+        case, rng = case_of(USES[first : first + AT_A_TIME], (-2.0, 2.0), 60), np.random.default_rng(seed)
+        ends, drawn = rng.choice(EXTREME, (2, *case.low.shape)), rng.random(case.low.shape) < 0.5
+        low, high = np.where(drawn, ends[0], case.low), np.where(drawn, ends[1], case.high)
+        case.low, case.high = np.minimum(low, high), np.maximum(low, high)
+        assert min(case.agree(False, passes, 1e-12, 1e-14) for passes in (1, 3)) > 0
+        for level in OTHERS:
+            same_bits(case, False, 3, level)
+
+
 # -- processors ----------------------------------------------------------------------------------------
 
 OTHERS = [level for level in LEVELS if level < processor_level()]
