@@ -3,14 +3,14 @@
 typedef struct { vd low, high; } Interval;
 #define RULE static Interval __attribute__((unused))
 #define TRUTH(mask) keep(mask, all(1.0))
-/* Of a number and not-a-number, the number. */
+/* Of a number and not-a-number, the number; of zeros the second, as the instructions of processors have it. */
 INLINE vd v_fmax(vd a, vd b) {
 #if defined(__AVX512F__)
     return (vd)max_of_eight(a, known_of_eight(b), b);
 #elif defined(__AVX__)
     return (vd)blend_of_four(max_of_four(a, b), a, (vd)(b != b));
 #else
-    return choose((a >= b) | (b != b), a, b);
+    return choose((a > b) | (b != b), a, b);
 #endif
 }
 INLINE vd v_fmin(vd a, vd b) {
@@ -19,7 +19,7 @@ INLINE vd v_fmin(vd a, vd b) {
 #elif defined(__AVX__)
     return (vd)blend_of_four(min_of_four(a, b), a, (vd)(b != b));
 #else
-    return choose((a <= b) | (b != b), a, b);
+    return choose((a < b) | (b != b), a, b);
 #endif
 }
 INLINE vd clipped(vd a, double low, double high) { return v_min(v_max(a, all(low)), all(high)); }
