@@ -355,7 +355,8 @@ class Worker:
                     self.store.adopt(self.code, worker.alive)
                     self.store.prune()
             except (DBAPIError, OSError) as error:
-                self.say(f"the database does not answer ({getattr(error, 'strerror', type(error).__name__)}); waiting")
+                reason = getattr(error, "strerror", None) or type(error).__name__  # few errors have one of the system
+                self.say(f"the database does not answer ({reason}); waiting")
                 self.stopping.wait(worker.weigh)
 
     def _end_unwanted(self) -> None:

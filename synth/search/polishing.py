@@ -253,7 +253,10 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         boxes = form.boxes.contract(boxes, cutoffs[boxes.tag], passes=1)
         single = form.boxes.cells.single(boxes.cell)
         numbers = _members(form, boxes.cell[single], limits.ties)
-        take(np.repeat(boxes.tag[single], [len(n) for n in numbers]), np.concatenate([own[:0], *numbers]))
+        take(
+            np.repeat(boxes.tag[single], [len(n) for n in numbers]),
+            np.concatenate([np.empty(0, dtype=np.int64), *numbers]),
+        )
         boxes, _ = form.boxes.split(boxes.take(~single))
         waiting += [batch for batch in (later, boxes) if len(batch)]
     return found

@@ -10,7 +10,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import time
 from contextlib import closing
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from tests.folders.test_output_folder import small_disk
 from tests.terminal.entry import COMMAND, at_once, clutchsynth, in_process
 from tests.terminal.test_choice_commands import SEVERAL
 from tests.terminal.test_cli import HOIST, SMALL, refused
-from tests.waiting import PATIENCE
+from tests.waiting import PATIENCE, until
 
 pytestmark = [
     pytest.mark.slow,
@@ -75,13 +74,12 @@ def out(small: Path, tmp_path: Path) -> Path:
 def until_it_works(database: Path, rows: int) -> None:
     """Wait until a worker has taken the first rows of a batch of so many."""
     taken = "SELECT count(*) FROM unit JOIN job ON unit.job = job.id WHERE rows = ? AND owner <> ''"
-    deadline = time.monotonic() + PATIENCE
-    while time.monotonic() < deadline:
+
+    def taken_by_now() -> int:
         with closing(sqlite3.connect(database)) as connection:
-            if connection.execute(taken, (rows,)).fetchone()[0]:
-                return
-        time.sleep(0.02)
-    pytest.fail("the batch has not begun")
+            return int(connection.execute(taken, (rows,)).fetchone()[0])
+
+    until(taken_by_now)
 
 
 def begun(folder: Path, *words: object) -> subprocess.Popen[str]:

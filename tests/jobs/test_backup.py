@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,7 +16,7 @@ from synth.jobs.database import engine_for, file_url
 from synth.jobs.store import Store
 from tests.jobs.test_kill import small_table
 from tests.terminal.entry import COMMAND, at_once, in_process
-from tests.waiting import PATIENCE
+from tests.waiting import until
 
 ROWS = 12
 ASKED = ("--points", "1", "--objective", "mass", "-q")
@@ -85,11 +84,8 @@ def test_a_backup_of_a_batch_that_runs_goes_on_elsewhere_with_the_same_bytes(
     words = ["batch", str(table), "-o", str(tmp_path / "out"), "--database", database, "--workers", "1", *ASKED]
     process = subprocess.Popen([*COMMAND, *words], stderr=subprocess.DEVNULL)
     try:
-        end = time.monotonic() + PATIENCE
-        while not answered(database):
-            assert time.monotonic() < end
-            assert process.poll() is None
-            time.sleep(0.02)
+        until(lambda: process.poll() is not None or answered(database))
+        assert process.poll() is None
         done = at_once("database", "backup", copy, "--database", database)
         assert done.returncode == 0, done.stderr
         assert process.poll() is None  # the batch has noticed nothing

@@ -10,7 +10,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,7 @@ from synth.jobs.executors import Cluster
 from synth.jobs.job_settings import ClusterSettings, JobSettings, RunnerSettings
 from tests.jobs.asked import batch
 from tests.sample_problems.rod import Rod
-from tests.waiting import PATIENCE
+from tests.waiting import PATIENCE, until
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
@@ -137,10 +136,7 @@ def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts, capfd: pytest.Capt
     said.clear()
     scheduler.kill()
     scheduler.wait()
-    deadline = time.monotonic() + PATIENCE
-    while cluster.alive() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    assert not cluster.alive()
+    until(cluster.alive, right=lambda alive: not alive)
     assert not cluster.reconnect(lambda: False)
     assert "does not answer; nothing is lost" in said[0]
     cluster.shutdown()

@@ -18,7 +18,7 @@ from synth.jobs.database import file_url
 from synth.jobs.store import Store
 from tests.repetitions import repetitions
 from tests.terminal.entry import COMMAND, in_process
-from tests.waiting import PATIENCE
+from tests.waiting import PATIENCE, until
 
 ROOT = Path(__file__).parents[2]
 ROWS = """id,family,load_torque,driver_speed [1/min],driven_inertia [kg*m2],guide_model,practice,ramp_time,parts,limits
@@ -100,9 +100,7 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
     process = subprocess.Popen([*COMMAND, *words, "--workers", "1"], stderr=subprocess.PIPE, text=True)
     try:
         file = tmp_path / "out" / DATABASE
-        deadline = time.monotonic() + PATIENCE
-        while time.monotonic() < deadline and not at_work(file):
-            time.sleep(0.02)
+        until(lambda: at_work(file))
         time.sleep(random.Random(int(number)).uniform(0.0, 0.5))
         workers = children_of(process.pid)
         assert workers
@@ -111,10 +109,7 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
     finally:
         process.kill()
     assert process.returncode == (-9 if number == signal.SIGKILL else 4), errors
-    deadline = time.monotonic() + PATIENCE
-    while time.monotonic() < deadline and any(exists(worker) for worker in workers):
-        time.sleep(0.02)
-    assert not [worker for worker in workers if exists(worker)]
+    until(lambda: [worker for worker in workers if exists(worker)], right=lambda left: not left)
     if number == signal.SIGKILL:
         assert not (tmp_path / "out" / "designs.csv").exists()
         again = in_process(*words)
