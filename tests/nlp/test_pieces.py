@@ -20,7 +20,7 @@ from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
 from synth.order.feasibility import residual
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import pose
 from tests.regimes import best_in_any_regime, referee
 from tests.repetitions import repetitions

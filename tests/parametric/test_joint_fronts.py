@@ -16,9 +16,9 @@ from synth.parametric.joint_fronts import JointFrontSearch, joint_answers, joint
 from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
 from synth.search.question import Question
+from synth.search.settings import TUNING
 from synth.system.deadline import Stopped
 from synth.tables.catalogs import Catalogs
-from synth.tuning import TUNING
 from tests.asking import pose
 from tests.repetitions import repetitions
 from tests.sample_problems.ropes import Ropes, ropes

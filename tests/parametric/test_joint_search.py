@@ -28,9 +28,9 @@ from synth.search.joint import joint_optima
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different
 from synth.search.question import Question
+from synth.search.settings import TUNING
 from synth.system.deadline import Stopped
 from synth.tables.catalogs import Catalogs
-from synth.tuning import TUNING
 from tests.asking import pose
 from tests.sample_problems.ropes import Made, Ropes, best_ropes, ropes
 from tests.sample_problems.shaft_brake import CATALOGS as PAIRS_TABLE

@@ -25,6 +25,7 @@ from synth.results.provenance import hash_of, joined
 from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
 from synth.search.question import Question
+from synth.search.settings import TUNING, Tuning
 from synth.studies.study_store import RECORD, STUDY_FORMAT, StudyStore
 from synth.studies.whatif.break_points import find_breaks
 from synth.studies.whatif.steps import Steps
@@ -32,7 +33,6 @@ from synth.studies.whatif.study import Study
 from synth.studies.whatif.study_answers import Break, StudyStep
 from synth.studies.whatif.weight_breaks import weight_breaks
 from synth.system.deadline import Stopped, until
-from synth.tuning import TUNING, Tuning
 
 INTERRUPTED = "interrupted"
 POINTS = 3  # of every step: the best in each objective and, of two, one between
