@@ -199,6 +199,7 @@ KINDS = {
     "endtoend": "what people meet, across packages",
     "docs": "what the documentation shows",
     "benchmarks": "run by hand",
+    "referees": "independent solvers that answers are compared with",
     "sample_problems": "small problems for tests of the engine",
 }
 

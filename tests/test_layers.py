@@ -28,7 +28,7 @@ LAYERS = (
     ("robust",),
     ("analysis",),
     ("search",),
-    ("parametric", "verification"),
+    ("verification",),
     ("studies", "batches"),
     ("variants",),
     ("kinds",),

@@ -109,7 +109,7 @@ def answered_together(
     dict
         Per key what :func:`answer` returns, or ``{ALONE: text}``.
     """
-    from synth.parametric.joint_groups import groups_of
+    from synth.search.joint.joint_groups import groups_of
 
     found: dict[str, dict[str, Any]] = {key: {ALONE: ""} for key in questions}
     posed: dict[str, Question] = {}
@@ -132,7 +132,7 @@ def answered_together(
 
 def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[str, dict[str, Any]]:
     """Search the designs for questions that are alike; what is not settled is left out, all of it if time is over."""
-    from synth.parametric.joint_search import JointSearch
+    from synth.search.joint.joint_search import JointSearch
 
     begin, each = time.monotonic(), list(questions.values())
     limit = each[0].settings.time_limit

@@ -1,6 +1,6 @@
 """Many small continuous problems at once: one set of rows, a combination of parts and a task each.
 
-The problem is that of :class:`synth.nlp.ipopt.ParametricNlp`,
+The problem of one combination is
 
     minimise  weights . phi + t_weight t
     over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cutoff_k,

@@ -25,8 +25,8 @@ from synth.batches.signs import show
 from synth.batches.solve import ALONE, GROUP, Shared, answered_together, is_group, solve_unit
 from synth.batches.store import Outcome, Store
 from synth.batches.warm_starts import place
-from synth.parametric.joint_search import JointSearch
 from synth.queue.database import digest
+from synth.search.joint.joint_search import JointSearch
 from synth.system import deadline
 from synth.system.deadline import Stopped
 from tests.batches.asked import batch

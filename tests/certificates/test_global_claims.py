@@ -18,8 +18,8 @@ import pytest
 import synth
 from synth.bounds.log_relaxation import LogRelaxation
 from synth.bounds.settings import TogetherLimits
-from synth.parametric.joint_fronts import JointFrontSearch
-from synth.parametric.joint_groups import joint_key
+from synth.search.joint.joint_fronts import JointFrontSearch
+from synth.search.joint.joint_groups import joint_key
 from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.levels import LevelProof
 from synth.search.settings import LevelLimits, SearchEffort

@@ -7,9 +7,9 @@ import pytest
 
 import synth
 from synth import DesignProblem
-from synth.parametric.joint_search import JointSearch
 from synth.search.archive import Candidate
 from synth.search.box_operations import BoxOperations
+from synth.search.joint.joint_search import JointSearch
 from synth.search.polishing import polish_discrete
 from synth.search.settings import TUNING, PolishingLimits
 from tests.asking import pose

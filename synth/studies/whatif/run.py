@@ -13,7 +13,6 @@ from typing import Any
 
 from synth.folders.output_folder import claimed
 from synth.model.problem import DesignProblem
-from synth.parametric.joint_fronts import joint_answers, joint_groups
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import read_block
@@ -24,6 +23,7 @@ from synth.results.loading import front_of_record
 from synth.results.provenance import hash_of, joined
 from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
+from synth.search.joint.joint_fronts import joint_answers, joint_groups
 from synth.search.question import Question
 from synth.search.settings import TUNING, Tuning
 from synth.studies.study_store import RECORD, STUDY_FORMAT, StudyStore

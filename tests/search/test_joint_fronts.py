@@ -12,9 +12,9 @@ import pytest
 
 import synth
 from synth.order.feasibility import Status
-from synth.parametric.joint_fronts import JointFrontSearch, joint_answers, joint_groups
-from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
+from synth.search.joint.joint_fronts import JointFrontSearch, joint_answers, joint_groups
+from synth.search.joint.joint_search import JointSearch
 from synth.search.question import Question
 from synth.search.settings import TUNING
 from synth.system.deadline import Stopped

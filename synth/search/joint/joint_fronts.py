@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 
 from synth.order.pareto import spread_subset
-from synth.parametric.joint_groups import groups_of
-from synth.parametric.joint_report import JointReport
-from synth.parametric.joint_search import JointSearch, told
 from synth.results import ParetoFront
 from synth.search.archive import Candidate, distinct
 from synth.search.budget import Clock
+from synth.search.joint.joint_groups import groups_of
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.joint.joint_question import different
+from synth.search.joint.joint_report import JointReport
+from synth.search.joint.joint_search import JointSearch, told
 from synth.search.question import Question
 
 

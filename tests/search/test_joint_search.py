@@ -19,14 +19,14 @@ import synth
 from synth.bounds import question_bounds
 from synth.model.problem import DesignProblem
 from synth.order.feasibility import Status
-from synth.parametric.joint_groups import groups_of
-from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.joint import joint_optima
+from synth.search.joint.joint_groups import groups_of
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different
+from synth.search.joint.joint_search import JointSearch
 from synth.search.question import Question
 from synth.search.settings import TUNING
 from synth.system.deadline import Stopped

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from synth.parametric.joint_report import JointReport
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.search.budget import Clock
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
+from synth.search.joint.joint_report import JointReport
 from synth.search.question import Question
 
 
