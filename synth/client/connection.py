@@ -219,8 +219,8 @@ class ServiceClient:
         front: ParetoFront | RemoteJob | str,
         design: int,
         within: Any = None,
-        count: int | None = None,
         *,
+        count: int | None = None,
         progress: Progress | None = None,
         **asked: Any,
     ) -> RemoteJob:

@@ -21,6 +21,7 @@ def synthesize(
     requirements: Mapping[str, Any],
     objectives: Any = None,
     points: int = 30,
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,

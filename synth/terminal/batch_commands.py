@@ -74,6 +74,7 @@ def register(app: typer.Typer) -> None:
 
 
 def batch(
+    *,
     rows: RowsFile,
     folder: RowsFolder = None,
     family: RowFamily = None,

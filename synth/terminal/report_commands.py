@@ -28,6 +28,7 @@ def register(app: typer.Typer) -> None:
 
 
 def report(
+    *,
     source: Annotated[
         Path, typer.Argument(help="A folder that run or batch has written, or a DESIGN.yaml.", metavar="SOURCE")
     ],

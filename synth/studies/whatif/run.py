@@ -44,6 +44,7 @@ def whatif(
     vary: Mapping[str, Any],
     objectives: Any = None,
     points: int = POINTS,
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,
