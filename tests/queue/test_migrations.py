@@ -150,7 +150,7 @@ def _put_back(database: str) -> None:
     metadata.reflect(engine)
     metadata.drop_all(engine)
     config = Config()
-    config.set_main_option("script_location", str(ROOT / "synth" / "jobs" / "migrations"))
+    config.set_main_option("script_location", str(ROOT / "synth" / "queue" / "migrations"))
     with engine.begin() as connection:
         config.attributes["connection"] = connection
         command.upgrade(config, "1")
