@@ -1,4 +1,4 @@
-# make demo, make check, make test, make thorough, make lint, make javascript, make kernels, make mechanics, make picture, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make javascript, make kernels, make mechanics, make schema, make picture, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/system/operating_system.py
 
-.PHONY: demo check test thorough lint javascript kernels mechanics picture gallery lock clean
+.PHONY: demo check test thorough lint javascript kernels mechanics schema picture gallery lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -68,6 +68,10 @@ kernels: $(DEV)
 # The page of the formulas, from their docstrings; a test compares it.
 mechanics: $(DEV)
 	$(BIN)/python -m tests.docs.mechanics_page
+
+# The JSON schema of front.json; a test compares it.
+schema: $(DEV)
+	$(BIN)/python -m tests.results.front_schema
 
 # The picture on the first screen of the README, as the program draws it; a test compares it.
 picture: $(RUNTIME)

@@ -129,6 +129,6 @@ def _ranked(
         named = Link(f"{titles[family]} #{x['own_rank']}", place)
         score = page_text(x["score"])
         values = [printed(in_its_unit(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
-        verdict = [str(DesignRating.read(x.get("robust") or {}).verdict or "not rated")] if rated else []
+        verdict = [str(DesignRating.from_json(x.get("robust") or {}).verdict or "not rated")] if rated else []
         rows.append(TableRow((f"#{x['rank']}", score, named, *values, *verdict, words(str(x.get("note") or "")))))
     return TableBlock.of("Designs of all families that no other one beats, the best rank first", columns, rows)

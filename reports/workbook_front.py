@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from synth.order.feasibility import Status
-from synth.results import Design, ParetoFront, shown_value
+from synth.results import Design, ParetoFront, cell_value
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.text.numbers import typed_number
 from synth.units import header
@@ -124,7 +124,7 @@ def _requirements(book: Book, front: ParetoFront, quantities: Mapping[str, Named
         unit = q.unit if q is not None else frame.units.get(name, "")
         typed = "typed" if name in frame.requirements else "default"
         words = (q.group, q.text, q.source) if q is not None else ("", "", "")
-        shown = shown_value(value, unit or "-")
+        shown = cell_value(value, unit or "-")
         rows.append([name, shown, unit or ("" if frame.requirements.get(name) is None else "SI"), typed, *words])
     below = _table(sheet, 0, ("requirement", "value", "unit", "stated", "group", "meaning", "source"), rows)
     sheet.own.freeze_panes(1, 1)
@@ -222,7 +222,7 @@ def _used(front: ParetoFront, design: Design, names: Sequence[str]) -> list[Any]
         line.append("–" if used is None else "∞" if used == float("inf") else used)
     line.append(None)
     for name in names:
-        line += [shown_value(x, units[name] or "-") for x in design.limits.get(name, (float("nan"), float("nan")))]
+        line += [cell_value(x, units[name] or "-") for x in design.limits.get(name, (float("nan"), float("nan")))]
     return line
 
 

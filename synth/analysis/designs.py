@@ -19,8 +19,8 @@ from synth.question.search_space import SearchSpace
 from synth.results import Design, Frame, PartRow
 from synth.results.next_row import NextRow
 from synth.results.provenance import joined
+from synth.results.record import UNSET
 from synth.results.statistics import SearchStatistics
-from synth.results.told import UNTOLD
 from synth.units import typed_quantity
 
 
@@ -171,7 +171,7 @@ def offered(instance: Instance) -> SearchStatistics:
         counts={n: len(v) for n, v in selection.counts.items()},
         choices={n: len(v) for n, v in selection.choices.items()},
         rows_left_out=selection.left_out,
-        combinations_left_out=instance.selection.combinations_left_out if instance.compared else UNTOLD,
+        combinations_left_out=instance.selection.combinations_left_out if instance.compared else UNSET,
         not_asked=list(instance.values.not_asked),
     )
 

@@ -241,7 +241,7 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
 
     A limit that a row adds has a name of its own (``mass <= 20 kg``); per quantity they share a column.
     """
-    from synth.results import shown_value
+    from synth.results import cell_value
     from synth.units import header
 
     frame = front.frame
@@ -264,9 +264,9 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
     rows = []
     for d in front.designs:
         cells: list[Any] = [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives)]
-        cells += [shown_value(d.values[n], frame.units[n]) for n in [*frame.objectives, *searched]]
+        cells += [cell_value(d.values[n], frame.units[n]) for n in [*frame.objectives, *searched]]
         cells += [*d.choices.values(), *(str(part) for part in d.parts.values())]
-        cells += [shown_value(d.values[n], frame.units[n]) for n in derived]
+        cells += [cell_value(d.values[n], frame.units[n]) for n in derived]
         cells += [d.utilisation.get(n) for n in own]
         for quantity in added:
             used = [u for n, of in extra.items() if of == quantity and (u := d.utilisation.get(n)) is not None]

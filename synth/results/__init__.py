@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from synth.results.certificate import Certificate
-    from synth.results.design import Design, Frame, PartRow, design_columns, design_row, shown_value
+    from synth.results.design import Design, Frame, PartRow, cell_value, design_columns, design_row
     from synth.results.front import ParetoFront, foremost, named_designs
 
 __all__ = [
@@ -16,11 +16,11 @@ __all__ = [
     "Frame",
     "ParetoFront",
     "PartRow",
+    "cell_value",
     "design_columns",
     "design_row",
     "foremost",
     "named_designs",
-    "shown_value",
 ]
 
 _HOME = {
@@ -30,7 +30,7 @@ _HOME = {
     "PartRow": "synth.results.design",
     "design_columns": "synth.results.design",
     "design_row": "synth.results.design",
-    "shown_value": "synth.results.design",
+    "cell_value": "synth.results.design",
     "ParetoFront": "synth.results.front",
     "foremost": "synth.results.front",
     "named_designs": "synth.results.front",

@@ -251,13 +251,13 @@ def design_columns(frame: Frame, choices: Iterable[str], slots: Iterable[str]) -
 def design_row(frame: Frame, design: Design) -> list[Any]:
     """Cells under ``design_columns``; None where there is no value."""
     early, late = _order(frame)
-    row: list[Any] = [shown_value(design.values[n], frame.units[n]) for n in early]
+    row: list[Any] = [cell_value(design.values[n], frame.units[n]) for n in early]
     row += [*design.choices.values(), *(str(part) for part in design.parts.values())]
-    row += [shown_value(design.values[n], frame.units[n]) for n in late]
+    row += [cell_value(design.values[n], frame.units[n]) for n in late]
     return row + [design.utilisation.get(n) for n in frame.limit_units]
 
 
-def shown_value(value: float, unit: str) -> float | None:
+def cell_value(value: float, unit: str) -> float | None:
     """Return an SI value in the unit of its column; None where it does not exist."""
     return finite_from_si(value, unit, None)
 

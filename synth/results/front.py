@@ -358,7 +358,7 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         **({"headline": list(frame.headline)} if frame.headline else {}),
         **({"sized_by": frame.sized_by} if frame.sized_by else {}),
         **({"tables": dict(frame.tables)} if frame.tables else {}),
-        "settings": dict(front.settings),
+        "settings": plain(front.settings),
         "versions": installed_versions(),
         "status": front.status.value,
         "interrupted": front.interrupted,

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
 
-from synth.results.told import UNTOLD, Told, Untold
+from synth.results.record import UNSET, Number, Record, Unset
 from synth.text.plain_text import counted
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class MissedLimit(Told):
+class MissedLimit(Record, frozen=True, kw_only=True, eq=False):
     """A limit that the nearest design misses.
 
     Parameters
@@ -27,16 +24,15 @@ class MissedLimit(Told):
     sentence : str
     """
 
-    limit: str | Untold = UNTOLD
-    value: float | Untold = UNTOLD
-    limit_value: float | Untold = UNTOLD
-    unit: str | Untold = UNTOLD
-    missed_by: float | Untold = UNTOLD
-    sentence: str | Untold = UNTOLD
+    limit: str | Unset = UNSET
+    value: Number | Unset = UNSET
+    limit_value: Number | Unset = UNSET
+    unit: str | Unset = UNSET
+    missed_by: Number | Unset = UNSET
+    sentence: str | Unset = UNSET
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class LeastInfeasible(Told):
+class LeastInfeasible(Record, frozen=True, kw_only=True, eq=False):
     """The ``explanation`` of a front; only the message is told where no design could be evaluated.
 
     Parameters
@@ -50,10 +46,10 @@ class LeastInfeasible(Told):
         Slot -> designation.
     """
 
-    message: str | Untold = UNTOLD
-    conflicts: Sequence[MissedLimit] | Untold = UNTOLD
-    nearest: Mapping[str, str] | Untold = UNTOLD
-    parts: Mapping[str, str] | Untold = UNTOLD
+    message: str | Unset = UNSET
+    conflicts: Sequence[MissedLimit] | Unset = UNSET
+    nearest: Mapping[str, str] | Unset = UNSET
+    parts: Mapping[str, str] | Unset = UNSET
 
     @property
     def headline(self) -> str:
@@ -61,11 +57,3 @@ class LeastInfeasible(Told):
         message, count = str(self.message or "No design is feasible."), len(self.conflicts or ())
         nearest, misses, _ = message.partition(" misses ")
         return f"{nearest} misses {counted(count, 'limit')}:" if count and misses else message
-
-    @classmethod
-    def from_json(cls, content: Mapping[str, Any]) -> Self:
-        """Return the record that a file tells, its limits too."""
-        found = dict(content)
-        if isinstance(found.get("conflicts"), list):
-            found["conflicts"] = [MissedLimit.read(x) for x in found["conflicts"]]
-        return super().from_json(found)

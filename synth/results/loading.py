@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import msgspec
+from msgspec import structs
+
 from synth.errors import InputError
 from synth.folders.files import read_json
 from synth.folders.output_folder import settle
-from synth.order.feasibility import Status
 from synth.order.pareto import Scale
 from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
+from synth.results.front_file import DesignEntry, FrontFile
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
-from synth.results.least_infeasible import LeastInfeasible
-from synth.results.next_row import NextRow
-from synth.results.ratings import DesignRating
-from synth.results.search_record import SettingsRecord
-from synth.results.statistics import SearchStatistics
+from synth.results.record import Number
+from synth.units import parse_unit
 
 COMPARISON = "comparison.json"
-MOST_DIGITS = 17  # that tell any number apart from its neighbours
 
 
 def load_front(folder: str | Path) -> ParetoFront:
@@ -101,90 +101,86 @@ def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
         When it is not complete.
     """
     try:
-        return _front_from_json(content, path.parent)
+        return _front_from_file(msgspec.convert(content, FrontFile), content, path.parent)
     except KeyError as error:
         raise InputError(f"front {path}: {error.args[0]}", None, "a front.json that is complete") from error
     except (TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(f"front {path}", str(error), "a front.json that is complete") from error
 
 
-def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
+def _front_from_file(file: FrontFile, content: dict[str, Any], folder: Path) -> ParetoFront:
     frame = Frame(
-        family=content["family"],
-        title=content["title"],
-        options=content["options"],
-        requirements=content["requirements"],
-        requirement_values=content["requirement_values_si"],
-        not_asked=tuple(content["not_asked"]),
-        objectives=content["objectives"],
-        units=content["units"],
-        kinds=content["kinds"],
-        limit_units=content["limit_units"],
-        limit_senses=content["limit_senses"],
-        restated=dict(content["restated"]),
-        headline=tuple(content.get("headline", ())),
-        sized_by=content.get("sized_by", ""),
-        tables=dict(content.get("tables", {})),
+        family=file.family,
+        title=file.title,
+        options=file.options,
+        requirements=file.requirements,
+        requirement_values=file.requirement_values_si,
+        not_asked=tuple(file.not_asked),
+        objectives=file.objectives,
+        units=file.units,
+        kinds=file.kinds,
+        limit_units=file.limit_units,
+        limit_senses=file.limit_senses,
+        restated=file.restated,
+        headline=tuple(file.headline),
+        sized_by=file.sized_by,
+        tables=file.tables,
     ).located(folder)
     if not frame.objectives:
         raise ValueError("objectives: there is none")
-    rows = content["parts"]
-    designs = [_design_from_json(frame, d, rows) for d in content["designs"]]
+    told = structs.asdict(file.certificate)
+    gap = file.certificate.gap
     return ParetoFront(
         frame=frame,
-        designs=designs,
-        status=Status(content["status"]),
-        complete=content["complete"],
-        statistics=SearchStatistics.from_json(content["statistics"]),
-        certificate=_certificate_from_json(content["certificate"]),
-        explanation=LeastInfeasible.read(content["explanation"]),
-        settings=SettingsRecord.read(content["settings"]),
-        interrupted=content["interrupted"],
-        scale=Scale.read(content["scale"], frame.objectives) if "scale" in content else None,
+        designs=[_design_from_file(frame, entry, content["parts"]) for entry in file.designs],
+        status=file.status,
+        complete=file.complete,
+        statistics=file.statistics,
+        certificate=Certificate(**{**told, "gap": None if gap is None else float(gap)}),
+        explanation=file.explanation,
+        settings=file.settings,
+        interrupted=file.interrupted,
+        scale=Scale.read(file.scale, frame.objectives) if file.scale else None,
         record=content,
         folder=folder,
     )
 
 
-def _certificate_from_json(told: dict[str, Any]) -> Certificate:
-    return Certificate(**{**told, "gap": None if told["gap"] is None else float(told["gap"])})
-
-
-def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str, Any]]) -> Design:
+def _design_from_file(frame: Frame, entry: DesignEntry, rows: dict[str, dict[str, Any]]) -> Design:
+    for row in entry.next_rows.values():
+        parse_unit(row.unit)
     return Design(
         frame=frame,
-        values={n: _number(v) for n, v in d["values"].items()},
-        parts={slot: PartRow.read(rows[key]) for slot, key in d["parts"].items()},
-        rows=tuple(PartRow.read(rows[key]) for key in d.get("rows", ())),
-        choices=d["choices"],
-        objectives={n: _number(v) for n, v in d["objectives"].items()},
-        limits={n: (_number(v), _number(x)) for n, (v, x) in d["limits"].items()},
-        residuals={n: _number(v) for n, v in d["residuals"].items()},
-        utilisation={n: None if u is None else float(u) for n, u in d["utilisation"].items()},
-        status=Status(d["status"]),
-        elasticity={o: {n: _number(v) for n, v in e.items()} for o, e in d["elasticity"].items()},
-        gap=d["gap"],
-        rank=d["rank"],
-        score=d["score"],
-        note=d["note"],
-        alternatives=tuple(d["alternatives"]),
-        off_grid=d["off_grid"],
-        outside=d.get("outside", {}),
-        advice=tuple(d["advice"]),
-        violated=tuple(d["violated"]),
-        not_checked=tuple(d["not_checked"]),
-        robust=DesignRating.read(d.get("robust", {})),
-        steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
-        digits=_digits(d.get("digits")),
-        next_rows={n: NextRow.read(told) for n, told in d.get("next_rows", {}).items()},
+        values=_numbers(entry.values),
+        parts={slot: PartRow.read(rows[key]) for slot, key in entry.parts.items()},
+        rows=tuple(PartRow.read(rows[key]) for key in entry.rows),
+        choices=entry.choices,
+        objectives=_numbers(entry.objectives),
+        limits={n: (_number(value), _number(bound)) for n, (value, bound) in entry.limits.items()},
+        residuals=_numbers(entry.residuals),
+        utilisation={n: None if used is None else float(used) for n, used in entry.utilisation.items()},
+        status=entry.status,
+        elasticity={objective: _numbers(shares) for objective, shares in entry.elasticity.items()},
+        gap=entry.gap,
+        rank=entry.rank,
+        score=entry.score,
+        note=entry.note,
+        alternatives=tuple(entry.alternatives),
+        off_grid=entry.off_grid,
+        outside=entry.outside,
+        advice=tuple(entry.advice),
+        violated=tuple(entry.violated),
+        not_checked=tuple(entry.not_checked),
+        robust=entry.robust,
+        steps=DesignSteps(_numbers(entry.steps)),
+        digits=entry.digits,
+        next_rows=entry.next_rows,
     )
 
 
-def _digits(told: Any) -> int | None:
-    if told is not None and (type(told) is not int or not 0 <= told <= MOST_DIGITS):
-        raise ValueError(f"digits: {told!r} is no whole number from 0 to {MOST_DIGITS}")
-    return told
+def _numbers(values: Mapping[str, Number]) -> dict[str, float]:
+    return {name: _number(value) for name, value in values.items()}
 
 
-def _number(value: Any) -> float:
+def _number(value: Number) -> float:
     return float("nan") if value is None else float(value)

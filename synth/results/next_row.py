@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from synth.units import parse_unit, typed_quantity
+from synth.units import typed_quantity
 
 
 @dataclass(frozen=True)
@@ -56,15 +55,3 @@ class NextRow:
     def record(self) -> dict[str, Any]:
         """Entry of front.json."""
         return asdict(self)
-
-    @classmethod
-    def read(cls, told: Mapping[str, Any]) -> NextRow:
-        """Record from its entry of a front.json."""
-        designation, beside_table, beside = (
-            None if told[key] is None else str(told[key]) for key in ("designation", "beside_table", "beside")
-        )
-        value, last = (None if told[key] is None else float(told[key]) for key in ("value", "last"))
-        unit = str(told["unit"])
-        parse_unit(unit)
-        needed, table, typed = float(told["needed"]), str(told["table"]), bool(told.get("typed", False))
-        return cls(needed, unit, table, designation, value, last, beside_table, beside, typed)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Self
 
-from synth.results.told import UNTOLD, Told, Untold
+import msgspec
+
+from synth.results.record import UNSET, Number, Record, Unset, force_setattr
 
 YES, NO, NOT_SHOWN = "yes", "no", "not shown"
 SAMPLED = "sampled"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class RangeVerdict(Told):
+class RangeVerdict(Record, frozen=True, kw_only=True, eq=False):
     """Whether limits hold over a range.
 
     Parameters
@@ -22,22 +21,20 @@ class RangeVerdict(Told):
         True only where that is proven, False where a violation was found; None where neither is shown.
     verdict : str
         The same in words, whatever is handed over: ``yes``, ``no`` or ``not shown``.
+    proof : str
+        What is known of the rest of the range: ``proven``, ``bounded`` or ``sampled``.
     """
 
-    holds: bool | Untold | None = UNTOLD
-    verdict: str | Untold = UNTOLD
+    holds: bool | Unset | None = UNSET
+    verdict: str | Unset = UNSET
+    proof: str | Unset = UNSET
 
     def __post_init__(self) -> None:
-        """Put the verdict into words, and fill in the keys."""
-        if not isinstance(self.holds, Untold):
-            object.__setattr__(self, "verdict", in_words(self.holds))
-        super().__post_init__()
-
-    @classmethod
-    def from_json(cls, content: Mapping[str, Any]) -> Self:
-        """Return the record that a file tells; where an old one says that samples hold, nothing is shown by them."""
-        sampled = "verdict" not in content and content.get("proof") == SAMPLED and content.get("holds") is True
-        return super().from_json({**content, "holds": None} if sampled else content)
+        """Put the verdict into words; where an old file says that samples hold, nothing is shown by them."""
+        if self.verdict is UNSET and self.proof == SAMPLED and self.holds is True:
+            force_setattr(self, "holds", None)
+        if self.holds is not UNSET:
+            force_setattr(self, "verdict", in_words(self.holds))
 
 
 def in_words(holds: bool | None) -> str:
@@ -51,14 +48,11 @@ def in_words(holds: bool | None) -> str:
     return YES if holds is True else NO if holds is False else NOT_SHOWN
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class LimitRating(RangeVerdict):
+class LimitRating(RangeVerdict, frozen=True, kw_only=True, eq=False):
     """How a limit stands the range, at its worst point; the fields of ``RangeVerdict`` come first.
 
     Parameters
     ----------
-    proof : str
-        What is known of the rest of the range: ``proven``, ``bounded`` or ``sampled``.
     residual : float or None
         None where the limit cannot be computed.
     value, limit : float or None
@@ -70,23 +64,19 @@ class LimitRating(RangeVerdict):
         The point as shares of the ranges of all that scatters.
     """
 
-    proof: str | Untold = UNTOLD
-    residual: float | Untold | None = UNTOLD
-    value: float | Untold | None = UNTOLD
-    limit: float | Untold | None = UNTOLD
-    utilisation: float | Untold | None = UNTOLD
-    at: Mapping[str, float] | Untold = UNTOLD
-    position: Sequence[float] | Untold = UNTOLD
+    residual: Number | Unset = UNSET
+    value: Number | Unset = UNSET
+    limit: Number | Unset = UNSET
+    utilisation: Number | Unset = UNSET
+    at: Mapping[str, float] | Unset = UNSET
+    position: Sequence[float] | Unset = UNSET
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class DesignRating(RangeVerdict):
+class DesignRating(RangeVerdict, frozen=True, kw_only=True, eq=False):
     """The ``robust`` of a design; empty where it was not rated. The fields of ``RangeVerdict`` come first.
 
     Parameters
     ----------
-    proof : str
-        ``proven`` or ``sampled``.
     share_good : float
         Under the key ``yield``: share of the samples that keep all limits; where all do and nothing proves the rest of
         the range, the lower end of its interval.
@@ -107,32 +97,26 @@ class DesignRating(RangeVerdict):
         Limit -> LimitRating.
     """
 
-    proof: str | Untold = UNTOLD
-    share_good: float | Untold = field(default=UNTOLD, metadata={"key": "yield"})
-    yield_low: float | Untold = UNTOLD
-    yield_high: float | Untold = UNTOLD
-    confidence: float | Untold = UNTOLD
-    samples: int | Untold = UNTOLD
-    worst_limit: str | Untold = UNTOLD
-    worst_utilisation: float | Untold | None = UNTOLD
-    worst_residual: float | Untold | None = UNTOLD
-    worst_at: Mapping[str, float] | Untold = UNTOLD
-    units: Mapping[str, str] | Untold = UNTOLD
-    limits: Mapping[str, LimitRating] | Untold = UNTOLD
+    share_good: float | Unset = msgspec.field(name="yield", default=UNSET)
+    yield_low: float | Unset = UNSET
+    yield_high: float | Unset = UNSET
+    confidence: float | Unset = UNSET
+    samples: int | Unset = UNSET
+    worst_limit: str | Unset = UNSET
+    worst_utilisation: Number | Unset = UNSET
+    worst_residual: Number | Unset = UNSET
+    worst_at: Mapping[str, float] | Unset = UNSET
+    units: Mapping[str, str] | Unset = UNSET
+    limits: Mapping[str, LimitRating] | Unset = UNSET
 
-    @classmethod
-    def from_json(cls, content: Mapping[str, Any]) -> Self:
-        """Return the record that a file tells, its limits too; a yield of 1 that nothing proves is of an old file."""
-        found = dict(content)
-        if "verdict" not in found and found.get("proof") == SAMPLED and found.get("yield") == 1:
-            found["yield"] = found.get("yield_low")
-        if isinstance(found.get("limits"), Mapping):
-            found["limits"] = {name: LimitRating.read(x) for name, x in found["limits"].items()}
-        return super().from_json(found)
+    def __post_init__(self) -> None:
+        """Put the verdict into words; a yield of 1 that nothing proves is of an old file."""
+        if self.verdict is UNSET and self.proof == SAMPLED and self.share_good == 1:
+            force_setattr(self, "share_good", self.yield_low)
+        super().__post_init__()
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class RatingCounts(Told):
+class RatingCounts(Record, frozen=True, kw_only=True, eq=False):
     """The ``robust`` of the statistics of a front.
 
     Parameters
@@ -149,8 +133,8 @@ class RatingCounts(Told):
         Designs that were found and do not keep them.
     """
 
-    searches: int | Untold = UNTOLD
-    rated: int | Untold = UNTOLD
-    samples: int | Untold = UNTOLD
-    limits_posed: int | Untold = UNTOLD
-    taken_off: int | Untold = UNTOLD
+    searches: int | Unset = UNSET
+    rated: int | Unset = UNSET
+    samples: int | Unset = UNSET
+    limits_posed: int | Unset = UNSET
+    taken_off: int | Unset = UNSET

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
-from synth.results.told import UNTOLD, Told, Untold
+from synth.results.record import UNSET, Record, Unset
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class SettingsRecord(Told):
+class SettingsRecord(Record, frozen=True, kw_only=True, eq=False):
     """The ``settings`` of a front: with its frame they pose the question again.
 
     Parameters
@@ -30,12 +28,12 @@ class SettingsRecord(Told):
         The block of what scatters, where anything does.
     """
 
-    points: int | Untold = UNTOLD
-    gap: float | Untold = UNTOLD
-    grid: bool | Untold = UNTOLD
-    seed: int | Untold = UNTOLD
-    weights: Mapping[str, float] | Untold = UNTOLD
-    parts: Mapping[str, Any] | Untold = UNTOLD
-    limits: Mapping[str, Any] | Untold = UNTOLD
-    fix: Mapping[str, Any] | Untold = UNTOLD
-    robust: Mapping[str, Any] | Untold = UNTOLD
+    points: int | Unset = UNSET
+    gap: float | Unset = UNSET
+    grid: bool | Unset = UNSET
+    seed: int | Unset = UNSET
+    weights: Mapping[str, float] | Unset = UNSET
+    parts: Mapping[str, Any] | Unset = UNSET
+    limits: Mapping[str, Any] | Unset = UNSET
+    fix: Mapping[str, Any] | Unset = UNSET
+    robust: Mapping[str, Any] | Unset = UNSET

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
 
 from synth.results.ratings import RatingCounts
-from synth.results.told import UNTOLD, Told, Untold
+from synth.results.record import UNSET, Record, Unset
 
 
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class SearchStatistics(Told):
+class SearchStatistics(Record, frozen=True, kw_only=True, eq=False):
     """The ``statistics`` of a front; what a search has not done is not told.
 
     Parameters
@@ -48,30 +45,22 @@ class SearchStatistics(Told):
         What was rated and posed because something scatters.
     """
 
-    combinations: int | Untold = UNTOLD
-    rows_offered: Mapping[str, int] | Untold = UNTOLD
-    rows_used: Mapping[str, int] | Untold = UNTOLD
-    counts: Mapping[str, int] | Untold = UNTOLD
-    choices: Mapping[str, int] | Untold = UNTOLD
-    rows_left_out: Sequence[Mapping[str, str]] | Untold = UNTOLD
-    combinations_left_out: Sequence[str] | Untold = UNTOLD
-    not_asked: Sequence[str] | Untold = UNTOLD
-    excluded_by_bound: int | Untold = UNTOLD
-    solved: int | Untold = UNTOLD
-    searched_together: int | Untold = UNTOLD
-    boxes: int | Untold = UNTOLD
-    scalar_problems: int | Untold = UNTOLD
-    designs_known: int | Untold = UNTOLD
-    nlp_solves: int | Untold = UNTOLD
-    nlp_solves_to_find: int | Untold | None = UNTOLD
-    outer_trials: int | Untold = UNTOLD
-    seconds: Mapping[str, float] | Untold = UNTOLD
-    robust: RatingCounts | Untold = UNTOLD
-
-    @classmethod
-    def from_json(cls, content: Mapping[str, Any]) -> Self:
-        """Return the record that a file tells, the counts of ratings too."""
-        found = dict(content)
-        if "robust" in found:
-            found["robust"] = RatingCounts.read(found["robust"])
-        return super().from_json(found)
+    combinations: int | Unset = UNSET
+    rows_offered: Mapping[str, int] | Unset = UNSET
+    rows_used: Mapping[str, int] | Unset = UNSET
+    counts: Mapping[str, int] | Unset = UNSET
+    choices: Mapping[str, int] | Unset = UNSET
+    rows_left_out: Sequence[Mapping[str, str]] | Unset = UNSET
+    combinations_left_out: Sequence[str] | Unset = UNSET
+    not_asked: Sequence[str] | Unset = UNSET
+    excluded_by_bound: int | Unset = UNSET
+    solved: int | Unset = UNSET
+    searched_together: int | Unset = UNSET
+    boxes: int | Unset = UNSET
+    scalar_problems: int | Unset = UNSET
+    designs_known: int | Unset = UNSET
+    nlp_solves: int | Unset = UNSET
+    nlp_solves_to_find: int | Unset | None = UNSET
+    outer_trials: int | Unset = UNSET
+    seconds: Mapping[str, float] | Unset = UNSET
+    robust: RatingCounts | Unset = UNSET

@@ -60,7 +60,7 @@ class Ratings:
             "missing": self.missing,
             "interrupted": self.interrupted,
             "sentence": self.sentence(),
-            "designs": [{"rank": d.rank, **d.robust} for d in self.designs],
+            "designs": [{"rank": d.rank, **d.robust.to_json()} for d in self.designs],
         }
         return {
             "rating.csv": csv_text(*self._table()),

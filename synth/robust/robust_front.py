@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+from msgspec import structs
+
 from synth.order.feasibility import Status
 from synth.question.instance import Instance
 from synth.question.settings import LEAST_SECONDS, Progress
@@ -148,15 +150,15 @@ class _RatedFront:
         front, block = self.front, self.asked.block()
         counts = RatingCounts(searches=searches, rated=len(self.ratings), samples=self.asked.samples)
         if self.asked.mode == LIMITS:
-            counts = replace(counts, limits_posed=self.posed, taken_off=len(self.failing))
+            counts = structs.replace(counts, limits_posed=self.posed, taken_off=len(self.failing))
         frame = replace(front.frame, restated={**front.frame.restated, "robust": block})
         known = [*self.ratings, *(DesignRating() for _ in range(len(front.designs) - len(self.ratings)))]
         done = replace(
             front,
             frame=frame,
             designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
-            statistics=replace(front.statistics, robust=counts),
-            settings=replace(front.settings, robust=block),
+            statistics=structs.replace(front.statistics, robust=counts),
+            settings=structs.replace(front.settings, robust=block),
             interrupted=self.stopped,
         )
         return _without(done, self.failing) if self.asked.mode == LIMITS and self.failing else done

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from msgspec import structs
 
 from synth.analysis.designs import make_frame, offered
 from synth.analysis.written_digits import written_digits
@@ -187,7 +187,7 @@ def _excluded(state: FrontState) -> int:
 def _statistics(state: FrontState) -> SearchStatistics:
     """Cost of the search."""
     form, counters = state.form, state.counters
-    return replace(
+    return structs.replace(
         offered(state.task.instance),
         excluded_by_bound=_excluded(state),
         solved=len(form.counters.solved_combinations),

@@ -546,7 +546,7 @@ def print_outcome(front: ParetoFront, console: Console, verbose: bool = False) -
         )
     left_out = front.statistics.get("rows_left_out", ())
     if verbose:
-        for line in statistics_lines(front.statistics):
+        for line in statistics_lines(front.statistics.to_json()):
             print_wrapped(console, line)
     elif left_out:
         slots = Counter(row["slot"] for row in left_out)

@@ -24,7 +24,7 @@ from synth.folders.output_folder import SIZE_RANGE, save_result
 from synth.model.model import Model
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
-from synth.results import shown_value
+from synth.results import cell_value
 from synth.text.input_limits import INPUT_LIMITS
 from synth.units import header
 from synth.variants.coverage import ServedQuestion, SharedModel, Variant, objective_of_pairs, pinned_by_all
@@ -384,7 +384,7 @@ class _Batch:
         number = {j: k + 1 for k, j in enumerate(order)}
         assignment, unserved = [], []
         index = {asked.key: k for k, asked in enumerate(self.asked)}
-        scale = float(shown_value(1.0, unit) or 1.0)
+        scale = float(cell_value(1.0, unit) or 1.0)
         count, total, most = dict.fromkeys(order, 0), dict.fromkeys(order, 0.0), dict.fromkeys(order, -math.inf)
         for row in self.rows:
             k = index.get(row["key"]) if row["key"] is not None else None
@@ -401,15 +401,15 @@ class _Batch:
                     "row": row["key"][:SHORT],
                     "family": row["family"],
                     "variant": number[j],
-                    header(self.objective, unit): shown_value(float(values[k, j]), unit),
-                    header("own_best", unit): shown_value(self.sign * self.asked[k].best, unit),
+                    header(self.objective, unit): cell_value(float(values[k, j]), unit),
+                    header("own_best", unit): cell_value(self.sign * self.asked[k].best, unit),
                     header("excess", unit): float(costs[k, j]) * scale,
                 }
             )
         table = []
         for j in order:
             variant = self.candidates[chosen_from[j]]
-            shown = shown_value(self.sign * most[j], unit)
+            shown = cell_value(self.sign * most[j], unit)
             table.append(
                 {
                     "variant": number[j],
@@ -457,7 +457,7 @@ class _Batch:
 
     def _columns(self, variant: Variant) -> dict[str, Any]:
         units = next(m for n, m in self.models.items() if self.structures[n].problem.name == variant.family).units
-        sizes = {header(n, units[n]): shown_value(v, units[n]) for n, v in variant.values.items() if n in units}
+        sizes = {header(n, units[n]): cell_value(v, units[n]) for n, v in variant.values.items() if n in units}
         return {**sizes, **variant.choices, **variant.parts}
 
 

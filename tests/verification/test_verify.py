@@ -459,7 +459,7 @@ def test_a_front_that_lacks_something_is_refused(saved, tmp_path):
     content = json.loads((saved / "front.json").read_text(encoding="utf-8"))
     del content["certificate"]
     (tmp_path / "front.json").write_text(json.dumps(content), encoding="utf-8")
-    with pytest.raises(synth.InputError, match=r"front\.json: certificate: is missing; .* that is complete"):
+    with pytest.raises(synth.InputError, match=r"front\.json: .*required field `certificate`.* that is complete"):
         unchecked_front(tmp_path)
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from msgspec import structs
 
 from synth.analysis.designs import make_frame, offered
 from synth.bounds.boxes import Boxes
@@ -154,7 +154,7 @@ class JointReport:
     def _statistics(self, question: Question, solved: int, solves: int) -> SearchStatistics:
         """Cost of the search of all questions, and how many combinations of one were solved."""
         counters = self.form.counters
-        return replace(
+        return structs.replace(
             offered(question.instance),
             excluded_by_bound=question.instance.combinations.count - solved,
             solved=solved,

@@ -223,7 +223,7 @@ class Comparison:
                     "family": name,
                     "note": d.note,
                     "objectives": dict(d.objectives),
-                    **({"robust": dict(d.robust)} if d.robust else {}),
+                    **({"robust": d.robust.to_json()} if d.robust else {}),
                 }
                 for d, name in zip(self.designs, self.families, strict=True)
             ],
