@@ -142,7 +142,9 @@ class ConeClutch(DesignProblem):
         wants = self._declare_requirements(d, pull_max=pull_max)
         shape = self._declare_cone(d, wants=wants, rules=rules)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=None, rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, rules=scope.rules
+        )
         layout = d.part(
             "cone_layout",
             "cone_layouts",

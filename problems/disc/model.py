@@ -79,7 +79,9 @@ class DiscClutch(DesignProblem):
             source=f"{S1}, F",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", rules=scope.rules
+        )
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 
 MAGNET_PARTS = 3  # pot, armature and coil
+# Pairs on a flat face, as built today; no bare cast iron.
+SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "status in ('current', '')", "lining != 'cast iron'")
 WEAR_AT_MAGNET = 0.3  # mm, default of wear_depth_limit of dry linings: a magnet does not reach over more
 
 
@@ -185,9 +187,7 @@ class ElectromagneticClutch(DesignProblem):
         ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
         magnet = magnet_blocks.declare_magnet(d, seat=seat)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
-            d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
-        )
+        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication=lubrication, rules=scope.rules)
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         torque, torques = plate_pack.declare_pack_torques(
             d,
@@ -279,7 +279,7 @@ class ElectromagneticClutch(DesignProblem):
         magnet = magnet_blocks.declare_magnet(d, seat=seat)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
+        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", rules=scope.rules)
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)

@@ -169,15 +169,11 @@ def test_friction_materials() -> None:
     np.testing.assert_allclose(d.pv_allow, d.power_density_allow / d.mu_dynamic, rtol=6e-3)
 
 
-def test_friction_families() -> None:
+def test_surfaces_of_friction_pairs() -> None:
     d = view("friction_materials")
-    hints = [set(hint.split(";")) - {""} for hint in d.family_hint]
-    assert set().union(*hints) <= FAMILIES
-    for family in FAMILIES - {"magnetic_powder_clutch", "roller_coupling"}:
-        assert (
-            sum(family in hint and allowed == 1 for hint, allowed in zip(hints, d.new_design_allowed, strict=True)) >= 6
-        )
-    wrap = d.where(np.array(["wrap_spring" in hint for hint in hints]))
+    words = [set(cell.split(";")) - {""} for cell in d.surfaces]
+    assert set().union(*words) == {"disc facing", "plate pack", "cone facing", "wire on hub"}
+    wrap = d.where(np.array(["wire on hub" in cell for cell in words]))
     hardened = wrap.p_allow >= 20
     assert ((wrap.p_allow >= 20) & (wrap.p_allow <= 100)).sum() >= 9
     assert (wrap.confidence[hardened] == "typical").all()
