@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[1]
 TABLE = Path(__file__).parent / "figures.csv"
 TOPS = ("synth", "problems", "catalogs", "reports")
 GENERATED_OR_RUN = ("migrations",)  # written by a tool
+SUITE = ("synth/testing/", "/cases.py")  # tests that are shipped
 LONG, MANY, POSITIONAL = 40, 8, 5
 OPERATIONS = ("TANH", "ATAN", "SQRT", "HYPOT", "LOG1P")
 # Words of a private language, as parts of names; the field has others.
@@ -40,12 +41,12 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @cache
 def sources() -> dict[str, str]:
-    """Source texts of the package by path from the top."""
+    """Source texts of the package by path from the top; those of tests are not."""
     paths = (path for top in TOPS for path in sorted((ROOT / top).rglob("*.py")))
     return {
         path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
         for path in paths
-        if not set(path.parts) & set(GENERATED_OR_RUN)
+        if not set(path.parts) & set(GENERATED_OR_RUN) and not any(part in path.as_posix() for part in SUITE)
     }
 
 

@@ -19,9 +19,9 @@ from synth.model.problem import DesignProblem
 from synth.results.calculation import Calculation
 from synth.results.dimensions import dimension_of
 from synth.results.expression import FUNCTIONS, in_force, names_in, size_of, value_of
+from synth.testing.properties import Properties
 from tests.analysis.independent import recomputed
 from tests.conformance.cases import CASES, question
-from tests.properties import Properties
 
 POINTS = 12
 of_a_calculation = Properties()

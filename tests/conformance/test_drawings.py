@@ -19,8 +19,8 @@ import synth
 from synth.analysis.designs import make_design, make_frame, part_row
 from synth.analysis.drawing import drawing_of, draws, shown_measure, weighed
 from synth.results.design import DesignSteps
+from synth.testing.properties import Properties
 from tests.conformance.cases import CASES, front_of, question
-from tests.properties import Properties
 from tests.repetitions import repetitions
 from tests.reports.dxf_measures import drawn_measure, measured_in
 

@@ -25,9 +25,9 @@ import synth.problems.mechanics
 from scipy.special import lambertw
 from synth.problems.mechanics import Quantity
 
+from synth.testing.properties import Properties
 from tests.docs.mechanics_page import ARRAYS, NUMBERS, SYMBOLS, UNIT, Entry, Formula, formula, formulas, modules
 from tests.problems.formula_checks import DIMENSION
-from tests.properties import Properties
 from tests.waiting import PATIENCE
 
 ca.GlobalOptions.setNumpyMode(-1)

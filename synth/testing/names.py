@@ -1,71 +1,81 @@
 """Names, symbols, units, defaults and bounds of a family against the table of its public names.
 
-A family whose names depend on an option has a table per value: ``names_FAMILY.csv`` for the default, and
-``names_FAMILY@OPTION=VALUE.csv``.
+Its column ``for`` names the options (``pack=disc``) with which a row stands, ``default`` where none of them is chosen;
+a row without stands always.
 """
 
+from __future__ import annotations
+
 import csv
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import pytest
 
-import synth
+from synth.model.model import Model
 from synth.question.catalogs import as_catalogs
+from synth.question.instance import Instance
+from synth.testing.properties import Properties
+from synth.testing.records import cases_of, question
 from synth.text.row_cells import CODE_OF
 from synth.units import from_si, parse_unit
-from tests.conformance.cases import CASES, question
-from tests.shipped import FAMILIES
 
-FOLDER = Path(__file__).parent
-TABLES = sorted(FOLDER.glob("names_*.csv"))
+GROUPS = {"duty", "envelope", "practice", "model", "material", "actuator"}
+of_names = Properties()
 
 
-def rows_of(path):
-    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+def rows_of(family: str) -> list[dict[str, str]]:
+    """Rows of the table of a family."""
+    return list(csv.DictReader(cases_of(family).names.read_text(encoding="utf-8").splitlines()))
 
 
-def family_and_option(path):
-    """Return the family of a table, and the option (name, value) that it is for, if it is for one."""
-    family, _, option = path.stem.removeprefix("names_").partition("@")
-    return family, tuple(option.split("=")) if option else None
+def structures(family: str) -> list[str]:
+    """``default``, and each option with a value that changes names, as the table has them."""
+    return ["default", *sorted({key for row in rows_of(family) for key in row["for"].split(";")} - {"", "default"})]
 
 
-def structures(family, option):
-    """Return the options of all structures of the family that a table is for."""
-    others = {own for f, own in map(family_and_option, TABLES) if f == family and own not in (None, option)}
+def chosen(structure: str) -> dict[str, str]:
+    """Option of a structure."""
+    return {} if structure == "default" else dict([structure.split("=")])
+
+
+def with_structure(family: str, structure: str) -> list[Mapping[str, str]]:
+    """Option sets with the option of one structure and with none of another."""
+    others = [chosen(other).items() for other in structures(family) if other != structure]
     kept = [
         options
-        for options in CASES[family].option_sets.values()
-        if (option is None or option in options.items()) and not others & set(options.items())
+        for options in cases_of(family).option_sets.values()
+        if chosen(structure).items() <= options.items() and not any(o and o <= options.items() for o in others)
     ]
     assert kept
     return kept
 
 
-LARGE = ("names_multi_plate_clutch",)  # of many structures
-PARAMS = [pytest.param(p, marks=pytest.mark.slow if p.stem in LARGE else []) for p in TABLES]
+@dataclass(frozen=True)
+class Named:
+    """Models of a structure with all optional requirements, its rows, and the question without, for defaults."""
+
+    plain: Instance
+    rows: list[dict[str, str]]
+    models: Sequence[Model]
 
 
-@pytest.fixture(scope="module", params=PARAMS, ids=lambda p: p.stem.removeprefix("names_"))
-def named(request):
-    family, option = family_and_option(request.param)
-    models = [question(family, options, optional=True).model for options in structures(family, option)]
-    default = {} if option is None else dict([option])
-    plain = question(family, default, optional=False)  # expressions get their numbers here
-    return plain, rows_of(request.param), models
+def named(family: str, structure: str) -> Named:
+    """Models and rows of a structure."""
+    models = [question(family, options, optional=True).model for options in with_structure(family, structure)]
+    rows = [row for row in rows_of(family) if not row["for"] or structure in row["for"].split(";")]
+    return Named(question(family, chosen(structure), optional=False), rows, models)
 
 
-def test_every_family_has_its_table():
-    assert {family for family, option in map(family_and_option, TABLES) if option is None} == set(FAMILIES)
-
-
-def numbers(text):
+def numbers(text: str) -> float | None:
+    """Number of a cell."""
     return float(text) if text else None
 
 
-@pytest.mark.slow
-def test_requirements(named):
-    plain, rows, (default, *_) = named
+@of_names
+def requirements(named: Named) -> None:
+    plain, rows, default = named.plain, named.rows, named.models[0]
     wanted = {r["name"]: r for r in rows if r["kind"] in ("req", "opt")}
     declared = default.declaration.requirements
     assert set(declared) == set(wanted)
@@ -81,8 +91,9 @@ def test_requirements(named):
             assert r.default is None, name
 
 
-def test_options(named):
-    _, rows, (default, *_) = named
+@of_names
+def options(named: Named) -> None:
+    rows, default = named.rows, named.models[0]
     wanted = {r["name"]: r for r in rows if r["kind"] == "option"}
     declared = default.declaration.options
     assert set(declared) == set(wanted)
@@ -92,18 +103,16 @@ def test_options(named):
         assert set(o.choices) == set(row["choices"].split(";")), name
 
 
-GROUPS = {"duty", "envelope", "practice", "model", "material", "actuator"}
-
-
-def test_every_requirement_and_option_stands_in_a_group(named):
-    _, _, models = named
-    for model in models:
-        asked = [*model.declaration.requirements.values(), *model.declaration.options.values()]
+@of_names
+def every_requirement_and_option_stands_in_a_group(named: Named) -> None:
+    for model in named.models:
+        asked: list[Any] = [*model.declaration.requirements.values(), *model.declaration.options.values()]
         assert {record.name: record.group for record in asked if record.group not in GROUPS} == {}
 
 
-def test_choices(named):
-    _, rows, everything = named
+@of_names
+def choices(named: Named) -> None:
+    rows, everything = named.rows, named.models
     wanted = {r["name"]: r for r in rows if r["kind"] == "choice"}
     for model in everything:
         choices = model.declaration.choices
@@ -112,8 +121,9 @@ def test_choices(named):
             assert (choices[name].symbol, ";".join(choices[name].labels)) == (row["symbol"], row["choices"]), name
 
 
-def test_variables_and_counts(named):
-    _, rows, everything = named
+@of_names
+def variables_and_counts(named: Named) -> None:
+    rows, everything = named.rows, named.models
     d = everything[0].declaration
     wanted = {r["name"]: r for r in rows if r["kind"] == "var"}
     seen = {name: v for model in reversed(everything) for name, v in model.declaration.variables.items()}
@@ -142,8 +152,9 @@ def test_variables_and_counts(named):
         )
 
 
-def test_slots_and_their_columns(named):
-    plain, rows, everything = named
+@of_names
+def slots_and_their_columns(named: Named) -> None:
+    plain, rows, everything = named.plain, named.rows, named.models
     everything = [*everything, plain.model]  # an optional requirement may take the place of a column
     slots = {r["name"]: r for r in rows if r["kind"] == "slot"}
     seen = {name: part for model in everything for name, part in model.declaration.slots.items()}
@@ -169,11 +180,13 @@ def test_slots_and_their_columns(named):
             slot, column = name.split(".")
             table = as_catalogs(None).table(slots[slot]["choices"])
             found, expected = table.columns[column].scale, parse_unit(row["unit"], table.columns[column].scale.kind)
-            assert (found.dimension, found.factor) == (expected.dimension, pytest.approx(expected.factor)), name
+            assert found.dimension == expected.dimension, name
+            assert found.factor == pytest.approx(expected.factor), name
 
 
-def test_optional_columns_are_those_of_the_table(named):
-    plain, rows, everything = named
+@of_names
+def optional_columns_are_those_of_the_table(named: Named) -> None:
+    plain, rows, everything = named.plain, named.rows, named.models
     everything = [*everything, plain.model]  # an optional requirement may take the place of a column
     wanted = {r["name"] for r in rows if r["kind"] == "col?"}
     for model in everything:
@@ -184,8 +197,9 @@ def test_optional_columns_are_those_of_the_table(named):
     assert voids == wanted
 
 
-def test_derived_quantities(named):
-    _, rows, everything = named
+@of_names
+def derived_quantities(named: Named) -> None:
+    rows, everything = named.rows, named.models
     wanted = {r["name"]: r for r in rows if r["kind"] == "out"}
     for model in everything:
         declared = model.declaration.derived
@@ -195,8 +209,9 @@ def test_derived_quantities(named):
             assert (quantity.symbol, quantity.unit) == (row["symbol"], row["unit"]), name
 
 
-def test_objectives(named):
-    _, rows, everything = named
+@of_names
+def objectives(named: Named) -> None:
+    rows, everything = named.rows, named.models
     wanted = {r["name"]: r["objective"] for r in rows if r["objective"]}
     wanted |= {r["name"]: "on request" for r in rows if r["kind"] == "obj"}
     for model in everything:
@@ -204,8 +219,9 @@ def test_objectives(named):
         assert found == wanted
 
 
-def test_a_symbol_works_wherever_the_name_does(named):
-    plain, rows, everything = named
+@of_names
+def a_symbol_works_wherever_the_name_does(named: Named) -> None:
+    plain, rows, everything = named.plain, named.rows, named.models
     spellings = {word: name for model in everything for word, name in model.declaration.names().items()}
     structural = {r["name"] for r in rows if "." not in r["name"]}
     for row in rows:
@@ -213,10 +229,3 @@ def test_a_symbol_works_wherever_the_name_does(named):
             assert spellings[row["symbol"]] == row["name"]
             assert spellings[row["name"]] == row["name"]
     assert {model.title for model in everything} == {plain.model.title}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("family", "structure"), [(f, s) for f, data in CASES.items() for s in data.option_sets])
-def test_every_structure_can_be_described(family, structure):
-    described = synth.describe(synth.load(family, **CASES[family].option_sets[structure]))
-    assert (described.loc[described["kind"] == "column", "text"] != "").all()
