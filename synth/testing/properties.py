@@ -34,6 +34,11 @@ class Properties:
         self.checks.append(check)
         return check
 
+    def check(self, *found: Any) -> None:
+        """Fail with all that does not hold."""
+        if broken := self.broken(*found):
+            pytest.fail("\n".join(broken), pytrace=False)
+
     def broken(self, *found: Any) -> list[str]:
         """Return what does not hold, each with the name of its check, its line and its message."""
         told = []

@@ -6,7 +6,7 @@ The page of a family tells what stands in the lists, in a comment below its head
     duty: what it is for, in README
     page: what its page shows, in docs/index.md
     example: hoist_multi_plate
-    drawing: what the drawing of that example shows, in docs/drawings.md
+    drawing: what the drawing of that example shows, in docs/drawings.md; neither line where a family does not draw
     -->
 """
 
@@ -34,8 +34,8 @@ class Entry:
     title: str
     duty: str
     page: str
-    example: str
-    drawing: str
+    example: str = ""
+    drawing: str = ""
 
 
 def entry(name: str) -> Entry:
@@ -76,6 +76,7 @@ def lists() -> list[Written]:
     pictures = "\n".join(
         f"## {e.title}\n\n`examples/{e.example}.yaml`: {e.drawing}.\n\n![{e.title}](pictures/drawing_{e.name}.svg)\n"
         for e in entries
+        if e.drawing
     )
     duties = "".join(f"| [{e.title}](docs/{e.name}.md) | {e.duty} |\n" for e in entries)
     pages = "".join(f"| [{e.title}]({e.name}.md) | {e.page} |\n" for e in entries)
@@ -110,6 +111,6 @@ def write() -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["gallery"]:
-        print(*(f"{e.example}={e.name}" for e in map(entry, sorted(FAMILIES))))
+        print(*(f"{e.example}={e.name}" for e in map(entry, sorted(FAMILIES)) if e.drawing))
     else:
         write()

@@ -339,7 +339,7 @@ def test_the_picture_of_the_readme_is_what_the_program_draws(tmp_path: Path) -> 
 
 
 def test_every_family_has_a_picture_of_its_drawing() -> None:
-    for family in FAMILIES:
+    for family in (entry.name for entry in map(lists.entry, FAMILIES) if entry.drawing):
         drawn = text_of(f"docs/pictures/drawing_{family}.svg")
         assert f"<title>{synth.load(family).title}: " in drawn, "make gallery draws it anew"
 
