@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/system/operating_system.py
 
-.PHONY: demo check test thorough lint javascript kernels mechanics schema picture gallery lock clean
+.PHONY: demo check test thorough lint javascript kernels mechanics schema picture gallery lists lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -78,14 +78,16 @@ picture: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml --plot -o out/ --quiet
 	cp out/front.svg docs/pictures/front.svg
 
+# Lists of families in README, docs and examples, from the registry and the families' pages; a test compares them.
+lists: $(DEV)
+	$(BIN)/python -m tests.docs.lists
+
 # The gallery of drawings: the first design of an example of each family; a test compares one of them.
-GALLERY = hoist_multi_plate automobile_disc cone_drive electromagnetic_spindle powder_winder offset_drive_roller wrap_spring_freewheel \
-	wrap_spring_actuated centrifugal_ball_ramp centrifugal_two_spring centrifugal_lever centrifugal_reversed
-gallery: $(RUNTIME)
-	for name in $(GALLERY); do \
-		$(BIN)/clutchsynth run examples/$$name.yaml -o out/ --quiet && \
+gallery: $(DEV)
+	for pair in $$($(BIN)/python -m tests.docs.lists gallery); do \
+		$(BIN)/clutchsynth run examples/$${pair%=*}.yaml -o out/ --quiet && \
 		$(BIN)/clutchsynth report out/ -o out/drawn/ --drawing --quiet && \
-		cp out/drawn/design_01_drawing.svg docs/pictures/drawing_$$(sed -n 's/^family: *//p' examples/$$name.yaml).svg || exit 1; \
+		cp out/drawn/design_01_drawing.svg docs/pictures/drawing_$${pair#*=}.svg || exit 1; \
 	done
 
 $(BIN)/python:

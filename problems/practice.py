@@ -6,8 +6,7 @@ and say so.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from synth.declaration import Block, Declaration, Requirement, RowRange
 
@@ -22,9 +21,8 @@ SHAFT_STEEL = 315e6  # Pa: fatigue strength of C45 in reversed bending, table me
 SHAFT_SIZES = ("shaft_diameter", "shaft_radius", "bore_diameter")  # requirements by which a shaft is typed
 
 
-@dataclass(frozen=True)
-class Scope:
-    """What a question asks for beside the formulas of the sources.
+class Scope(NamedTuple):
+    """What a question asks for beside the formulas of the sources; families choose a layer by it.
 
     Attributes
     ----------

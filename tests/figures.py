@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[1]
 TABLE = Path(__file__).parent / "figures.csv"
 TOPS = ("synth", "problems", "catalogs", "reports")
 GENERATED_OR_RUN = ("migrations",)  # written by a tool
+SUITE = ("synth/testing/", "/cases.py")  # tests that are shipped
 LONG, MANY, POSITIONAL = 40, 8, 5
 OPERATIONS = ("TANH", "ATAN", "SQRT", "HYPOT", "LOG1P")
 # Words of a private language, as parts of names; the field has others.
@@ -29,6 +30,7 @@ PRIVATE = frozenset(
     "told asked own found wanted aside beside brought given taken shelf signs stated restated turns look whole wide "
     "thing some rest left many alone tell says said posed room".split()
 )
+PRACTICE = frozenset({"rules", "scope", "complete", "whole", "body"})  # names by which families asked for it
 NUMBER_WRITERS = re.compile(
     r"(plain|shown|short|format(ted)?|print(ed)?)_(number|figure|value|share|quantity)|_?percent|_?per_cent|significant"
 )
@@ -40,12 +42,12 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @cache
 def sources() -> dict[str, str]:
-    """Source texts of the package by path from the top."""
+    """Source texts of the package by path from the top; those of tests are not."""
     paths = (path for top in TOPS for path in sorted((ROOT / top).rglob("*.py")))
     return {
         path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
         for path in paths
-        if not set(path.parts) & set(GENERATED_OR_RUN)
+        if not set(path.parts) & set(GENERATED_OR_RUN) and not any(part in path.as_posix() for part in SUITE)
     }
 
 
@@ -226,6 +228,31 @@ def family_hint_lines() -> int:
     return sum("family_hint" in line for text in sources().values() for line in text.splitlines())
 
 
+def asks_for_practice(condition: ast.AST) -> bool:
+    """True for a condition on rules of practice, on what is counted as mass, or on a model of a source.
+
+    An optional requirement of the rules may be asked for: ``rules.top_speed is not None``.
+    """
+    values = {id(node.value) for node in ast.walk(condition) if isinstance(node, ast.Attribute)}
+    return any(
+        (isinstance(node, ast.Name) and node.id in PRACTICE and id(node) not in values)
+        or (isinstance(node, ast.Attribute) and node.attr in PRACTICE)
+        or (isinstance(node, ast.Constant) and node.value == "seed")
+        for node in ast.walk(condition)
+    )
+
+
+def practice_asked() -> int:
+    """Conditions in families that ask for practice; layers stand on the declared family in their place."""
+    found = 0
+    for _, node in nodes("problems/"):
+        if isinstance(node, ast.If | ast.IfExp | ast.While):
+            found += asks_for_practice(node.test)
+        elif isinstance(node, ast.comprehension):
+            found += any(map(asks_for_practice, node.ifs))
+    return found
+
+
 def readme_lines() -> int:
     """Lines of README.md."""
     return len((ROOT / "README.md").read_text(encoding="utf-8").splitlines())
@@ -256,6 +283,7 @@ FIGURES: tuple[Callable[[], int], ...] = (
     return_what,
     private_names,
     family_hint_lines,
+    practice_asked,
     readme_lines,
     changelog_words,
 )

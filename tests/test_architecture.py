@@ -88,6 +88,7 @@ def test_imports_are_found_wherever_they_stand() -> None:
 FAMILY = {"synth.problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.drawing"}
 GROUND = {"synth.errors", "synth.special", "synth.text"}
 FAMILY |= GROUND
+SUITE = {"synth.testing"}
 REPORT = {
     "synth.reports",
     "matplotlib",
@@ -116,7 +117,10 @@ MAY_IMPORT = {
 
 @pytest.mark.parametrize("package", MAY_IMPORT)
 def test_packages_around_the_engine_keep_to_its_public_side(package: str) -> None:
-    found = {path.name: strangers(imported_by(path), MAY_IMPORT[package]) for path in sources(package)}
+    found = {
+        path.name: strangers(imported_by(path), MAY_IMPORT[package] | (SUITE if path.name == "cases.py" else set()))
+        for path in sources(package)
+    }
     assert not {name: names for name, names in found.items() if names}
 
 
@@ -127,6 +131,19 @@ def test_the_engine_imports_no_family_no_catalogue_and_no_report() -> None:
         for path in sources(package)
     }
     assert not {name: names for name, names in found.items() if names}
+
+
+def test_nothing_but_cases_imports_the_suite_and_pytest() -> None:
+    found = {
+        str(path.relative_to(ROOT))
+        for package in PACKAGES
+        for path in sources(package)
+        if any(
+            name.startswith(("synth.testing", "pytest.", "_pytest")) or name == "pytest" for name in imported_by(path)
+        )
+    }
+    assert found
+    assert all(path.startswith("synth/testing/") or path.endswith("/cases.py") for path in found)
 
 
 def circles(graph: dict[str, set[str]]) -> set[str]:

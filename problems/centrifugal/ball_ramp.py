@@ -67,7 +67,7 @@ class CentrifugalBallRamp(DesignProblem):
         )
         # All four make the spring force at contact, and hardly anything else.
         d.split_last("return_spring", "return_springs", "spring_preload_deflection", "plate_gap")
-        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, rules=rules)
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)

@@ -91,7 +91,7 @@ class CentrifugalLever(LeverClutch):
         springs = blocks.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, rules=rules)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=rods.rod_arm, longest=ROD_ARM[1], name="rod_arm")
         shortest = lever.worn_travel / (rods.rod_ratio_max * lever.weights.angle_limit)
         lever_blocks.refuse_room(d, duty=duty, least_leg=shortest, name="spring_arm")

@@ -47,15 +47,13 @@ class Lining:
         return centrifugal.force_for_torque(torque, self.pair.mu_dynamic, self.surfaces, self.friction_radius)
 
 
-def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | None) -> Lining:
+def declare_lining(d: Declaration, *, duty: Duty, rules: Rules | None) -> Lining:
     """Declare lining and slot friction_pair, with the limits of its shape and of the heat of an engagement.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    family : str
-        Name that the column family_hint must contain.
     duty : Duty
         Requirements.
     rules : Rules or None
@@ -95,7 +93,7 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | No
         text="Friction surfaces, two per friction disc",
         source="geometry",
     )
-    conditions = [f"'{family}' in family_hint"]
+    conditions = ["'disc facing' in surfaces or 'plate pack' in surfaces", "long_slip == 1"]
     if rules is not None:
         conditions += lining_conditions(d, rules.allow_obsolete, rules=True)
     pair = d.part(

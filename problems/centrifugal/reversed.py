@@ -71,7 +71,7 @@ class CentrifugalReversed(LeverClutch):
             "spring_preload_deflection",
             unless=("engagement_band", "idle_margin"),
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, rules=rules)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
         lever_blocks.refuse_room(
             d, duty=duty, least_leg=lever.worn_travel / lever.weights.angle_limit, name="plate_arm"

@@ -108,7 +108,7 @@ class CentrifugalTwoSpring(DesignProblem):
             if mechanism == "ball_ramp"
             else self._declare_levers(d, duty=duty, rest=rest, way=way)
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, rules=rules)
 
         def radius(travel: Any) -> Any:
             return centrifugal.orbit_radius(rest, drive.ratio, travel)

@@ -14,9 +14,10 @@ from ..friction.duty import Duty, Size
 from ..friction.engagement import Pair, Startup
 from ..mechanics import plates
 from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
-from ..sources import DRIVE
+from ..sources import DRIVE, S1
 from . import formulas as cone
 
+DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
 USUAL_ANGLES = "Shop Practice vol. 2, requirements of clutches: cones of 8 to 18 degrees"
 LITTLE_WEDGE = 1.5  # normal force over spring force; a disc with two surfaces has 2 at the same diameter
 
@@ -33,6 +34,18 @@ class Cone:
     ratio: Any
     area: Any
     largest_diameter: Any
+
+
+@dataclass(frozen=True)
+class Cones:
+    """Cones that are declared; ``grip``: peripheral force, just engaged, with the friction counted on [N]."""
+
+    duty: Duty
+    shape: Cone
+    pair: Pair
+    start: Startup
+    size: Size
+    grip: Any
 
 
 class ConeBodyRequirements(ShaftRequirements):
@@ -207,28 +220,10 @@ def wear_depth(wants: ConeBodyRequirements, pair: Pair) -> Any:
     return wear.depth(pair.part, wants.wear_depth_limit)
 
 
-def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair: Pair, pack_size: Size) -> ConeBody:
-    """Parts around the cones: a web and a boss for each, and the spring.
-
-    Parameters
-    ----------
-    duty : Duty
-        Block duty.
-    wants : ConeBodyRequirements
-        Requirements of the complete clutch.
-    shape : Cone
-        The friction cone.
-    pair : Pair
-        Slot friction_pair.
-    pack_size : Size
-        Mass and room of the shells.
-
-    Returns
-    -------
-    ConeBody
-        The whole size.
-    """
-    rho, wall = duty.steel_density, shape.shell_thickness
+def complete_body(cones: Cones, wants: ConeBodyRequirements) -> ConeBody:
+    """Parts around the cones: a web and a boss for each, and the spring."""
+    shape, size, rho = cones.shape, cones.size, cones.duty.steel_density
+    wall = shape.shell_thickness
     across, bore = shape.mean_diameter / 2, wants.shaft_diameter / 2
     webs = plates.annulus_mass(rho, 2, wall, across + bore, across - bore)
     bosses = 2 * wants.boss_mass(rho)
@@ -236,37 +231,18 @@ def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair:
     added = webs + bosses + spring
     return ConeBody(
         wants=wants,
-        stroke=cone.axial_stroke(wants.gap_normal, wear_depth(wants, pair), shape.angle),
-        size=Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=pack_size.length + 2 * wall),
+        stroke=cone.axial_stroke(wants.gap_normal, wear_depth(wants, cones.pair), shape.angle),
+        size=Size(mass=size.mass + added, diameter=size.diameter, length=size.length + 2 * wall),
         webs=webs,
         bosses=bosses,
         spring=spring,
     )
 
 
-def declare_body(
-    d: Declaration, *, shape: Cone, pair: Pair, start: Startup, body: ConeBody, pack_size: Size, grip: Any
-) -> None:
-    """Name what a complete clutch adds to its cones: parts of the mass, stroke, wedge effect and wear.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    shape : Cone
-        The friction cone.
-    pair : Pair
-        Slot friction_pair.
-    start : Startup
-        What one engagement costs.
-    body : ConeBody
-        What is around the cones.
-    pack_size : Size
-        Mass and room of the shells.
-    grip : symbol
-        Peripheral force of the clutch that has just engaged, with the friction counted on [N].
-    """
-    d.derive("part_mass", "kg", pack_size.mass, symbol="m_part", text="Both shells and the lining", source="geometry")
+def declare_body(d: Declaration, cones: Cones, body: ConeBody) -> None:
+    """Name what a complete clutch adds to its cones: parts of the mass, stroke, wedge effect and wear."""
+    shape, pair = cones.shape, cones.pair
+    d.derive("part_mass", "kg", cones.size.mass, symbol="m_part", text="Both shells and the lining", source="geometry")
     for name, value, symbol, text in (
         ("web_mass", body.webs, "m_web", "Webs that carry both cones"),
         ("boss_mass", body.bosses, "m_boss", "Both bosses on the shafts"),
@@ -276,7 +252,7 @@ def declare_body(
     d.derive(
         "pack_length",
         "mm",
-        pack_size.length,
+        cones.size.length,
         symbol="L_pk",
         text="Length of the cone and what the layout adds to it",
         source="geometry",
@@ -292,7 +268,7 @@ def declare_body(
     gain = d.derive(
         "wedge_gain",
         "-",
-        grip / pair.mu_low / shape.force,
+        cones.grip / pair.mu_low / shape.force,
         symbol="k_wedge",
         text="Normal force over spring force; a disc with two surfaces has 2 at the same diameter",
         source="derived, 1/(sin(alpha) + mu cos(alpha))",
@@ -308,51 +284,14 @@ def declare_body(
         pair.part,
         area=shape.area,
         depth=wear_depth(body.wants, pair),
-        work=start.friction_work,
+        work=cones.start.friction_work,
         text="Engagements until the lining is worn",
     )
 
 
-def declare_rules(d: Declaration, *, rules: ConeRules, shape: Cone, pair: Pair, body: ConeBody) -> None:
-    """Declare the limits that an engineer adds to cones.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : ConeRules
-        What the limits go by.
-    shape : Cone
-        The friction cone.
-    pair : Pair
-        Slot friction_pair.
-    body : ConeBody
-        What is around the cones.
-    """
-    d.at_least(
-        "cone_angle_min",
-        shape.angle,
-        rules.cone_angle_min,
-        "deg",
-        text="The cones do not grab",
-        source=USUAL_ANGLES,
-    )
-    d.at_most(
-        "cone_angle_max",
-        shape.angle,
-        rules.cone_angle_max,
-        "deg",
-        text="The cones wedge",
-        source=USUAL_ANGLES,
-    )
-    d.at_least(
-        "shell_stiffness",
-        shape.shell_thickness,
-        shape.mean_diameter / rules.shell_stiffness_ratio,
-        "mm",
-        text="The shells stay round",
-        source=UNSOURCED,
-    )
+def declare_rules(d: Declaration, cones: Cones, rules: ConeRules, body: ConeBody) -> None:
+    """Declare the limits that an engineer adds to cones."""
+    shape, pair = cones.shape, cones.pair
     stress = d.derive(
         "hoop_stress",
         "N/mm2",
@@ -361,38 +300,21 @@ def declare_rules(d: Declaration, *, rules: ConeRules, shape: Cone, pair: Pair, 
         text="Stress around a shell under the pressure of seated cones",
         source="thin ring under pressure",
     )
-    d.at_most(
-        "shell_hoop",
-        stress,
-        rules.hoop_stress_limit,
-        "N/mm2",
-        text="The shells do not burst or buckle",
-        source=UNSOURCED,
-    )
-    d.at_most(
-        "stroke",
-        body.stroke,
-        rules.stroke_base + rules.stroke_per_diameter * shape.mean_diameter,
-        "mm",
-        text="The release gear has the stroke",
-        source=UNSOURCED,
-    )
+    thickness = shape.mean_diameter / rules.shell_stiffness_ratio
+    stroke = rules.stroke_base + rules.stroke_per_diameter * shape.mean_diameter
     inside = shape.mean_diameter - shape.length * np.sin(shape.angle) - 2 * shape.shell_thickness
-    d.at_least(
-        "hub_room",
-        inside,
-        body.wants.hub_diameter,
-        "mm",
-        text="The hub of the shaft fits inside the inner cone",
-        source="geometry",
-    )
-    d.at_least(
-        "pressure_use",
-        d.derived["surface_pressure"].sx,
-        rules.pressure_use_min * pair.part.p_allow,
-        "N/mm2",
-        text="The lining is used",
-        source=UNSOURCED,
-    )
+    burst = "The shells do not burst or buckle"
+    hub, pressure = body.wants.hub_diameter, d.derived["surface_pressure"].sx
+    least, hub_text = rules.pressure_use_min * pair.part.p_allow, "The hub of the shaft fits inside the inner cone"
+    for limit, name, value, border, unit, text, source in (
+        (d.at_least, "cone_angle_min", shape.angle, rules.cone_angle_min, "deg", "The cones do not grab", USUAL_ANGLES),
+        (d.at_most, "cone_angle_max", shape.angle, rules.cone_angle_max, "deg", "The cones wedge", USUAL_ANGLES),
+        (d.at_least, "shell_stiffness", shape.shell_thickness, thickness, "mm", "The shells stay round", UNSOURCED),
+        (d.at_most, "shell_hoop", stress, rules.hoop_stress_limit, "N/mm2", burst, UNSOURCED),
+        (d.at_most, "stroke", body.stroke, stroke, "mm", "The release gear has the stroke", UNSOURCED),
+        (d.at_least, "hub_room", inside, hub, "mm", hub_text, "geometry"),
+        (d.at_least, "pressure_use", pressure, least, "N/mm2", "The lining is used", UNSOURCED),
+    ):
+        limit(name, value, border, unit, text=text, source=source)
     if rules.wear_life_min is not None:
         wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough", source=DRIVE)

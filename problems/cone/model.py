@@ -12,20 +12,20 @@ from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
 from synth.text.numbers import number_text, typed_number
 
-from .. import cost, friction, practice, wear
+from .. import friction, practice, wear
 from ..friction import startup_curves
 from ..mechanics import heat, plates
 from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
 from . import body as cone_body
 from . import formulas as cone
-from .body import Cone
+from .body import DERIVED, Cone
+from .layers import LAYERS, Sources
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from synth.drawing import Drawing
 
-DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
 # The friction work is shared by the inner and the outer cone.
 SHELL_SHARE = 0.5
 COOLING = "still_air"
@@ -123,7 +123,7 @@ class ConeClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None)
         if duty.cooling != COOLING:
             d.advise(
@@ -133,16 +133,13 @@ class ConeClutch(DesignProblem):
                 "counts, heat transfer nothing",
                 source="premise of the cone model",
             )
-        required = friction.sizing_torque(duty)
-        body_wants = None
-        if scope.rules or scope.complete:
-            body_wants = cone_body.declare_body_requirements(d, required=required)
-        rules = cone_body.declare_cone_rules(d) if scope.rules else None
-        pull_max = None if rules is None else rules.pull_max
-        wants = self._declare_requirements(d, pull_max=pull_max)
-        shape = self._declare_cone(d, wants=wants, rules=rules)
+        layer = layer_of(d, duty)
+        wants = self._declare_requirements(d, pull_max=layer.pull_max)
+        shape = self._declare_cone(d, wants=wants, layer=layer)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=None, rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, rules=layer.rules
+        )
         layout = d.part(
             "cone_layout",
             "cone_layouts",
@@ -165,7 +162,7 @@ class ConeClutch(DesignProblem):
             d,
             duty=duty,
             pair=pair,
-            required=required,
+            required=layer.required,
             torque_low=torque(grip_low),
             torque_high=torque(grip_high),
             source=f"{S1}, cone clutch; formula lost in print, derived",
@@ -190,7 +187,7 @@ class ConeClutch(DesignProblem):
             d,
             duty=duty,
             wants=wants,
-            rules=rules,
+            layer=layer,
             pair=pair,
             shape=shape,
             force=cone.release_force(grip_high / high, shape.angle, high),
@@ -205,33 +202,17 @@ class ConeClutch(DesignProblem):
             diameter=cone.overall_diameter(shape.largest_diameter, shape.shell_thickness, lining),
             length=cone.overall_length(shape.length, shape.angle, layout.length_add),
         )
-        body = None
-        if body_wants is not None:
-            body = cone_body.complete_body(duty=duty, wants=body_wants, shape=shape, pair=pair, pack_size=pack_size)
-        size = body.size if body is not None and scope.complete else pack_size
-        along = "Length of the cone and what the layout adds to it"
+        cones = cone_body.Cones(duty, shape, pair, start, pack_size, grip_low)
+        size = layer.size(cones)
         friction.declare_size(
-            d,
-            size=size,
-            mass_of="The whole clutch"
-            if scope.complete
-            else "Both shells and the lining, times the mass factor of the layout",
-            outside="Outside of the outer cone",
-            along=f"{along}, with both webs" if scope.complete else along,
+            d, size=size, mass_of=layer.mass_of, outside="Outside of the outer cone", along=layer.along
         )
-        if body is not None:
-            cone_body.declare_body(
-                d, shape=shape, pair=pair, start=start, body=body, pack_size=pack_size, grip=grip_low
-            )
-            # Two cones, the ring that presses and its spring.
-            cost.declare_cost(d, mass=body.size.mass, parts=4, lining=(pair.part, shape.area))
-            if rules is not None:
-                cone_body.declare_rules(d, rules=rules, shape=shape, pair=pair, body=body)
+        layer.extend(d, cones)
         self._declare_temperature(
             d, duty=duty, wants=wants, pair=pair, start=start, size=pack_size, shell_mass=shell_mass
         )
         friction.declare_envelope(d, duty=duty, force=shape.force, diameter=size.diameter, length=size.length)
-        self._declare_objectives(d, scope=scope)
+        self._declare_objectives(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the engaged cones."""
@@ -239,7 +220,7 @@ class ConeClutch(DesignProblem):
 
         return cone_drawing.cone_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
-    def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
+    def _declare_objectives(self, d: Declaration) -> None:
         d.headline(
             "mass",
             "outer_diameter",
@@ -254,8 +235,8 @@ class ConeClutch(DesignProblem):
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work"):
             d.objective(name, default=False)
-        if scope.rules or scope.complete:
-            wear.offer_wear_life(d)
+        wear.offer_wear_life(d)
+        if "stroke" in d.derived:
             d.objective("stroke", default=False)
 
     def _declare_requirements(self, d: Declaration, *, pull_max: Any) -> Wants:
@@ -275,7 +256,7 @@ class ConeClutch(DesignProblem):
             )
         return wants
 
-    def _declare_cone(self, d: Declaration, *, wants: Wants, rules: cone_body.ConeRules | None) -> Cone:
+    def _declare_cone(self, d: Declaration, *, wants: Wants, layer: Sources) -> Cone:
         force = d.variable(
             "actuation_force",
             "N",
@@ -357,22 +338,7 @@ class ConeClutch(DesignProblem):
             text="Area of the friction face",
             source="geometry",
         )
-        if rules is None:
-            usual = "practice of cone clutches: 8 to 15, at most 18 degrees"
-            d.advise(
-                "slender_cone",
-                angle < np.radians(8),
-                "half angles below 8 degrees tend to grab and to stick",
-                source=usual,
-            )
-            d.advise(
-                "blunt_cone",
-                angle > np.radians(18),
-                "above 18 degrees little is left of the wedge effect for which a cone is chosen; a lining with less "
-                "friction at rest allows a smaller angle",
-                source=usual,
-            )
-        return Cone(
+        shape = Cone(
             force=force,
             mean_diameter=mean_diameter,
             length=length,
@@ -382,6 +348,8 @@ class ConeClutch(DesignProblem):
             area=area,
             largest_diameter=cone.largest_diameter(mean_diameter, length, angle),
         )
+        layer.judge_angle(d, shape)
+        return shape
 
     def _name_wedge(self, d: Declaration, *, shape: Cone, low: Any, high: Any, grip: Any) -> None:
         """Name what torques and forces of cones are made of."""
@@ -461,7 +429,7 @@ class ConeClutch(DesignProblem):
         *,
         duty: friction.Duty,
         wants: Wants,
-        rules: cone_body.ConeRules | None,
+        layer: Sources,
         pair: friction.Pair,
         shape: Cone,
         force: Any,
@@ -486,7 +454,7 @@ class ConeClutch(DesignProblem):
             text="Below this half angle the cones may lock",
             source=DERIVED,
         )
-        pull_max = None if rules is None else rules.pull_max
+        pull_max = layer.pull_max
         kept, keeps = cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)), "locking margin"
         if pull_max is not None:
             kept, keeps = np.maximum(cone.pull_angle(static, pair.mu_low, pull_max), 0.0), "release pull max"
@@ -500,52 +468,12 @@ class ConeClutch(DesignProblem):
                 text="The cones come apart by themselves",
                 source=DERIVED,
             )
-        if rules is not None:
-            self._declare_pull(d, shape=shape, static=static, mu=pair.mu_low, most=pull_max)
+        layer.declare_pull(d, shape, static, pair)
         d.advise(
             "pulled_apart",
             release < 0,
             "the cones stay together without a force and must be pulled apart",
             source=f"{S1}, release by an outer force",
-        )
-
-    def _declare_pull(self, d: Declaration, *, shape: Cone, static: Any, mu: Any, most: Any) -> None:
-        """Declare the force that pulls the cones apart, and its limit over the spring force where there is one."""
-        ratio = cone.pull_ratio(shape.angle, static, mu)
-        # Seated cones have no friction along the generator left from engaging.
-        seated = cone.pull_ratio(shape.angle, static, 0.0)
-        d.derive(
-            "release_pull",
-            "N",
-            ratio * shape.force,
-            symbol="F_pull",
-            text="Force that pulls the engaged cones apart against friction at rest; negative: they come apart by "
-            "themselves",
-            source=DERIVED,
-        )
-        if most is not None:
-            d.at_most(
-                "release_pull",
-                ratio,
-                most,
-                "-",
-                text="The release gear can pull the cones apart: its pull over the spring force",
-                source=practice.UNSOURCED,
-            )
-        d.derive(
-            "seated_pull",
-            "N",
-            seated * shape.force,
-            symbol="F_pull_seat",
-            text="Force that pulls cones apart which vibration has seated",
-            source="derived, N = F/sin(alpha)",
-        )
-        d.advise(
-            "sticks",
-            seated > 1,
-            "seated by vibration the cones need more than the spring force to come apart (seated pull): a larger "
-            "cone angle min or a smaller release pull max helps, or a lining with less friction at rest",
-            source=DERIVED,
         )
 
     def _declare_bearing(self, d: Declaration, *, wants: Wants, shape: Cone, layout: Part) -> None:

@@ -10,13 +10,11 @@ import numpy as np
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import wear
-from ..friction.duty import Duty, Size
-from ..friction.engagement import Pair, Startup
-from ..friction.ring import Ring
+from ..friction.duty import Size
 from ..mechanics import disc, plates
 from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
 from ..sources import DRIVE
-from .pack import DiscPack, DiscRequirements
+from .pack import DiscRequirements, Discs
 
 FEW_STARTS = 20_000  # engagements: what lasts less is remarked
 RUNOUT = "run-out limit of a disc 0.7 mm (Mazda), 0.6 mm (Porsche 911 SC)"
@@ -130,136 +128,59 @@ def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> 
     return d.block(DiscRequirements, disc_hub_radius=body.hub_diameter / 2)
 
 
-def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: DiscPack, pack_size: Size) -> DiscBody:
-    """Parts around the discs: hub, cover and diaphragm spring; the flywheel stays outside.
-
-    Parameters
-    ----------
-    duty : Duty
-        Block duty.
-    wants : DiscBodyRequirements
-        Requirements of the complete clutch.
-    ring : Ring
-        Block ring.
-    pack : DiscPack
-        The discs.
-    pack_size : Size
-        Mass and room of discs and pressure plates.
-
-    Returns
-    -------
-    DiscBody
-        The whole size.
-    """
-    rho, shaft = duty.steel_density, wants.shaft_diameter
-    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, shaft)
-    cover = disc.cover_mass(rho, pack_size.diameter, pack_size.length)
-    spring = disc.diaphragm_spring_mass(rho, ring.outer_radius)
-    added = hub + cover + spring
-    length = pack_size.length + disc.cover_thickness(pack_size.diameter) + disc.SPRING_ROOM * 2 * ring.outer_radius
-    size = Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length)
-    return DiscBody(wants, size, hub, cover, spring)
-
-
-def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, pack_size: Size) -> DiscBody:
-    """Parts around discs that an armature presses: hub and cover, no diaphragm spring.
-
-    Parameters
-    ----------
-    duty : Duty
-        Block duty.
-    wants : DiscBodyRequirements
-        Requirements of the complete clutch.
-    pack : DiscPack
-        The discs.
-    pack_size : Size
-        Mass and room of discs and pressure plates.
-
-    Returns
-    -------
-    DiscBody
-        The whole size, without the magnet.
-    """
-    rho = duty.steel_density
+def complete_body(discs: Discs, wants: DiscBodyRequirements) -> DiscBody:
+    """Parts around the discs: hub, cover and diaphragm spring; the flywheel stays outside."""
+    rho, pack, size, radius = discs.duty.steel_density, discs.pack, discs.size, discs.ring.outer_radius
     hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter)
-    cover = disc.cover_mass(rho, pack_size.diameter, pack_size.length)
-    length = pack_size.length + disc.cover_thickness(pack_size.diameter)
-    size = Size(mass=pack_size.mass + (hub + cover), diameter=pack_size.diameter, length=length)
-    return DiscBody(wants, size, hub, cover)
+    cover = disc.cover_mass(rho, size.diameter, size.length)
+    spring = disc.diaphragm_spring_mass(rho, radius)
+    length = size.length + disc.cover_thickness(size.diameter) + disc.SPRING_ROOM * 2 * radius
+    complete = Size(mass=size.mass + (hub + cover + spring), diameter=size.diameter, length=length)
+    return DiscBody(wants, complete, hub, cover, spring)
 
 
-def wear_depth(wants: DiscBodyRequirements, pair: Pair, pack: DiscPack) -> Any:
-    """Return the wear of one lining before it is replaced [m]; facings of a list wear no deeper than it says."""
-    depth = wear.depth(pair.part, wants.wear_depth_limit)
-    return depth if pack.facing is None else np.minimum(depth, pack.facing.wearable_depth)
+def body_at_magnet(discs: Discs, wants: DiscBodyRequirements) -> DiscBody:
+    """Parts around discs that an armature presses: hub and cover, no diaphragm spring; the size is without magnet."""
+    rho, pack, size = discs.duty.steel_density, discs.pack, discs.size
+    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter)
+    cover = disc.cover_mass(rho, size.diameter, size.length)
+    length = size.length + disc.cover_thickness(size.diameter)
+    complete = Size(mass=size.mass + (hub + cover), diameter=size.diameter, length=length)
+    return DiscBody(wants, complete, hub, cover)
 
 
-def declare_body(
-    d: Declaration, *, ring: Ring, pair: Pair, pack: DiscPack, start: Startup, body: DiscBody, pack_size: Size
-) -> None:
-    """Name what a complete clutch adds to its discs: parts of the mass, and wear.
+def wear_depth(wants: DiscBodyRequirements, discs: Discs) -> Any:
+    """Wear of one lining before it is replaced [m]; facings of a list wear no deeper than it says."""
+    depth, facing = wear.depth(discs.pair.part, wants.wear_depth_limit), discs.pack.facing
+    return depth if facing is None else np.minimum(depth, facing.wearable_depth)
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : DiscPack
-        The discs.
-    start : Startup
-        What one engagement costs.
-    body : DiscBody
-        What is around the discs.
-    pack_size : Size
-        Mass and room of discs and pressure plates.
-    """
-    d.derive(
-        "part_mass", "kg", pack_size.mass, symbol="m_part", text="Pressure plates, linings and cores", source="geometry"
-    )
-    d.derive(
-        "pack_length",
-        "mm",
-        pack_size.length,
-        symbol="L_pk",
-        text="Released discs and pressure plates",
-        source="geometry",
-    )
-    d.constant(
-        "cover_thickness_least",
-        "mm",
-        1000 * disc.COVER_LEAST,
-        symbol="t_cover_min",
-        text="Least thickness of a cover",
-        source=UNSOURCED,
-    )
-    d.step(
-        "cover_thickness",
-        "mm",
-        disc.cover_thickness(pack_size.diameter),
-        symbol="t_cover",
-        text="Thickness of the pressed cover",
-        source=UNSOURCED,
-    )
-    d.step("hub_mass", "kg", body.hub, symbol="m_hub", text="Hubs of the discs", source="geometry")
-    d.step("cover_mass", "kg", body.cover, symbol="m_cover", text="Face and shell of the cover", source="geometry")
-    if body.spring is not None:
-        d.step(
-            "diaphragm_spring_mass",
-            "kg",
-            body.spring,
-            symbol="m_sp",
-            text="Diaphragm spring, three quarters of a disc of 0.9 of the outer radius",
-            source=UNSOURCED,
-        )
+
+def declare_body(d: Declaration, discs: Discs, body: DiscBody) -> None:
+    """Name what a complete clutch adds to its discs: parts of the mass, and wear."""
+    pair, size = discs.pair, discs.size
+    for name, unit, value, symbol, text in (
+        ("part_mass", "kg", size.mass, "m_part", "Pressure plates, linings and cores"),
+        ("pack_length", "mm", size.length, "L_pk", "Released discs and pressure plates"),
+    ):
+        d.derive(name, unit, value, symbol=symbol, text=text, source="geometry")
+    least, text = 1000 * disc.COVER_LEAST, "Least thickness of a cover"
+    d.constant("cover_thickness_least", "mm", least, symbol="t_cover_min", text=text, source=UNSOURCED)
+    thickness = disc.cover_thickness(size.diameter)
+    spring = "Diaphragm spring, three quarters of a disc of 0.9 of the outer radius"
+    for name, unit, value, symbol, text, source in (
+        ("cover_thickness", "mm", thickness, "t_cover", "Thickness of the pressed cover", UNSOURCED),
+        ("hub_mass", "kg", body.hub, "m_hub", "Hubs of the discs", "geometry"),
+        ("cover_mass", "kg", body.cover, "m_cover", "Face and shell of the cover", "geometry"),
+        ("diaphragm_spring_mass", "kg", body.spring, "m_sp", spring, UNSOURCED),
+    ):
+        if value is not None:
+            d.step(name, unit, value, symbol=symbol, text=text, source=source)
     life = wear.declare_wear_life(
         d,
         pair.part,
-        area=pack.surfaces * ring.area,
-        depth=wear_depth(body.wants, pair, pack),
-        work=start.friction_work,
+        area=discs.pack.surfaces * discs.ring.area,
+        depth=wear_depth(body.wants, discs),
+        work=discs.start.friction_work,
         text="Engagements until the linings are worn",
     )
     if life is not None:
@@ -271,27 +192,12 @@ def declare_body(
         )
 
 
-def declare_rules(d: Declaration, *, rules: DiscRules, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
-    """Declare the limits that an engineer adds to discs.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : DiscRules
-        What the limits go by.
-    duty : Duty
-        Block duty.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : DiscPack
-        The discs.
-    """
+def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
+    """Declare the limits that an engineer adds to discs."""
+    ring, pair = discs.ring, discs.pair
     d.at_least(
         "pressure_plate_stiffness",
-        pack.plate_thickness,
+        discs.pack.plate_thickness,
         2 * ring.outer_radius / rules.plate_stiffness_ratio,
         "mm",
         text="The pressure plate does not cone",
@@ -299,7 +205,7 @@ def declare_rules(d: Declaration, *, rules: DiscRules, duty: Duty, ring: Ring, p
     )
     d.at_least(
         "release_clearance",
-        duty.plate_gap,
+        discs.duty.plate_gap,
         rules.disc_runout / 2,
         "mm",
         text="The disc comes free although it runs out",

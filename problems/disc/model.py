@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 from synth import DesignProblem
 from synth.declaration import Declaration
 
-from .. import cost, friction, practice, wear
+from .. import friction, practice, wear
 from ..friction import startup_curves
 from ..mechanics import ring as ring_formulas
 from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, S1, SHAFT, SHIGLEY_DISC
-from . import body as disc_body
 from . import curves as disc_curves
 from . import facing_sets
 from . import pack as disc_pack
+from .layers import LAYERS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,20 +46,10 @@ class DiscClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
-        duty = friction.declare_duty(
-            d,
-            cooling_default="still_air",
-            lubrication="dry",
-            kind=friction.DutyOfDiscs if scope.rules else friction.Duty,
-        )
-        required = friction.sizing_torque(duty)
-        body_wants = wants = None
-        if scope.rules or scope.complete:
-            body_wants = disc_body.declare_body_requirements(d, required=required)
-            wants = disc_body.declare_disc_requirements(d, body=body_wants)
-        rules = d.block(disc_body.DiscRules) if scope.rules else None
-        least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
+        layer_of = LAYERS[practice.declare_scope(d)]
+        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry", kind=layer_of.kind)
+        layer = layer_of(d, duty)
+        least, most = layer.ring_ratios
         facings = facing_sets.declare_facing_set(d)
         ring = friction.declare_ring(
             d,
@@ -68,7 +58,7 @@ class DiscClutch(DesignProblem):
             diameters=None if facings is None else facing_sets.ring_diameters(facings),
         )
         facing = None if facings is None else facing_sets.facing_of(facings)
-        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants, facing=facing)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=layer.requirements(d), facing=facing)
         force = d.variable(
             "actuation_force",
             "N",
@@ -79,7 +69,9 @@ class DiscClutch(DesignProblem):
             source=f"{S1}, F",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", rules=layer.rules
+        )
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
@@ -88,7 +80,7 @@ class DiscClutch(DesignProblem):
             d,
             duty=duty,
             pair=pair,
-            required=required,
+            required=layer.required,
             torque_low=torque(pair.mu_low),
             torque_high=torque(pair.mu_high),
             source=f"{S1}, sizing",
@@ -109,29 +101,12 @@ class DiscClutch(DesignProblem):
         )
         if facings is not None:
             facing_sets.declare_set_limits(d, facings, pair=pair, pressure=force / ring.area)
-        pack_size = disc_pack.disc_size(duty, ring, pair, pack)
-        size: friction.Size = pack_size
-        mass_of = "Pressure plates, linings and cores"
-        along = "Length of the released discs and pressure plates"
-        body = None
-        if body_wants is not None:
-            body = disc_body.complete_body(duty=duty, wants=body_wants, ring=ring, pack=pack, pack_size=pack_size)
-        if body is not None and scope.complete:
-            size, mass_of, along = body.size, "The whole clutch", "The whole clutch"
-        friction.declare_size(
-            d,
-            size=size,
-            mass_of=f"{mass_of}, without flywheel" + ("" if scope.complete else ", springs and cover"),
-            outside="Outside of the cover",
-            along=f"{along}, without flywheel" + ("" if scope.complete else ", springs and cover"),
-        )
-        if body is not None:
-            disc_body.declare_body(d, ring=ring, pair=pair, pack=pack, start=start, body=body, pack_size=pack_size)
-            cost.declare_cost(d, mass=body.size.mass, parts=2 * pack.discs + 2, lining=(pair.part, area))
-        if rules is not None:
-            disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
-        disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
-        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=pack_size)
+        discs = disc_pack.Discs(duty, ring, pair, pack, start, disc_pack.disc_size(duty, ring, pair, pack))
+        size = layer.size(discs)
+        friction.declare_size(d, size=size, mass_of=layer.mass_of, outside="Outside of the cover", along=layer.along)
+        layer.extend(d, discs)
+        disc_pack.declare_disc_inertia(d, discs)
+        disc_pack.declare_disc_temperature(d, discs)
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         d.headline(
             "mass",
@@ -147,8 +122,7 @@ class DiscClutch(DesignProblem):
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work", "disc_inertia"):
             d.objective(name, default=False)
-        if body is not None:
-            wear.offer_wear_life(d)
+        wear.offer_wear_life(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
         """Return the section through the released discs, with their hubs where the whole clutch is counted."""

@@ -111,12 +111,24 @@ class DiscPack:
         return pair.part.lining_thickness if self.facing is None else self.facing.thickness
 
 
+@dataclass(frozen=True)
+class Discs:
+    """Discs that are declared, with what they are declared for."""
+
+    duty: Duty
+    ring: Ring
+    pair: Pair
+    pack: DiscPack
+    start: Startup
+    size: DiscSize
+
+
 def declare_disc_pack(
     d: Declaration,
     *,
     duty: Duty,
     ring: Ring,
-    wants: DiscRequirements | None = None,
+    wants: DiscRequirements,
     facing: Facing | None = None,
 ) -> DiscPack:
     """Declare requirements and unknowns of a disc pack, and the limit of its bore.
@@ -129,8 +141,8 @@ def declare_disc_pack(
         Block duty.
     ring : Ring
         Block ring.
-    wants : DiscRequirements, optional
-        Requirements that are declared already.
+    wants : DiscRequirements
+        Requirements of the discs.
     facing : Facing, optional
         Facing of a list; without one it is as thick as the row of its lining says.
 
@@ -139,8 +151,6 @@ def declare_disc_pack(
     DiscPack
         Symbols of the block.
     """
-    if wants is None:
-        wants = d.block(DiscRequirements)
     discs = d.count(
         "discs",
         1,
@@ -253,12 +263,12 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> DiscSize:
     )
 
 
-def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
+def declare_disc_inertia(d: Declaration, discs: Discs) -> None:
     """Declare the inertia of the discs, which the gearbox has to synchronise."""
+    ring, pair, pack = discs.ring, discs.pair, discs.pack
+    wants, density = pack.wants, discs.duty.steel_density
     lining = disc.lining_inertia(pair.part.density, pack.lining_thickness(pair), ring.mean_diameter, ring.ratio)
-    core = disc.core_inertia(
-        duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
-    )
+    core = disc.core_inertia(density, wants.core_thickness, ring.outer_radius, wants.disc_hub_radius)
     text = "Both linings of a disc"
     d.step("lining_inertia", "kg*m2", lining, symbol="J_lin", text=text, source="geometry")
     d.step("core_inertia", "kg*m2", core, symbol="J_core", text="Core of a disc", source="geometry")
@@ -272,30 +282,11 @@ def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, 
     )
 
 
-def declare_disc_temperature(
-    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: DiscSize
-) -> None:
-    """Declare the temperatures of a disc pack and their limits.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Block duty.
-    pair : Pair
-        Slot friction_pair.
-    start : Startup
-        What one engagement costs.
-    ring : Ring
-        Block ring.
-    pack : DiscPack
-        The discs.
-    size : Size
-        Room of the clutch, whose outside gives off the heat.
-    """
+def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
+    """Declare the temperatures of a disc pack, whose outside gives off the heat, and their limits."""
+    duty, pair, start, pack, size = discs.duty, discs.pair, discs.start, discs.pack, discs.size
     wants = pack.wants
-    plate_mass = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
+    plate_mass = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, discs.ring.area)
     specific_heat = wants.pressure_plate_specific_heat
     for name, value, symbol, text in (
         ("pressure_plate_mass", size.plate_mass, "m_p", "A pressure plate"),

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 
 MAGNET_PARTS = 3  # pot, armature and coil
+# Pairs on a flat face, as built today; no bare cast iron.
+SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "status in ('current', '')", "lining != 'cast iron'")
 WEAR_AT_MAGNET = 0.3  # mm, default of wear_depth_limit of dry linings: a magnet does not reach over more
 
 
@@ -185,9 +187,7 @@ class ElectromagneticClutch(DesignProblem):
         ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
         magnet = magnet_blocks.declare_magnet(d, seat=seat)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
-            d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
-        )
+        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication=lubrication, rules=scope.rules)
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         torque, torques = plate_pack.declare_pack_torques(
             d,
@@ -275,11 +275,13 @@ class ElectromagneticClutch(DesignProblem):
                 seat = magnet_blocks.Seat(required, body_wants.shaft_diameter, body_wants.hub_diameter)
         least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
         ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
-        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants)
+        pack = disc_pack.declare_disc_pack(
+            d, duty=duty, ring=ring, wants=d.block(disc_pack.DiscRequirements) if wants is None else wants
+        )
         magnet = magnet_blocks.declare_magnet(d, seat=seat)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
+        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", rules=scope.rules)
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
@@ -310,16 +312,17 @@ class ElectromagneticClutch(DesignProblem):
             rubbing_radius=ring.outer_radius,
         )
         size = disc_pack.disc_size(duty, ring, pair, pack)
-        disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
-        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=size)
+        discs = disc_pack.Discs(duty, ring, pair, pack, start, size)
+        disc_pack.declare_disc_inertia(d, discs)
+        disc_pack.declare_disc_temperature(d, discs)
         body = habits = None
         if body_wants is not None:
-            body = disc_body.body_at_magnet(duty=duty, wants=body_wants, pack=pack, pack_size=size)
-            disc_body.declare_body(d, ring=ring, pair=pair, pack=pack, start=start, body=body, pack_size=size)
+            body = disc_body.body_at_magnet(discs, body_wants)
+            disc_body.declare_body(d, discs, body)
             if rules is not None and coil_rules is not None:
-                disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
+                disc_body.declare_rules(d, discs, rules)
                 habits = magnet_blocks.Practice(
-                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, pair, pack), ramp_time=ramp_time
+                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, discs), ramp_time=ramp_time
                 )
         built = magnet_blocks.declare_magnet_coil(
             d,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +29,7 @@ class Pair:
 
 
 def declare_friction_pair(
-    d: Declaration, *, family: str, duty: Duty, lubrication: str | None, rules: bool = False
+    d: Declaration, *, suited: Sequence[str], duty: Duty, lubrication: str | None, rules: bool = False
 ) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
@@ -36,8 +37,8 @@ def declare_friction_pair(
     ----------
     d : Declaration
         Takes the declarations.
-    family : str
-        Name that the column family_hint must contain.
+    suited : sequence of str
+        Conditions on the rows that suit the family.
     duty : Duty
         Block duty.
     lubrication : str or None
@@ -50,8 +51,7 @@ def declare_friction_pair(
     Pair
         The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
     """
-    conditions = [f"'{family}' in family_hint"]
-    conditions.append(f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')")
+    conditions = [*suited, f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')"]
     conditions += lining_conditions(d, duty.allow_obsolete, rules=rules)
     part = d.part(
         "friction_pair",

@@ -81,7 +81,7 @@ class MultiPlateClutch(DesignProblem):
         force = self._declare_force(d)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(
-            d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
+            d, suited=["'plate pack' in surfaces"], duty=duty, lubrication=lubrication, rules=scope.rules
         )
         plates = None
         if plate_set is not None:

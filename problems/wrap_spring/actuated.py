@@ -197,7 +197,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
         )
         wire = blocks.declare_wire(d, options=options)
         coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
-        friction = blocks.declare_friction(d, family=self.name, duty=duty, coils=coils)
+        friction = blocks.declare_friction(d, duty=duty, coils=coils)
 
         tolerance = duty.interference_tolerance
         widest, narrowest = clearance + tolerance, clearance - tolerance

@@ -460,15 +460,13 @@ class Friction:
     exponent_high: Any
 
 
-def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, lubricated: bool = False) -> Friction:
+def declare_friction(d: Declaration, *, duty: Duty, coils: Coils, lubricated: bool = False) -> Friction:
     """Declare the slot friction_pair and the belt exponent with its limit.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    family : str
-        Name that the column family_hint must contain.
     duty : Duty
         Requirements.
     coils : Coils
@@ -481,7 +479,7 @@ def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, l
     Friction
         Symbols of the block.
     """
-    conditions = [f"'{family}' in family_hint"]
+    conditions = ["'wire on hub' in surfaces"]
     if lubricated and all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note")):
         conditions.append("(lubrication == 'oil' or lubrication_note == 'greased')")
     part = d.part(

@@ -228,7 +228,6 @@ class WrapSpringClutch(DesignProblem):
         coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
         friction = blocks.declare_friction(
             d,
-            family=self.name,
             duty=duty,
             coils=coils,
             lubricated=rules is not None and wants.overrun_speed is not None,

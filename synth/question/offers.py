@@ -163,11 +163,7 @@ def _meets(text: str, table: Table) -> np.ndarray:
     if missing and table.user_rows.all():
         # A user's own table need not have the columns that sort the shipped one.
         return np.ones(len(table), dtype=bool)
-    mask: np.ndarray = condition.mask(table)
-    if "family_hint" in condition.columns:
-        hints = np.array([not h for h in table.text("family_hint")])
-        mask = mask | (table.user_rows & hints)
-    return mask
+    return condition.mask(table)
 
 
 def _is_condition(rule: Any, table: Table) -> bool:

@@ -6,11 +6,11 @@ better, so that each point gets the least that its speeds allow, from speed**2 ~
 
 import numpy as np
 import pytest
+from synth.problems.centrifugal.cases import ENGINE
 
 import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
-from tests.conformance.cases import ENGINE
 
 pytestmark = pytest.mark.slow
 

@@ -16,8 +16,9 @@ from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
 from synth.search.formulation import Formulation
 from synth.search.settings import TUNING
+from synth.testing import Case
 from tests.asking import instance_of
-from tests.conformance.cases import CASES, Case, answer, front_of
+from tests.conformance.cases import CASES, answer, front_of
 from tests.referees.ipopt import Task
 from tests.regimes import best_in_any_regime, referee
 

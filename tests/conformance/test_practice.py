@@ -12,7 +12,8 @@ from synth.problems.practice import SHAFT_STEEL
 
 import synth
 from synth.tables.catalogs import Catalogs
-from tests.conformance.cases import CASES, Design
+from synth.testing import KnownDesign
+from tests.conformance.cases import CASES
 
 KNOWN = [
     pytest.param(family, name, id=f"{family}-{name}")
@@ -38,7 +39,7 @@ def asked(
 ) -> synth.Design:
     """Design known of an option set, with some of its requirements and options changed."""
     data = CASES[family]
-    design: Design = data.designs[name]
+    design: KnownDesign = data.designs[name]
     chosen = {**data.option_sets[name], **changed}
     needed = [
         more

@@ -56,12 +56,12 @@ class Ask:
         return asked | more
 
 
-def combinations(family, wires=(), pairs=()):
+def combinations(wires=(), pairs=()):
     """Return columns of every combination of wire, pair, hub and coils as arrays that broadcast."""
     wire_table, pair_table = Catalogs().table("spring_wire_flat"), Catalogs().table("friction_materials")
     taken = [not wires or name in wires for name in wire_table.designations]
-    hints = zip(pair_table.designations, pair_table.text("family_hint"), strict=True)
-    offered = [family in hint.split(";") and (not pairs or name in pairs) for name, hint in hints]
+    cells = zip(pair_table.designations, pair_table.text("surfaces"), strict=True)
+    offered = ["wire on hub" in cell.split(";") and (not pairs or name in pairs) for name, cell in cells]
     wire, pair, hub, coils = np.ix_(np.flatnonzero(taken), np.flatnonzero(offered), LADDER, COILS)
     names = ("radial_thickness_a", "axial_width_b", "E", "density", "bending_allow_static", "Rm_min")
     of_wire = [wire_table.number(name)[wire] for name in (*names, "endurance_amplitude")]
@@ -71,7 +71,7 @@ def combinations(family, wires=(), pairs=()):
 
 def interference_fit(ask: Ask, wires=(), pairs=()):
     """Return (mass, drag) of all feasible combinations at the least interference that holds."""
-    a, b, modulus, density, allow, strength, endurance, friction, hub, n = combinations("wrap_spring", wires, pairs)
+    a, b, modulus, density, allow, strength, endurance, friction, hub, n = combinations(wires, pairs)
     mu_min, mu_max, p_allow, pv_allow = friction
     hub_radius = hub / 2
     mean = hub_radius + 0 * a if ask.seed else hub_radius + a / 2
@@ -111,7 +111,7 @@ def interference_fit(ask: Ask, wires=(), pairs=()):
 
 def clearance_fit(ask: Ask):
     """Return (mass, energising torque) of all feasible combinations at the least clearance that survives."""
-    a, b, modulus, density, allow, _, _, friction, hub, n = combinations("wrap_spring_actuated")
+    a, b, modulus, density, allow, _, _, friction, hub, n = combinations()
     mu_min, mu_max, p_allow, _ = friction
     hub_radius, clearance = hub / 2, 0.05e-3 + ask.tolerance
     mean = hub_radius + a / 2

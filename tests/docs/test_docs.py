@@ -32,7 +32,7 @@ from synth.analysis.describe import describe
 from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
-from tests.docs import mechanics_page
+from tests.docs import lists, mechanics_page
 from tests.shipped import FAMILIES
 from tests.terminal.entry import at_once, in_process
 from tests.waiting import PATIENCE
@@ -249,14 +249,19 @@ def test_every_key_of_a_spec_is_documented() -> None:
         assert f"`{key}`" in page, key
 
 
-def test_the_readme_is_short_and_has_a_duty_for_every_family() -> None:
+def test_the_readme_is_short() -> None:
     readme = text_of("README.md")
     assert len(readme.splitlines()) <= 150
-    table = readme.split("## Which clutch for which duty")[1].split("\n## ")[0]
-    rows = re.findall(r"^\| \[([^\]]+)\]\(docs/(\w+)\.md\) \| (.+) \|$", table, re.MULTILINE)
-    assert sorted((name, title) for title, name, _ in rows) == [
-        (name, synth.load(name).title) for name in sorted(FAMILIES)
-    ]
+
+
+def test_lists_of_families_are_those_of_the_registry() -> None:
+    for written in lists.lists():
+        assert written.content() == text_of(written.page), f"{written.page}: make lists writes it anew"
+    assert {link: link.readlink().as_posix() for link in (ROOT / "examples").iterdir() if link.is_symlink()} == {
+        link: target for link, target in lists.links().items()
+    }
+    shown = text_of("README.md").split("## Which clutch for which duty")[1].split("\n## ")[0]
+    assert [f"[{synth.load(name).title}](docs/{name}.md)" in shown for name in FAMILIES] == [True] * len(FAMILIES)
 
 
 def test_every_extra_is_documented() -> None:
@@ -333,10 +338,8 @@ def test_the_picture_of_the_readme_is_what_the_program_draws(tmp_path: Path) -> 
     assert all(a == pytest.approx(b, abs=1.0) for a, b in zip(*numbers, strict=True)), "make picture draws it anew"
 
 
-def test_every_family_is_in_the_gallery_of_drawings() -> None:
-    page = text_of("docs/drawings.md")
-    for family in FAMILIES:
-        assert f"(pictures/drawing_{family}.svg)" in page, family
+def test_every_family_has_a_picture_of_its_drawing() -> None:
+    for family in (entry.name for entry in map(lists.entry, FAMILIES) if entry.drawing):
         drawn = text_of(f"docs/pictures/drawing_{family}.svg")
         assert f"<title>{synth.load(family).title}: " in drawn, "make gallery draws it anew"
 

@@ -300,22 +300,20 @@ def test_a_missing_optional_column_is_no_fault():
     assert bare.combinations.count == instance().combinations.count
 
 
-class Hinted(synth.DesignProblem):
+class Wet(synth.DesignProblem):
     """A slot with the conditions that the shipped friction materials are sorted by."""
 
-    name = "hinted"
+    name = "wet"
 
     def declare(self, d):
-        pair = d.part(
-            "pair", "friction_materials", where=("'multi_plate_clutch' in family_hint", "lubrication == 'oil'")
-        )
+        pair = d.part("pair", "friction_materials", where=("'plate pack' in surfaces", "lubrication == 'oil'"))
         x = d.variable("x", "mm", 1, 2)
         d.derive("y", "-", x * pair.mu_dynamic)
         d.objective("y")
 
 
 def pairs(table):
-    question = instance_of(Hinted(), {}, as_catalogs({"friction_materials": table}))
+    question = instance_of(Wet(), {}, as_catalogs({"friction_materials": table}))
     return designations(question, "pair")
 
 
@@ -325,21 +323,26 @@ def test_conditions_on_columns_that_a_users_table_lacks_are_not_applied():
     assert pairs(bare.assign(lubrication=["oil", "dry"])) == ("a",)
 
 
-def test_a_users_row_without_family_hint_is_offered_to_all():
+def test_a_users_row_is_offered_by_the_condition_of_the_slot():
     table = pd.DataFrame(
         {
             "designation": ["a", "b", "c", "d"],
             "mu_dynamic [-]": [0.1, 0.2, 0.1, 0.1],
             "lubrication": ["oil", "dry", "oil", "oil"],
-            "family_hint": ["", "", "disc_clutch", "disc_clutch;multi_plate_clutch"],
+            "surfaces": ["", "plate pack", "disc facing", "disc facing;plate pack"],
         }
     )
-    assert pairs(table) == ("a", "d")
+    question = instance_of(Wet(), {}, as_catalogs({"friction_materials": table}))
+    assert designations(question, "pair") == ("d",)
+    (left_out,) = question.selection.left_out
+    assert left_out["designation"] == "a"
+    assert left_out["reason"] == "no value in column surfaces, which the condition 'plate pack' in surfaces asks for"
 
 
 def test_rows_added_to_a_shipped_table_join_it():
-    shipped = designations(instance_of(Hinted(), {}, as_catalogs(None)), "pair")
+    shipped = designations(instance_of(Wet(), {}, as_catalogs(None)), "pair")
     more = pd.DataFrame({"designation": ["mine"], "mu_dynamic [-]": [0.1], "lubrication": ["oil"]})
+    more["surfaces"] = "plate pack"
     assert pairs(["+", more]) == (*shipped, "mine")
     assert "felt_dry" not in shipped
 

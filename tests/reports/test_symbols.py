@@ -32,6 +32,7 @@ def shown(symbol):
 def test_every_symbol_is_typeset_as_it_was_looked_at():
     with LIST.open(encoding="utf-8") as file:
         known = {row["symbol"]: (row["base"], row["below"], row["style"]) for row in csv.DictReader(file)}
+    known |= {symbol: seen for cases in CASES.values() for symbol, seen in cases.symbols.items()}
     found = {symbol: shown(symbol) for symbol in symbols()}
     assert found == known
 

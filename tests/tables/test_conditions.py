@@ -20,7 +20,7 @@ SCHEMA = Schema(
     (
         Column("designation", "text", required=True),
         Column("lubrication", "text"),
-        Column("family_hint", "text"),
+        Column("surfaces", "text"),
         Column("p_allow", "number", "N/mm2", 0.0, 500.0, symbol="p"),
         Column("mu_dynamic", "number", "-", 0.0, 1.0, symbol="mu"),
         Column("crowned", "flag"),
@@ -34,7 +34,7 @@ def table() -> Table:
         {
             "designation": ["a", "b", "c", "d"],
             "lubrication": ["dry", "oil", "oil", None],
-            "family_hint": ["disc_clutch;cone_clutch", "multi_plate_clutch", "disc_clutch_2", None],
+            "surfaces": ["disc facing;cone facing", "plate pack", "disc facing 2", None],
             "p_allow [N/mm2]": [0.4, 0.5, np.nan, 2.0],
             "mu_dynamic": [0.35, 0.1, 0.12, 0.08],
             "crowned": [0, 1, 0, 1],
@@ -63,10 +63,10 @@ def table() -> Table:
         ("lubrication == ''", "d"),
         ("lubrication in ('dry','oil')", "abc"),
         ("lubrication not in ('dry')", "bcd"),
-        ("'disc_clutch' in family_hint", "a"),
-        ("'cone_clutch' in family_hint", "a"),
-        ("'disc' in family_hint", ""),
-        ("'disc_clutch' not in family_hint", "bcd"),
+        ("'disc facing' in surfaces", "a"),
+        ("'cone facing' in surfaces", "a"),
+        ("'disc' in surfaces", ""),
+        ("'disc facing' not in surfaces", "bcd"),
         ("crowned == 1 and lubrication == 'oil' or mu > 0.3", "ab"),
         ("crowned == 1 and (lubrication == 'oil' or mu > 0.3)", "b"),
         ("not crowned == 1 and not (mu > 0.3)", "c"),
@@ -84,8 +84,8 @@ def test_rows(table: Table, text: str, rows: str) -> None:
 
 
 def test_columns() -> None:
-    condition = parse_condition("crowned == 0 and (kind != 'x' or 'y' in family_hint) and not mu in (1, 2)")
-    assert condition.columns == {"crowned", "kind", "family_hint", "mu"}
+    condition = parse_condition("crowned == 0 and (kind != 'x' or 'y' in surfaces) and not mu in (1, 2)")
+    assert condition.columns == {"crowned", "kind", "surfaces", "mu"}
 
 
 @pytest.mark.parametrize(
@@ -198,12 +198,12 @@ def test_no_likely_text_makes_anything_but_an_input_error(text: str) -> None:
     assert is_condition_or_refused(text)
 
 
-TESTS = ["mu > 0.1", "lubrication == 'oil'", "crowned == 1", "'disc_clutch' in family_hint", "p >= '4 bar'"]
+TESTS = ["mu > 0.1", "lubrication == 'oil'", "crowned == 1", "'disc facing' in surfaces", "p >= '4 bar'"]
 PYTHON = {
     "mu > 0.1": lambda r: r["mu_dynamic"] > 0.1,
     "lubrication == 'oil'": lambda r: r["lubrication"] == "oil",
     "crowned == 1": lambda r: r["crowned"] == 1,
-    "'disc_clutch' in family_hint": lambda r: "disc_clutch" in (r["family_hint"] or "").split(";"),
+    "'disc facing' in surfaces": lambda r: "disc facing" in (r["surfaces"] or "").split(";"),
     "p >= '4 bar'": lambda r: r["p_allow"] is not None and r["p_allow"] >= 4e5,
 }
 TREES = st.recursive(

@@ -263,11 +263,11 @@ def test_only_dry_pairs_of_the_family():
     slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
     table = slot.table
     names = {table.designations[k] for k in slot.rows}
-    hints = dict(zip(table.designations, table.text("family_hint"), strict=True))
+    surfaces = dict(zip(table.designations, table.text("surfaces"), strict=True))
     lubricated = dict(zip(table.designations, table.text("lubrication"), strict=True))
     assert "ci_steel_wet" not in names
     assert len(names) > 5
-    assert all("disc_clutch" in hints[n].split(";") and lubricated[n] == "dry" for n in names)
+    assert all("disc facing" in surfaces[n].split(";") and lubricated[n] == "dry" for n in names)
 
 
 def spec_of(options=None, requirements=None):

@@ -372,13 +372,13 @@ def test_obsolete_pairs_need_an_option():
     dry, _ = rows(lubrication="dry")
     flags = dict(zip(table.designations, table.number("new_design_allowed"), strict=True))
     lubricated = dict(zip(table.designations, table.text("lubrication"), strict=True))
-    hints = dict(zip(table.designations, table.text("family_hint"), strict=True))
+    surfaces = dict(zip(table.designations, table.text("surfaces"), strict=True))
     assert new
     assert all(flags[name] == 1 and lubricated[name] == "oil" for name in new)
     assert new <= every
     assert dry
     assert all(lubricated[name] == "dry" for name in dry)
-    assert all("multi_plate_clutch" in hints[name].split(";") for name in every | dry)
+    assert all("plate pack" in surfaces[name].split(";") for name in every | dry)
 
 
 def test_defaults_follow_the_options():

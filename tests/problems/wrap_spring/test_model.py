@@ -151,7 +151,7 @@ def test_worked_example_as_a_design():
     pair = pd.DataFrame(
         {
             "designation": ["example"],
-            "family_hint": ["wrap_spring"],
+            "surfaces": ["wire on hub"],
             "mu_min [-]": [0.1],
             "mu_max [-]": [0.1],
             "p_allow [N/mm2]": [100.0],
@@ -404,7 +404,7 @@ def test_pairs_that_cannot_reach_the_drag_limit_are_left_out():
 
 PAIR = {
     "designation": ["good", "reversed"],
-    "family_hint": ["wrap_spring", "wrap_spring;cone_clutch"],
+    "surfaces": ["wire on hub", "wire on hub;cone facing"],
     "mu_min [-]": [0.1, 0.2],
     "mu_max [-]": [0.15, 0.15],
     "p_allow [N/mm2]": [50.0, 50.0],
@@ -477,15 +477,6 @@ def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
 
 
 # -- slots, ladders, defaults ----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("family", ["wrap_spring", "wrap_spring_actuated"])
-def test_pairs_are_those_offered_to_the_family(family):
-    given = ACTUATED if family == "wrap_spring_actuated" else BASE
-    instance = instance_of(synth.load(family, practice="off"), given, as_catalogs(None))
-    slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
-    hints = slot.table.text("family_hint")
-    assert {k for k in range(len(slot.table)) if family in hints[k].split(";")} == set(slot.rows.tolist())
 
 
 @pytest.mark.parametrize(("ladder", "some", "step"), [("R20", 0.0224, 20), ("R40", 0.0236, 40)])

@@ -1,0 +1,22 @@
+"""What the cases of several families share."""
+
+from __future__ import annotations
+
+SOURCES = {"practice": "off"}  # the formulas of the sources alone
+
+# Numbers with a unit inside formulas, as "module:name": exponents of kg, m, s, K and A.
+SHAFTS = {
+    "synth.problems.practice:SHAFT_STEEL": (1, -1, -2, 0, 0),
+    "synth.problems.mechanics.shaft:TEST_BAR": (0, 1, 0, 0, 0),
+}
+COVER = {"synth.problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)}
+MAGNETICS = "synth.problems.mechanics.magnetics:"
+MAGNETS = {
+    MAGNETICS + "MU_0": (1, 1, -2, 0, -2),
+    MAGNETICS + "COPPER_RESISTIVITY": (1, 3, -3, 0, -2),
+    MAGNETICS + "COPPER_COEFFICIENT": (0, 0, 0, -1, 0),
+    MAGNETICS + "COPPER_DENSITY": (1, -3, 0, 0, 0),
+    MAGNETICS + "COPPER_REFERENCE": (0, 0, 0, 1, 0),
+    MAGNETICS + "UNIT_HEAT_TRANSFER": (1, 0, -3, -1, 0),
+    MAGNETICS + "UNIT_SPEED": (0, 1, -1, 0, 0),
+}
