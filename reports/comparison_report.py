@@ -9,10 +9,10 @@ from typing import Any
 
 from synth.results import ParetoFront
 from synth.results.ratings import DesignRating
+from synth.results.report_request import ComparisonRequest
 from synth.text.numbers import page_text
 from synth.text.plain_text import words
 
-from .about import About
 from .front_plot import front_file
 from .numbers import in_its_unit, printed
 from .sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
@@ -23,21 +23,9 @@ LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
 FAMILY_COLUMNS = (Column("family", width=1.6), Column("outcome", width=0.9), Column("why", width=3.6))
 
 
-def comparison_report(
-    content: Mapping[str, Any], fronts: Mapping[str, ParetoFront], links: Mapping[str, str], about: About
-) -> Document:
-    """Return the report of a comparison.
-
-    Parameters
-    ----------
-    content : mapping
-        Of comparison.json.
-    fronts : mapping
-        Family -> its own front.
-    links : mapping
-        Family -> file of its report.
-    about : About
-    """
+def comparison_report(asked: ComparisonRequest) -> Document:
+    """Report of a comparison."""
+    content, fronts, links, about = asked.content, asked.fronts, asked.links, asked.how.about
     designs: Sequence[Mapping[str, Any]] = content["designs"]
     told = str(content["sentence"])
     sentence = told[:1].upper() + told[1:] + "."

@@ -6,12 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from synth.drawing import Drawing
-from synth.results import Certificate, Design, ParetoFront
-from synth.results.calculation import Calculation
+from synth.results import Certificate, Design
+from synth.results.report_request import ComparisonRequest
 from synth.text.plain_text import counted
 
-from ..about import About
 from ..front_report import NOT_COVERED
 from ..sheet.design_sheet import as_sentence, program_name
 from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
@@ -19,32 +17,9 @@ from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 TITLE = "Comparison of families"
 
 
-def comparison_record(
-    content: Mapping[str, Any],
-    fronts: Mapping[str, ParetoFront],
-    calculations: Mapping[str, Calculation],
-    *,
-    about: Any = None,
-    links: Mapping[str, str] | None = None,
-    drawings: Mapping[int, Drawing] | None = None,
-) -> dict[str, Any]:
-    """Explorer record of a comparison, as JSON holds it.
-
-    Parameters
-    ----------
-    content : mapping
-        Of comparison.json; its designs have the rank in their family as ``own_rank``.
-    fronts : mapping
-        Family -> its own front, of those that were searched.
-    calculations : mapping
-        Family -> what tells the meaning of its quantities and limits.
-    about : About or mapping, optional
-    links : mapping, optional
-        Family -> file of its report beside the page.
-    drawings : mapping, optional
-        Rank in the common front -> Drawing.
-    """
-    told = _Compared(content, fronts, calculations, About.of(about), links or {}, drawings or {})
+def comparison_record(asked: ComparisonRequest) -> dict[str, Any]:
+    """Explorer record of a comparison, as JSON holds it."""
+    content, fronts, told = asked.content, asked.fronts, _Compared(asked)
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(next(iter(fronts.values()), None)),
@@ -66,17 +41,10 @@ def comparison_record(
 
 
 class _Compared:
-    def __init__(
-        self,
-        content: Mapping[str, Any],
-        fronts: Mapping[str, ParetoFront],
-        calculations: Mapping[str, Calculation],
-        about: About,
-        links: Mapping[str, str],
-        drawings: Mapping[int, Drawing],
-    ) -> None:
-        self.content, self.fronts, self.about, self.links = content, fronts, about, links
-        self.drawings = drawings
+    def __init__(self, asked: ComparisonRequest) -> None:
+        content, fronts, calculations, about = asked.content, asked.fronts, asked.calculations, asked.how.about
+        self.content, self.fronts, self.about, self.links = content, fronts, about, asked.links
+        self.drawings = asked.drawings
         self.records = {family: RecordOf(fronts[family], calculations[family], about) for family in calculations}
         self.titles = self._titles()
         self.quantities: dict[str, dict[str, Any]] = {}

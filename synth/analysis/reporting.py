@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
 from synth.analysis.drawing import drawings_of
 from synth.analysis.restate import problem_of, question_of, table_differences
+from synth.drawing import Drawing
 from synth.errors import ExtraNeededError, InputError, first_with_others
 from synth.folders.csv_style import unstyled
 from synth.folders.files import read_bytes, read_json
@@ -20,11 +21,12 @@ from synth.folders.output_folder import save_files
 from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, knee_of
 from synth.question.instance import Instance
-from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
+from synth.results import Design, ParetoFront, PartRow, design_columns, design_row, foremost, named_designs
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE, result_digest
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
+from synth.results.report_request import ComparisonRequest, ReportOptions, ReportRequest
 from synth.text.plain_text import csv_cell
 
 CURVES = ("*.svg",)
@@ -177,9 +179,10 @@ def explored(
     if record is None:
         raise InputError("explore", None, NO_REPORTS)
     read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
-    beside = _beside(Path(front.folder), front) if front.folder is not None else {}
     pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
-    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=pictures)
+    how = ReportOptions.read(about=about)
+    asked = ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_beside(front))
+    found: dict[str, Any] = record(asked)
     return found
 
 
@@ -195,15 +198,15 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     if record is None:
         raise InputError("explore", None, NO_REPORTS)
     content, _, fronts = _compared(source)
-    drawings = _drawings_of_all(content["designs"], fronts)
-    found: dict[str, Any] = record(content, fronts, _calculations(fronts), about=about, drawings=drawings)
+    asked = ComparisonRequest(content=content, fronts=fronts, how=ReportOptions.read(about=about))
+    found: dict[str, Any] = record(_explored(asked))
     return found
 
 
-def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Any]:
+def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Drawing]:
     """Return drawings of the first designs of a common front, by their rank there."""
     first = listed[:DRAWN]
-    found: dict[int, Any] = {}
+    found: dict[int, Drawing] = {}
     for family, front in fronts.items():
         ranks = {x["own_rank"]: int(x["rank"]) for x in first if x["family"] == family}
         drawn, _ = _drawings(front, [d for d in front.designs if d.rank in ranks])
@@ -211,42 +214,10 @@ def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, P
     return found
 
 
-def _calculations(fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
-    return {family: calculation(front) for family, front in fronts.items()}
-
-
-@dataclass(frozen=True)
-class ReportOptions:
-    """How a report is written; fields as for :func:`report`."""
-
-    formats: tuple[str, ...]
-    about: Any
-    length: str
-    fonts: tuple[Path, ...]
-    about_folder: Path | None
-
-    @staticmethod
-    def read(
-        formats: str | Sequence[str], about: Any, length: str, fonts: Sequence[str | Path], about_folder: Path | None
-    ) -> ReportOptions:
-        """Options as they were stated; reports refuse wrong ones themselves."""
-        words = (formats,) if isinstance(formats, str) else tuple(formats)
-        return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
-
-    @property
-    def draws(self) -> bool:
-        """Whether files of drawings are asked for."""
-        return bool({"svg", "dxf", "step", "glb"} & set(self.formats))
-
-    def asked(self) -> dict[str, Any]:
-        """Return it as reports take it."""
-        return {
-            "formats": list(self.formats),
-            "about": self.about,
-            "about_folder": self.about_folder,
-            "length": self.length,
-            "fonts": list(self.fonts),
-        }
+def _explored(asked: ComparisonRequest) -> ComparisonRequest:
+    """Request with what the explorer needs."""
+    drawings = _drawings_of_all(asked.content["designs"], asked.fronts)
+    return replace(asked, calculations={name: calculation(x) for name, x in asked.fronts.items()}, drawings=drawings)
 
 
 def _of_front(
@@ -261,23 +232,28 @@ def _of_front(
     """Return the files of the report of a front, which will stand in a place."""
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
-    asked: dict[str, Any] = {
-        "calculation": calculation(front, problem=problem, catalogs=catalogs if problem else None),
-        "front": front.placed(place),
-        "chosen": [str(x) for x in chosen],
-        "full": int(full),
-    }
-    if "xlsx" in how.formats:
-        asked["rows"] = _offered(front, problem, catalogs)
-    if front.folder is not None:
-        asked |= _beside(Path(front.folder), front)
-    asked["drawings"], untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=how.draws)
+    read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
+    drawings, untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=_draws(how))
     shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
     shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
-    more = {d.rank: d for d in shown if d.rank not in asked["drawings"]}
-    asked["drawings"] |= _drawings(front, list(more.values()), problem, catalogs)[0]
-    files, notes, lacking = _made(asked, how)
+    more = {d.rank: d for d in shown if d.rank not in drawings}
+    asked = ReportRequest(
+        calculation=read,
+        front=front.placed(place),
+        chosen=[str(x) for x in chosen],
+        full=int(full),
+        how=how,
+        rows=_offered(front, problem, catalogs) if "xlsx" in how.formats else {},
+        drawings=drawings | _drawings(front, list(more.values()), problem, catalogs)[0],
+        **_beside(front),
+    )
+    files, notes, lacking = _made(asked)
     return files, [*notes, *untold, *_differences(front, problem, catalogs)], lacking
+
+
+def _draws(how: ReportOptions) -> bool:
+    """True if files of drawings are requested."""
+    return bool({"svg", "dxf", "step", "glb"} & set(how.formats))
 
 
 def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
@@ -292,7 +268,7 @@ def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
 
 def _drawings(
     front: ParetoFront, designs: Sequence[Design], problem: Any = None, catalogs: Any = None, *, asked: bool = False
-) -> tuple[dict[int, Any], list[str]]:
+) -> tuple[dict[int, Drawing], list[str]]:
     """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
     try:
         own, _ = problem_of(front, problem, catalogs, kept=True)
@@ -327,11 +303,16 @@ def report_design(
     place = Path(folder)
     # The sheet of a front's design says how far the front is proven; this one must not take its place.
     name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
-    asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design.placed(place), "name": name}
-    if "xlsx" in how.formats:
-        asked["rows"] = _rows(instance)
-    asked["drawings"], untold = drawings_of(instance.problem, [design], asked=how.draws)
-    files, notes, lacking = _made(asked, how)
+    drawings, untold = drawings_of(instance.problem, [design], asked=_draws(how))
+    asked = ReportRequest(
+        calculation=calculation_of(instance),
+        design=design.placed(place),
+        name=name,
+        how=how,
+        rows=_rows(instance) if "xlsx" in how.formats else {},
+        drawings=drawings,
+    )
+    files, notes, lacking = _made(asked)
     return write_report(place, files, [*notes, *untold], design.status is not Status.INFEASIBLE, lacking)
 
 
@@ -372,10 +353,8 @@ def report_comparison(
         links |= {family: f"{place}/{first}"}
     make = report_named("comparison")
     assert make is not None
-    asked: dict[str, Any] = {"content": content, "fronts": fronts, "links": links}
-    if "explorer" in how.formats:
-        asked |= {"calculations": _calculations(fronts), "drawings": _drawings_of_all(listed, fronts)}
-    own, told, lacks = make({**asked, **how.asked()})
+    asked = ComparisonRequest(content=content, fronts=fronts, how=how, links=links)
+    own, told, lacks = make(_explored(asked) if "explorer" in how.formats else asked)
     lacking |= {error.extra: error for error in lacks}
     notes += [note for note in told if note not in notes]
     return write_report(folder, {**own, **files}, notes, bool(listed), list(lacking.values()))
@@ -417,17 +396,20 @@ def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) ->
     return list({known[word]["rank"]: known[word] for word in words}.values())
 
 
-def _made(asked: Mapping[str, Any], how: ReportOptions) -> Made:
+def _made(asked: ReportRequest) -> Made:
     """Return the files of a report by name, what else is to be told, and which extras lack for more files."""
     make = report_named("files")
     if make is None:
         raise InputError("report", None, NO_REPORTS)
-    files, notes, lacking = make({**asked, **how.asked()})
-    return dict(files), list(notes), tuple(lacking)
+    made: Made = make(asked)
+    return made
 
 
-def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:
-    """Further results on a front, in its folder or in one below."""
+def _beside(front: ParetoFront) -> dict[str, Any]:
+    """Further results on a front, in its folder or in one below; nothing where it has none."""
+    if front.folder is None:
+        return {}
+    folder = Path(front.folder)
     found: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
     digest = front.result_digest
     for path in (folder / "prices.json", *sorted(folder.glob("*/prices.json"))):
@@ -457,20 +439,20 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     return {}
 
 
-def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[Any]]:
+def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[PartRow]]:
     """Return the rows that slots offer; where the question cannot be posed again those that the designs use."""
     try:
         return _rows(question_of(front, problem, catalogs, kept=True))
     except InputError:
-        used: dict[str, dict[str, Any]] = {}
+        used: dict[str, dict[str, PartRow]] = {}
         for design in front.designs:
             for slot, row in design.parts.items():
                 used.setdefault(slot, {})[str(row)] = row
         return {slot: list(rows.values()) for slot, rows in used.items()}
 
 
-def _rows(instance: Instance) -> dict[str, list[Any]]:
-    found: dict[str, list[Any]] = {}
+def _rows(instance: Instance) -> dict[str, list[PartRow]]:
+    found: dict[str, list[PartRow]] = {}
     chosen = {s.slot: (s.table, s.rows) for s in instance.selection.slots}
     for slot, part in instance.model.declaration.slots.items():
         whole = instance.catalogs.table(part.table)

@@ -9,7 +9,7 @@ import time
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -111,7 +111,7 @@ class BatchResult:
         """
         from synth.jobs.batch_report import BatchReportOptions, report_result
 
-        how = BatchReportOptions.read(row=row, formats=formats, about=about, fonts=fonts)
+        how = replace(BatchReportOptions.read(formats, about, fonts=fonts), row="" if row is None else str(row).strip())
         target = self.folder if folder is None else Path(folder)
         return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own).complete()
 

@@ -33,6 +33,7 @@ from synth.results.batch_record import BatchRecord, BatchRow, RowInFull
 from synth.results.certificate import Certificate
 from synth.results.drawings import report as report_named
 from synth.results.provenance import installed_versions
+from synth.results.report_request import BatchReportRequest, ReportOptions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.text.numbers import typed_number
@@ -47,48 +48,10 @@ TOLD_LINES = 6  # of rows that a name fits
 
 
 @dataclass(frozen=True, kw_only=True)
-class BatchReportOptions:
-    """How a batch is reported; fields as for ``BatchResult.report``."""
+class BatchReportOptions(ReportOptions):
+    """How a batch is reported; ``row`` is the one in full, empty for the first with designs."""
 
     row: str = ""
-    formats: tuple[str, ...] = ("html",)
-    about: Any = None
-    about_folder: Path | None = None
-    fonts: tuple[Path, ...] = ()
-
-    @staticmethod
-    def read(
-        *,
-        row: str | int | None = None,
-        formats: str | Sequence[str] = ("html",),
-        about: Any = None,
-        about_folder: Path | None = None,
-        fonts: Sequence[str | Path] = (),
-    ) -> BatchReportOptions:
-        """Requested options.
-
-        Raises
-        ------
-        InputError
-            A format is none of a batch.
-        """
-        words = (formats,) if isinstance(formats, str) else tuple(formats)
-        for word in words or ("",):
-            if word not in FORMATS:
-                raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
-        named = "" if row is None else str(row).strip()
-        return BatchReportOptions(
-            row=named, formats=words, about=about, about_folder=about_folder, fonts=tuple(Path(x) for x in fonts)
-        )
-
-    def asked(self) -> dict[str, Any]:
-        """Return it as reports take it."""
-        return {
-            "formats": list(self.formats),
-            "about": self.about,
-            "about_folder": self.about_folder,
-            "fonts": list(self.fonts),
-        }
 
 
 def report_batch(source: Path, folder: Path, how: BatchReportOptions, database: str | None = None) -> WrittenReport:
@@ -134,12 +97,15 @@ def batch_report_files(
     beside : Path, optional
         A folder in which a size range may stand.
     """
+    for word in how.formats or ("",):
+        if word not in FORMATS:
+            raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
     make = report_named("batch_files")
     if make is None:
         raise InputError("report", None, NO_REPORTS)
     record, notes = _BatchReader(store, job, tables, own).record(how.row, beside)
-    files, told, lacking = make({"batch": record, **how.asked()})
-    return dict(files), [*notes, *told], any(row.designs for row in record.rows), tuple(lacking)
+    files, told, lacking = make(BatchReportRequest(record, how))
+    return files, [*notes, *told], any(row.designs for row in record.rows), lacking
 
 
 def _written(

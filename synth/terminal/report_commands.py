@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -159,7 +160,7 @@ def _of_batch(
     """Write the report of a batch."""
     from synth.jobs.batch_report import BatchReportOptions, report_batch
 
-    how = BatchReportOptions.read(row=row, **{key: value for key, value in asked.items() if key != "length"})
+    how = replace(BatchReportOptions.read(**asked), row=(row or "").strip())
     return report_batch(source, target, how, database)
 
 

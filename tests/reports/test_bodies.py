@@ -14,6 +14,7 @@ from synth.analysis.drawing import drawing_of, quantity_of, weighed
 from synth.analysis.reporting import report
 from synth.drawing import Area, Drawing, Item, Line, LineKind, View, disc, rectangle
 from synth.errors import InputError
+from synth.results.report_request import About
 
 pytestmark = pytest.mark.slow
 
@@ -126,7 +127,7 @@ def test_the_same_drawing_gives_the_same_files():
     drawing = everything()
     assert step_of(drawing, "Clutch", "program") == step_of(drawing, "Clutch", "program")
     assert glb_of(drawing, "Clutch", "program") == glb_of(drawing, "Clutch", "program")
-    assert b"'2026-03-01T00:00:00'" in step_of(drawing, "Clutch", "program", {"date": "2026-03-01"})
+    assert b"'2026-03-01T00:00:00'" in step_of(drawing, "Clutch", "program", About(date="2026-03-01"))
 
 
 def test_files_of_a_report_are_written(front, tmp_path):

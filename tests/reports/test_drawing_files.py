@@ -35,6 +35,7 @@ from synth.drawing import (
     rectangle,
 )
 from synth.errors import InputError
+from synth.results.report_request import About
 from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
@@ -137,7 +138,7 @@ def test_the_same_design_gives_the_same_files(front, tmp_path):
 def test_dimensions_say_their_quantity_in_svg(front):
     design = front.designs[0]
     drawing = drawing_of(synth.load("multi_plate_clutch"), design)
-    text = svg_of(drawing, design.frame.title, "program", {"project": "Hoist 7", "author": "Á. Őri <b>"})
+    text = svg_of(drawing, design.frame.title, "program", About(project="Hoist 7", author="Á. Őri <b>"))
     told = dict(re.findall(r'data-quantity="([^"]+)" data-measure="([^"]+)"', text))
     assert float(told["length"]) == pytest.approx(design.values["length"] * 1e3, rel=1e-12)
     assert float(told["drum_wall"]) == pytest.approx(6.0)
@@ -193,7 +194,7 @@ def test_hostile_texts_do_nothing_in_drawings(text):
     items = tuple(replace(item, name=text, material=text, note=text) for item in drawing.items)
     views = tuple(replace(view, name=text[:60]) for view in drawing.views)
     hostile = replace(drawing, title=text[:60], items=items, omitted=(text[:300],), remarks=(text[:300],), views=views)
-    about = {"project": text[:200], "company": text[:200]}
+    about = About(project=text[:200], company=text[:200])
     picture = svg_of(hostile, text[:60], "program", about)
     tree = ElementTree.fromstring(picture)
     assert not [e.tag for e in tree.iter() if e.tag.endswith(("script", "foreignObject", "image"))]
