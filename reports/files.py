@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from synth.drawing import Drawing
-from synth.errors import ExtraNeededError, InputError
+from synth.errors import InputError
 from synth.results import Design, ParetoFront, foremost, named_designs
+from synth.results.hookspecs import Made
 from synth.results.report_request import BatchReportRequest, ComparisonRequest, ReportRequest
 
 from .batch_report import batch_report
@@ -32,7 +33,6 @@ from .workbook_front import front_workbook
 
 FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf", "step", "glb")
 BODIES = {"step": step_of, "glb": glb_of}  # of what is round in drawings
-Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
 MAKERS: Mapping[str, Callable[..., str | bytes]] = {"svg": svg_of, "dxf": dxf_of, **BODIES}  # of drawings
 
 

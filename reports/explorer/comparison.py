@@ -42,15 +42,14 @@ def comparison_record(asked: ComparisonRequest) -> dict[str, Any]:
 
 class _Compared:
     def __init__(self, asked: ComparisonRequest) -> None:
-        content, fronts, calculations, about = asked.content, asked.fronts, asked.calculations, asked.how.about
-        self.content, self.fronts, self.about, self.links = content, fronts, about, asked.links
-        self.drawings = asked.drawings
-        self.records = {family: RecordOf(fronts[family], calculations[family], about) for family in calculations}
+        self.content, self.fronts, self.about = asked.content, asked.fronts, asked.how.about
+        self.links, self.drawings = asked.links, asked.drawings
+        self.records = {name: RecordOf(self.fronts[name], x, self.about) for name, x in asked.calculations.items()}
         self.titles = self._titles()
         self.quantities: dict[str, dict[str, Any]] = {}
         self.units: dict[str, str] = {}
         self.limits: dict[tuple[str, str, str], dict[str, Any]] = {}
-        listed = dict.fromkeys(x["family"] for x in content["designs"])
+        listed = dict.fromkeys(x["family"] for x in self.content["designs"])
         for family in listed or self.records:
             self._gather(family)
 

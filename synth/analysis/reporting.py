@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
@@ -24,15 +24,16 @@ from synth.question.instance import Instance
 from synth.results import Design, ParetoFront, PartRow, design_columns, design_row, foremost, named_designs
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE, result_digest
+from synth.results.hookspecs import Made
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
 from synth.results.report_request import ComparisonRequest, ReportOptions, ReportRequest
 from synth.text.plain_text import csv_cell
 
 CURVES = ("*.svg",)
+PLAIN = ReportOptions()
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank
-Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
-NO_REPORTS = "the package reports, which clutchsynth is installed with"
+Hook = TypeVar("Hook")
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,19 @@ class WrittenReport:
         return self.folder
 
 
+def installed(hook: Hook | None, verb: str) -> Hook:
+    """Hook of the reports.
+
+    Raises
+    ------
+    InputError
+        They are not installed; ``verb`` is what needs them.
+    """
+    if hook is None:
+        raise InputError(verb, None, "the package reports, which clutchsynth is installed with")
+    return hook
+
+
 def write_report(
     folder: Path,
     files: Mapping[str, str | bytes],
@@ -94,16 +108,12 @@ def write_report(
 def report(
     front: ParetoFront,
     folder: str | Path,
+    how: ReportOptions = PLAIN,
     *,
     design: Any = 1,
     full: int = 5,
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
     problem: Any = None,
     catalogs: Any = None,
-    about_folder: Path | None = None,
 ) -> WrittenReport:
     """Write the report of a front, and calculation sheets of some of its designs.
 
@@ -111,23 +121,13 @@ def report(
     ----------
     front : ParetoFront
     folder : path
+    how : ReportOptions
     design : int, str or list of these
         Designs that get sheets: ranks, or ``knee``.
     full : int
         Designs that the front report tells in full.
-    formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``,
-        ``step``, ``glb``.
-    about : mapping, optional
-        Project, customer, number, author, date, ...
-    length : {"summary", "normal", "full"}
-        Of the sheets.
-    fonts : list of path
-        Folders of fonts for the PDF beside its own.
     problem, catalogs : optional
         For a loaded front of a problem of one's own, and own tables that were in memory.
-    about_folder : Path, optional
-        Where a logo is looked for.
 
     Returns
     -------
@@ -141,7 +141,6 @@ def report(
     """
     place = Path(folder)
     _refuse_another_front(front, place)
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = list(design) if isinstance(design, (list, tuple)) else [design]
     files, notes, lacking = _of_front(front, chosen, full, how, place, problem, catalogs)
     return write_report(place, files, notes, bool(front.designs), lacking)
@@ -157,9 +156,7 @@ def explore(
     InputError
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
-    frame = report_named("explorer_frame")
-    if frame is None:
-        raise InputError("explore", None, NO_REPORTS)
+    frame = installed(report_named("explorer_frame"), "explore")
     return NotebookFrame(frame(explored(front, about=about, problem=problem, catalogs=catalogs), height))
 
 
@@ -175,15 +172,12 @@ def explored(
     InputError
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
-    record = report_named("explorer_record")
-    if record is None:
-        raise InputError("explore", None, NO_REPORTS)
+    record = installed(report_named("explorer_record"), "explore")
     read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
     pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
     how = ReportOptions.read(about=about)
     asked = ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_beside(front))
-    found: dict[str, Any] = record(asked)
-    return found
+    return record(asked)
 
 
 def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
@@ -194,13 +188,10 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     InputError
         The comparison cannot be read, or reports are not installed.
     """
-    record = report_named("explorer_comparison")
-    if record is None:
-        raise InputError("explore", None, NO_REPORTS)
+    record = installed(report_named("explorer_comparison"), "explore")
     content, _, fronts = _compared(source)
     asked = ComparisonRequest(content=content, fronts=fronts, how=ReportOptions.read(about=about))
-    found: dict[str, Any] = record(_explored(asked))
-    return found
+    return record(_explored(asked))
 
 
 def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Drawing]:
@@ -247,7 +238,7 @@ def _of_front(
         drawings=drawings | _drawings(front, list(more.values()), problem, catalogs)[0],
         **_beside(front),
     )
-    files, notes, lacking = _made(asked)
+    files, notes, lacking = installed(report_named("files"), "report")(asked)
     return files, [*notes, *untold, *_differences(front, problem, catalogs)], lacking
 
 
@@ -287,19 +278,9 @@ def _refuse_another_front(front: ParetoFront, place: Path) -> None:
 
 
 def report_design(
-    design: Design,
-    instance: Instance,
-    folder: str | Path,
-    *,
-    name: str = "design",
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
-    about_folder: Path | None = None,
+    design: Design, instance: Instance, folder: str | Path, how: ReportOptions = PLAIN, *, name: str = "design"
 ) -> WrittenReport:
     """Write the calculation sheet of one design that was checked; arguments and returns as for :func:`report`."""
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     place = Path(folder)
     # The sheet of a front's design says how far the front is proven; this one must not take its place.
     name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
@@ -312,21 +293,12 @@ def report_design(
         rows=_rows(instance) if "xlsx" in how.formats else {},
         drawings=drawings,
     )
-    files, notes, lacking = _made(asked)
+    files, notes, lacking = installed(report_named("files"), "report")(asked)
     return write_report(place, files, [*notes, *untold], design.status is not Status.INFEASIBLE, lacking)
 
 
 def report_comparison(
-    source: Path,
-    folder: Path,
-    *,
-    design: Sequence[str] = ("1",),
-    full: int = 5,
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
-    about_folder: Path | None = None,
+    source: Path, folder: Path, how: ReportOptions = PLAIN, *, design: Sequence[str] = ("1",), full: int = 5
 ) -> WrittenReport:
     """Write the report of several families that were asked the same, and that of each family in a folder of its name.
 
@@ -339,7 +311,6 @@ def report_comparison(
     """
     content, places, fronts = _compared(source)
     listed = content["designs"]
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = _chosen_of_all(listed, design)
     files: dict[str, str | bytes] = {}
     notes, links, lacking = list[str](), dict[str, str](), dict[str, ExtraNeededError]()
@@ -351,8 +322,7 @@ def report_comparison(
         notes += [note for note in told if note not in notes]
         first = next((name for name in made if name.startswith(("report.", "explorer."))), "")
         links |= {family: f"{place}/{first}"}
-    make = report_named("comparison")
-    assert make is not None
+    make = installed(report_named("comparison"), "report")
     asked = ComparisonRequest(content=content, fronts=fronts, how=how, links=links)
     own, told, lacks = make(_explored(asked) if "explorer" in how.formats else asked)
     lacking |= {error.extra: error for error in lacks}
@@ -394,15 +364,6 @@ def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) ->
             right = f"a rank from 1 to {len(listed)} of the common front or knee" if listed else "a front with designs"
             raise InputError("design", word, right, ("design",))
     return list({known[word]["rank"]: known[word] for word in words}.values())
-
-
-def _made(asked: ReportRequest) -> Made:
-    """Return the files of a report by name, what else is to be told, and which extras lack for more files."""
-    make = report_named("files")
-    if make is None:
-        raise InputError("report", None, NO_REPORTS)
-    made: Made = make(asked)
-    return made
 
 
 def _beside(front: ParetoFront) -> dict[str, Any]:

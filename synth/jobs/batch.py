@@ -9,7 +9,7 @@ import time
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -109,11 +109,13 @@ class BatchResult:
             Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
             it is written.
         """
-        from synth.jobs.batch_report import BatchReportOptions, report_result
+        from synth.jobs.batch_report import BatchOptions, report_result
+        from synth.results.report_request import ReportOptions
 
-        how = replace(BatchReportOptions.read(formats, about, fonts=fonts), row="" if row is None else str(row).strip())
+        named = "" if row is None else str(row).strip()
+        options = BatchOptions(named, ReportOptions.read(formats, about, fonts=fonts))
         target = self.folder if folder is None else Path(folder)
-        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own).complete()
+        return report_result(self.folder, target, options, self.database, self.job, self.catalogs, self.own).complete()
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:

@@ -35,7 +35,7 @@ from synth.drawing import (
     rectangle,
 )
 from synth.errors import InputError
-from synth.results.report_request import About
+from synth.results.report_request import About, ReportOptions
 from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
@@ -130,7 +130,7 @@ def test_of_a_detail_only_its_window_is_drawn():
 
 def test_the_same_design_gives_the_same_files(front, tmp_path):
     for word in ("a", "b"):
-        report(front, tmp_path / word, formats=["svg", "dxf"])
+        report(front, tmp_path / word, ReportOptions.read(["svg", "dxf"]))
     for name in ("design_01_drawing.svg", "design_01_drawing.dxf"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
@@ -147,7 +147,7 @@ def test_dimensions_say_their_quantity_in_svg(front):
 
 
 def test_sheets_and_the_explorer_show_the_drawing(front, tmp_path):
-    report(front, tmp_path, formats=["html", "svg", "explorer"])
+    report(front, tmp_path, ReportOptions.read(["html", "svg", "explorer"]))
     sheet = (tmp_path / "design_01_sheet.html").read_text()
     assert "Not part of the model, not drawn:" in sheet
     assert "design_01_drawing.svg" in (tmp_path / "explorer.html").read_text()
@@ -206,7 +206,7 @@ def test_hostile_texts_do_nothing_in_drawings(text):
 def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
     design = front.designs[0]
     old = replace(design, steps=type(design.steps)({k: v for k, v in design.steps.items() if k != "release_gap"}))
-    written = report(replace(front, designs=(old,)), tmp_path, formats=["html", "svg"])
+    written = report(replace(front, designs=(old,)), tmp_path, ReportOptions.read(["html", "svg"]))
     assert written.files == ["report.html", "design_01_sheet.html"]
     assert [
         note for note in written.notes if note.startswith("no drawing of design #1: design: release_gap: is missing")
@@ -216,5 +216,5 @@ def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_pa
 def test_the_extra_is_named_where_it_is_missing(front, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "ezdxf", None)
     with pytest.raises(InputError, match=r"^--dxf needs the extra dxf: pip install 'clutchsynth\[dxf\]'$"):
-        report(front, tmp_path, formats=["dxf"])
+        report(front, tmp_path, ReportOptions.read(["dxf"]))
     assert list(tmp_path.iterdir()) == []

@@ -16,7 +16,7 @@ from typing import Any
 
 from synth.errors import Described, InputError, at, first_with_others
 from synth.jobs.batch import BatchJob
-from synth.jobs.batch_report import BatchReportOptions, batch_report_files
+from synth.jobs.batch_report import BatchOptions, batch_report_files
 from synth.jobs.engine_tasks import Tell
 from synth.jobs.kinds.asked import (
     WHERE,
@@ -43,6 +43,7 @@ from synth.model.registry import load
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import shown_kind
 from synth.results.drawings import can_make
+from synth.results.report_request import ReportOptions
 from synth.tables.table_file import EXCEL
 
 UPLOAD, ROWS = "upload", "rows"
@@ -182,12 +183,12 @@ def _report(name: str, file: str, sources: Sources) -> bytes | str:
     ExtraNeededError
         It needs an extra that is not installed.
     """
-    how = BatchReportOptions(formats=(REPORTS[file],))
+    options = BatchOptions("", ReportOptions(formats=(REPORTS[file],)))
     with Store(sources.database, create=False) as store:
         job = store.job(name)
         if job is None:
             raise UnknownFileError(file)
-        made, *_, lacking = batch_report_files(store, job, how, catalogs_of(job.content.get("catalogs"), sources))
+        made, *_, lacking = batch_report_files(store, job, options, catalogs_of(job.content.get("catalogs"), sources))
         if file not in made:
             raise first_with_others(lacking)
         return made[file]
