@@ -29,6 +29,7 @@ def register(app: typer.Typer) -> None:
 
 
 def report(
+    *,
     source: Annotated[
         Path, typer.Argument(help="A folder that run or batch has written, or a DESIGN.yaml.", metavar="SOURCE")
     ],
@@ -152,7 +153,7 @@ def _refuse(flags: Sequence[tuple[str, Any]], right: str, but: Sequence[str]) ->
 
 def _of_batch(source: Path, target: Path, row: str | None, how: ReportOptions, database: str | None) -> WrittenReport:
     """Write the report of a batch."""
-    from synth.jobs.batch_report import BatchOptions, report_batch
+    from synth.batches.batch_report import BatchOptions, report_batch
 
     return report_batch(source, target, BatchOptions((row or "").strip(), how), database)
 

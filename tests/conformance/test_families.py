@@ -13,7 +13,6 @@ import yaml
 import synth
 from synth.bounds import kernel_boxes
 from synth.folders.files import read_bytes
-from synth.nlp.ipopt import Task
 from synth.nlp.kernel_solver import fits
 from synth.nlp.row_functions import RowFunctions
 from synth.question.catalogs import as_catalogs
@@ -29,6 +28,7 @@ from synth.units import parse_unit
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, OF_SHAFTS, answer, front_of, question, question_to
 from tests.properties import Properties
+from tests.referees.ipopt import Task
 from tests.regimes import refereed
 from tests.repetitions import repetitions
 from tests.shipped import FAMILIES

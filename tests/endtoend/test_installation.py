@@ -161,7 +161,7 @@ def test_families_of_somebody_else_change_no_test(beside: dict[str, str]) -> Non
         "tests/conformance/test_families.py::test_every_shipped_family_has_cases",
         "tests/conformance/test_names.py",
         "tests/docs/test_docs.py::test_every_family_is_in_the_gallery_of_drawings",
-        "tests/jobs/kinds/test_small.py",
+        "tests/kinds/test_small.py",
         "tests/terminal/test_new.py",
         "tests/test_architecture.py::test_the_engine_names_no_family",
     ]
