@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
+from synth import Design
 from synth.drawing import Area, Drawable, Line, LineKind, rectangle
 from synth.errors import InputError
 
@@ -26,7 +27,7 @@ class Sizes:
         The design.
     """
 
-    def __init__(self, spec: Mapping[str, Any], design: Any) -> None:
+    def __init__(self, spec: Mapping[str, Any], design: Design) -> None:
         self.spec, self.design = spec, design
 
     def __call__(self, name: str) -> float:

@@ -9,10 +9,10 @@ from itertools import islice
 from typing import Any
 
 from synth.results.batch_record import FAILURES, IN_WORDS, STATES, WITH_DESIGNS, BatchRecord, BatchRow, RowInFull
+from synth.results.report_request import About
 from synth.text.numbers import gap_text, page_text, percent, thousands
 from synth.text.plain_text import counted, printable, words
 
-from .about import About
 from .drawing.files import svg_of
 from .front_report import FrontReportRequest, first_design
 from .sheet.blocks import (

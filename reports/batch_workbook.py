@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from synth.results.batch_record import FAILURES, BatchRecord, BatchRow
+from synth.results.report_request import About
 
-from .about import About
 from .batch_report import batch_state
 from .excel_sheets import Book
 

@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from synth.results import ParetoFront
 from synth.results.ratings import DesignRating
+from synth.results.report_request import ComparisonRequest
 from synth.text.numbers import page_text
 from synth.text.plain_text import words
 
-from .about import About
 from .front_plot import front_file
 from .numbers import in_its_unit, printed
 from .sheet.blocks import Block, Column, Document, Figure, Heading, Link, Paragraph, State, TableBlock, TableRow
@@ -23,28 +22,16 @@ LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
 FAMILY_COLUMNS = (Column("family", width=1.6), Column("outcome", width=0.9), Column("why", width=3.6))
 
 
-def comparison_report(
-    content: Mapping[str, Any], fronts: Mapping[str, ParetoFront], links: Mapping[str, str], about: About
-) -> Document:
-    """Return the report of a comparison.
-
-    Parameters
-    ----------
-    content : mapping
-        Of comparison.json.
-    fronts : mapping
-        Family -> its own front.
-    links : mapping
-        Family -> file of its report.
-    about : About
-    """
+def comparison_report(asked: ComparisonRequest) -> Document:
+    """Report of a comparison."""
+    content, fronts, links, about = asked.content, asked.fronts, asked.links, asked.how.about
     designs: Sequence[Mapping[str, Any]] = content["designs"]
     told = str(content["sentence"])
     sentence = told[:1].upper() + told[1:] + "."
     blocks: list[Block] = [_state(content, sentence)]
     if designs:
         blocks.append(Heading("The common front", anchor="designs"))
-        blocks += [*_drawn(content, designs, fronts), _ranked(content, designs, fronts, links)]
+        blocks += [*_drawn(asked, designs), _ranked(asked, designs)]
     rows = [
         TableRow(
             (
@@ -90,10 +77,9 @@ def _state(content: Mapping[str, Any], sentence: str) -> State:
     return State(LEVELS[kind], head, (sentence,))
 
 
-def _drawn(
-    content: Mapping[str, Any], designs: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]
-) -> list[Block]:
-    """Return the drawing of the common front; nothing where there is none to draw."""
+def _drawn(asked: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> list[Block]:
+    """Drawing of the common front; nothing where there is none to draw."""
+    content, fronts = asked.content, asked.fronts
     titles = {x["family"]: str(x["title"]) for x in content["families"]}
     own = [replace(fronts[x["family"]].designs[x["own_rank"] - 1], rank=x["rank"], note=x["note"]) for x in designs]
     families = [titles[x["family"]] for x in designs]
@@ -105,12 +91,8 @@ def _drawn(
     return [Figure(own_colours, told, "Each point is a design, its shape and colour the family.")]
 
 
-def _ranked(
-    content: Mapping[str, Any],
-    designs: Sequence[Mapping[str, Any]],
-    fronts: Mapping[str, ParetoFront],
-    links: Mapping[str, str],
-) -> TableBlock:
+def _ranked(asked: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> TableBlock:
+    content, fronts, links = asked.content, asked.fronts, asked.links
     units = {name: unit for front in fronts.values() for name, unit in front.frame.units.items()}
     titles = {x["family"]: str(x["title"]) for x in content["families"]}
     columns = [

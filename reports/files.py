@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from synth.drawing import Drawing
-from synth.errors import ExtraNeededError, InputError
+from synth.errors import InputError
 from synth.results import Design, ParetoFront, foremost, named_designs
-from synth.results.batch_record import BatchRecord
-from synth.results.calculation import Calculation
+from synth.results.hookspecs import Made
+from synth.results.report_request import BatchReportRequest, ComparisonRequest, ReportRequest
 
-from .about import About
 from .batch_report import batch_report
 from .batch_workbook import batch_workbook
 from .comparison_report import comparison_report
@@ -35,120 +33,41 @@ from .workbook_front import front_workbook
 
 FORMATS = ("html", "explorer", "pdf", "xlsx", "json", "svg", "dxf", "step", "glb")
 BODIES = {"step": step_of, "glb": glb_of}  # of what is round in drawings
-Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
 MAKERS: Mapping[str, Callable[..., str | bytes]] = {"svg": svg_of, "dxf": dxf_of, **BODIES}  # of drawings
 
 
-@dataclass(frozen=True)
-class ReportRequest:
-    """What is to be reported.
-
-    Parameters
-    ----------
-    calculation : Calculation
-    front : ParetoFront, optional
-    design : Design, optional
-        One design that was checked, in place of a front.
-    name : str
-        Of the files of such a design.
-    chosen : list of str
-        Designs of the front that get sheets: ranks, or ``knee``.
-    full : int
-        Designs that the front report tells in full.
-    formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``,
-        ``step``, ``glb``.
-    length : {"summary", "normal", "full"}
-        Of the sheets.
-    about : About
-    fonts : list of Path
-        Folders of fonts for the PDF beside its own.
-    rows : mapping
-        Slot -> rows that may be chosen in live workbooks.
-    drawings : mapping
-        Rank, or 0 for a design that was checked -> Drawing.
-    prices, near_equals, curves : list
-        What else stands in the folder of the front.
-    """
-
-    calculation: Calculation
-    front: ParetoFront | None = None
-    design: Design | None = None
-    name: str = "design"
-    chosen: Sequence[str] = ("1",)
-    full: int = 5
-    formats: Sequence[str] = ("html",)
-    length: str = "normal"
-    about: About = field(default_factory=About)
-    fonts: Sequence[Path] = ()
-    rows: Mapping[str, Sequence[Mapping[str, Any]]] = field(default_factory=dict)
-    drawings: Mapping[int, Drawing] = field(default_factory=dict)
-    prices: Sequence[Mapping[str, Any]] = ()
-    near_equals: Sequence[Mapping[str, Any]] = ()
-    curves: Sequence[str] = ()
-
-
-def report_files(asked: Mapping[str, Any]) -> Made:
-    """Return the files of a report by name, what else is to be told, and which extras lack for more files.
-
-    Parameters
-    ----------
-    asked : mapping
-        Fields of :class:`ReportRequest`; ``about`` may be a mapping, ``about_folder`` the folder of its file.
+def report_files(asked: ReportRequest) -> Made:
+    """Files of the report of a front or of a design by name, notes, and which extras lack for more files.
 
     Raises
     ------
     InputError
         Something asked is unknown, a design is not on the front, or a record differs from its formulas.
     """
-    told = dict(asked)
-    about = About.of(told.pop("about", None), told.pop("about_folder", None))
-    request = ReportRequest(**told, about=about)
-    if request.length not in LENGTHS:
-        raise InputError("length", request.length, f"one of {', '.join(LENGTHS)}", ("length",))
-    for word in request.formats or [""]:
+    if asked.how.length not in LENGTHS:
+        raise InputError("length", asked.how.length, f"one of {', '.join(LENGTHS)}", ("length",))
+    for word in asked.how.formats or [""]:
         if word not in FORMATS:
             raise InputError("formats", word, f"some of {', '.join(FORMATS)}", ("formats",))
-    return _Files(request).all()
+    return _Files(asked).all()
 
 
-def comparison_files(asked: Mapping[str, Any]) -> Made:
-    """Return the files of the report of several families, what else is to be told, and which extras lack.
-
-    Parameters
-    ----------
-    asked : mapping
-        ``content`` of comparison.json, ``fronts`` and ``links`` by family, ``formats``, ``about``, ``about_folder``,
-        ``fonts``; for the explorer ``calculations`` by family, and ``drawings`` by rank.
-    """
-    about = About.of(asked.get("about"), asked.get("about_folder"))
-    content, fronts, links = asked["content"], asked["fronts"], asked["links"]
-    document = comparison_report(content, fronts, links, about)
-    formats = Formats(asked["formats"])
-    files, notes = documents({"report": document}, formats, asked["fonts"])
-    if "explorer" in asked["formats"]:
-        beside = {family: file for family, file in links.items() if "explorer" not in file}
-        calculations, drawings = asked["calculations"], asked["drawings"]
-        record = comparison_record(content, fronts, calculations, about=about, links=beside, drawings=drawings)
-        files["explorer.html"] = explorer_page(record)
+def comparison_files(asked: ComparisonRequest) -> Made:
+    """Files of the report of several families by name, notes, and which extras lack for more files."""
+    formats = Formats(asked.how.formats)
+    files, notes = documents({"report": comparison_report(asked)}, formats, asked.how.fonts)
+    if "explorer" in asked.how.formats:
+        beside = {family: file for family, file in asked.links.items() if "explorer" not in file}
+        files["explorer.html"] = explorer_page(comparison_record(replace(asked, links=beside)))
     return files, notes, formats.lacking
 
 
-def batch_files(asked: Mapping[str, Any]) -> Made:
-    """Return the files of the report of a batch, what else is to be told, and which extras lack for more files.
-
-    Parameters
-    ----------
-    asked : mapping
-        ``batch``, a :class:`~synth.results.batch_record.BatchRecord`; ``formats``, some of ``html``, ``pdf`` and
-        ``xlsx``; ``about``, ``about_folder``, ``fonts``.
-    """
-    batch: BatchRecord = asked["batch"]
-    about = About.of(asked.get("about"), asked.get("about_folder"))
-    formats = Formats(asked["formats"])
-    files, notes = documents({"report": batch_report(batch, about)}, formats, asked["fonts"])
+def batch_files(asked: BatchReportRequest) -> Made:
+    """Files of the report of a batch by name, notes, and which extras lack for more files."""
+    formats = Formats(asked.how.formats)
+    files, notes = documents({"report": batch_report(asked.batch, asked.how.about)}, formats, asked.how.fonts)
     if formats.make("xlsx"):
-        files["batch.xlsx"] = batch_workbook(batch, about)
+        files["batch.xlsx"] = batch_workbook(asked.batch, asked.how.about)
     return files, notes, formats.lacking
 
 
@@ -169,7 +88,7 @@ def documents(
 
 class _Files:
     def __init__(self, request: ReportRequest) -> None:
-        self.request, self.formats = request, Formats(request.formats)
+        self.request, self.formats = request, Formats(request.how.formats)
         self.files: dict[str, str | bytes] = {}
         self.notes: list[str] = []
 
@@ -181,7 +100,7 @@ class _Files:
         request, formats = self.request, self.formats
         if request.front is None:
             assert request.design is not None
-            if "explorer" in request.formats:
+            if "explorer" in request.how.formats:
                 raise InputError(
                     "formats", "explorer", "the folder of a front with it: this is one design", ("formats",)
                 )
@@ -197,13 +116,13 @@ class _Files:
             FrontReportRequest(
                 front=front,
                 calculation=request.calculation,
-                about=request.about,
+                about=request.how.about,
                 full=request.full,
                 sheets=sheets,
                 prices=request.prices,
                 near_equals=request.near_equals,
                 curves=request.curves,
-                explorer="explorer.html" if "explorer" in request.formats else "",
+                explorer="explorer.html" if "explorer" in request.how.formats else "",
                 drawings={
                     d.rank or 0: self._picture(d, f"drawing-{d.rank}")
                     for d in foremost(front, request.full)
@@ -212,7 +131,7 @@ class _Files:
             )
         )
         self._document(document, "report")
-        if "explorer" in request.formats:
+        if "explorer" in request.how.formats:
             self.files["explorer.html"] = self._explorer(front, sheets, names)
         if formats.make("xlsx"):
             self.files["designs.xlsx"] = front_workbook(front, request.calculation)
@@ -235,28 +154,20 @@ class _Files:
         for rank, name in names.items():
             drawn = {f"Drawing, {word.upper()}": file for word, file in self._drawing_files(rank, name).items()}
             beside[rank] = {**beside.get(rank, {}), **drawn}
-        record = explorer_record(
-            front,
-            request.calculation,
-            about=request.about,
-            prices=request.prices,
-            files=beside,
-            drawings=request.drawings,
-        )
-        return explorer_page(record)
+        return explorer_page(explorer_record(request, beside))
 
     def _document(self, document: Document, name: str) -> None:
-        files, notes = documents({name: document}, self.formats, self.request.fonts)
+        files, notes = documents({name: document}, self.formats, self.request.how.fonts)
         self.files |= files
         self.notes += [note for note in notes if note not in self.notes]
 
     def _sheet(self, design: Design, name: str) -> None:
         request = self.request
         drawing = request.drawings.get(design.rank or 0)
-        picture = "" if drawing is None or request.length == "summary" else self._picture(design)
-        sheet = SheetRequest(request.calculation, design, request.front, request.about, request.length, picture)
+        picture = "" if drawing is None or request.how.length == "summary" else self._picture(design)
+        sheet = SheetRequest(request.calculation, design, request.front, request.how.about, request.how.length, picture)
         self._document(design_sheet(sheet), f"{name}_sheet")
-        if "json" in request.formats:
+        if "json" in request.how.formats:
             content = sheet_record(request.calculation, design)
             self.files[f"{name}_sheet.json"] = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
         if self.formats.make("xlsx"):
@@ -265,18 +176,18 @@ class _Files:
                 proven += ". NOMINAL POINT ONLY: this workbook does not compute what scatters. "
                 proven += over_range_in_words(design)
             self.files[f"{name}_live.xlsx"] = live_workbook(
-                request.calculation, design, request.rows, request.about, proven
+                request.calculation, design, request.rows, request.how.about, proven
             )
         for word, file in self._drawing_files(design.rank or 0, name).items():
-            told = design.frame.title, program_name(request.front), request.about
+            told = design.frame.title, program_name(request.front), request.how.about
             self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
-        bodies = [word for word in BODIES if word in request.formats]
+        bodies = [word for word in BODIES if word in request.how.formats]
         if drawing is not None and bodies and (not round_areas(drawing) or any(map(self.formats.make, bodies))):
             self._tell_left_out(drawing)
 
     def _picture(self, design: Design, prefix: str = "drawing") -> str:
         """Return the drawing of a design as SVG, with names inside that begin so."""
-        told = design.frame.title, program_name(self.request.front), self.request.about
+        told = design.frame.title, program_name(self.request.front), self.request.how.about
         return svg_of(self.request.drawings[design.rank or 0], *told, prefix)
 
     def _tell_left_out(self, drawing: Drawing) -> None:

@@ -12,10 +12,10 @@ from synth.order.feasibility import binds, most_used
 from synth.results import Design, ParetoFront, foremost
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
+from synth.results.report_request import About
 from synth.text.numbers import DIGITS, FULL_DIGITS, MINUS, gap_text, page_text, signed, used_share
 from synth.units import miss_text, unit_text
 
-from .about import About
 from .formula.layout import Amount, Letter
 from .front_plot import front_in_words, front_svg
 from .numbers import in_its_unit, printed

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence, Sized
 from dataclasses import dataclass
-from typing import Any
 
 from rich import box
 from rich.console import Console
@@ -13,6 +12,7 @@ from rich.table import Table
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
 from synth.results.design import reached_limits
+from synth.results.hookspecs import FrontOfFamilies
 from synth.results.rating_tables import rating_row
 from synth.text.numbers import SHARE_DIGITS, column_texts
 from synth.text.plain_text import words, wrapped
@@ -194,12 +194,12 @@ def _side_by_side(shown: Sequence[Design], columns: Iterable[_Column], width: in
     return [_grid(group) for group in groups]
 
 
-def print_common_front(found: Any, console: Console, every: bool = False) -> None:
+def print_common_front(found: FrontOfFamilies, console: Console, every: bool = False) -> None:
     """Print the common front of several families by what one decides by, as far as all of them have it.
 
     Parameters
     ----------
-    found : Comparison
+    found : FrontOfFamilies
         With designs.
     console, every
         As for :func:`print_front`.

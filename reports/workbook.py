@@ -10,12 +10,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from synth.results import Design
+from synth.results import Design, PartRow
 from synth.results.calculation import Calculation, NamedQuantity
+from synth.results.report_request import About
 from synth.text.numbers import typed_number
 from synth.units import header
 
-from .about import About
 from .excel_formula import from_si_text, number_text, to_si_text
 from .excel_sheets import Book, Sheet, cell
 from .workbook_cells import SAME, Cells, Formulas, RowsOffered, change, in_unit, legal_names
@@ -37,7 +37,7 @@ FOLLOWS = "follows from others until a number is typed"
 def live_workbook(
     calculation: Calculation,
     design: Design,
-    rows: Mapping[str, Sequence[Mapping[str, Any]]],
+    rows: Mapping[str, Sequence[PartRow]],
     about: About | Mapping[str, str] | None = None,
     certificate: str = "",
 ) -> bytes:
@@ -77,7 +77,7 @@ class _Live:
         self,
         calculation: Calculation,
         design: Design,
-        rows: Mapping[str, Sequence[Mapping[str, Any]]],
+        rows: Mapping[str, Sequence[PartRow]],
         about: Mapping[str, str],
         certificate: str,
     ) -> None:

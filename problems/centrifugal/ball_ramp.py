@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
 from .. import centrifugal as blocks
@@ -163,7 +163,7 @@ class CentrifugalBallRamp(DesignProblem):
         )
         blocks.declare_objectives(d, scope=scope)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Friction at the balls and the force that the torque demands; of a design forces and travel over speed.
 
         Parameters
@@ -187,7 +187,7 @@ class CentrifugalBallRamp(DesignProblem):
             frames |= curves.over_speed(self, spec, curves.ball_ramp_path(spec, design))
         return frames
 
-    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame:
         """State of the flyweights at a speed, the pressing force and the torque that can be carried.
 
         Parameters
@@ -201,7 +201,7 @@ class CentrifugalBallRamp(DesignProblem):
         """
         return states.of_path(spec, curves.ball_ramp_path(spec, design), point["speed"])
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, ramp and spring.
 
         Parameters

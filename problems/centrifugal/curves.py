@@ -17,7 +17,7 @@ from ..mechanics import centrifugal, two_spring
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 POINTS = 41
 MM, RPM = 1e-3, 2 * math.pi / 60
@@ -143,7 +143,7 @@ def _branch(
     return frame
 
 
-def ball_ramp_path(spec: Mapping[str, Any], design: Any) -> Path:
+def ball_ramp_path(spec: Mapping[str, Any], design: Design) -> Path:
     """Return the regimes of device A: at rest, travelling, clamping.
 
     Parameters
@@ -188,7 +188,7 @@ def ball_ramp_path(spec: Mapping[str, Any], design: Any) -> Path:
     )
 
 
-def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> Path:
+def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> Path:
     """Return the regimes of device B, with balls or levers.
 
     Parameters
@@ -256,7 +256,7 @@ def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Any
     )
 
 
-def torque_per_force(design: Any) -> float:
+def torque_per_force(design: Design) -> float:
     """Return the torque of the linings per newton of clamp force [m]."""
     value = design.values
     radius = centrifugal.lining_radius(value["lining_inner_radius"], value["lining_outer_radius"])

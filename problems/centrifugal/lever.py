@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from synth import Design
 from synth.declaration import Block, Declaration, Requirement, Variable
 
 from .. import centrifugal as blocks
@@ -155,7 +156,7 @@ class CentrifugalLever(LeverClutch):
         )
         blocks.declare_objectives(d, scope=scope)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, lever and spring.
 
         Parameters

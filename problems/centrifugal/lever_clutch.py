@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 
 from .. import centrifugal as blocks
 from . import curves as centrifugal_curves
@@ -25,7 +25,7 @@ class LeverClutch(DesignProblem):
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
     operating_point = states.OPERATING_POINT
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, Any]:
         """Return clamp force over lining; of a design what happens over the speed, with new and with worn linings.
 
         Parameters
@@ -44,7 +44,7 @@ class LeverClutch(DesignProblem):
             return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
         return lever_curves.over_speed(self, spec, design, self.kind)
 
-    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame:
         """State of the flyweights at a speed, the pressing force and the torque that can be carried.
 
         Parameters

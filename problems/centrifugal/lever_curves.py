@@ -16,12 +16,12 @@ from .levers import RECONSTRUCTED
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 POINTS = 41
 
 
-def rod_lever(spec: Mapping[str, Any], design: Any) -> RodLever:
+def rod_lever(spec: Mapping[str, Any], design: Design) -> RodLever:
     """Return the lever with a headed rod of a design.
 
     Parameters
@@ -46,7 +46,7 @@ def rod_lever(spec: Mapping[str, Any], design: Any) -> RodLever:
     )
 
 
-def reversed_lever(spec: Mapping[str, Any], design: Any) -> ReversedLever:
+def reversed_lever(spec: Mapping[str, Any], design: Design) -> ReversedLever:
     """Return the reversed lever of a design.
 
     Parameters
@@ -110,7 +110,7 @@ REVERSED = LeverKind(
 
 
 def over_speed(
-    problem: DesignProblem, spec: Mapping[str, Any], design: Any, kind: LeverKind
+    problem: DesignProblem, spec: Mapping[str, Any], design: Design, kind: LeverKind
 ) -> dict[str, pd.DataFrame]:
     """Return everything of a lever over the speed.
 
@@ -142,7 +142,7 @@ def worn(lever: RodLever | ReversedLever, spec: Mapping[str, Any]) -> RodLever |
     return replace(lever, contact_travel=lever.contact_travel + spec["lining_wear"])
 
 
-def columns_of(motion: Motion, design: Any, own: Sequence[tuple[str, str, float]]) -> dict[str, Any]:
+def columns_of(motion: Motion, design: Design, own: Sequence[tuple[str, str, float]]) -> dict[str, Any]:
     """Columns of a motion, by heading.
 
     Parameters
@@ -171,7 +171,7 @@ def columns_of(motion: Motion, design: Any, own: Sequence[tuple[str, str, float]
 def _over_speed(
     problem: DesignProblem,
     spec: Mapping[str, Any],
-    design: Any,
+    design: Design,
     kind: LeverKind,
     lever: RodLever | ReversedLever,
     words: str,

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     XY,
     Angle,
@@ -39,7 +40,7 @@ class Leg:
 
 
 def lever_drawing(
-    spec: Mapping[str, Any], design: Any, *, arms: Sequence[Leg], pushed: str, springs: Sequence[Spring]
+    spec: Mapping[str, Any], design: Design, *, arms: Sequence[Leg], pushed: str, springs: Sequence[Spring]
 ) -> Drawing:
     """Return the drawing of a clutch with weights on levers.
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from synth import Design
 from synth.drawing import Angle, Area, Circle, Dimension, Drawable, Drawing, Line, LineKind, View, disc
 
 from ..drawing_parts import Sizes
@@ -17,7 +18,7 @@ OVER = 0.5  # of a ball: how far ramp and face are drawn beyond it
 
 
 def ramp_drawing(
-    spec: Mapping[str, Any], design: Any, *, travel: str, pushed: str, springs: Sequence[Spring]
+    spec: Mapping[str, Any], design: Design, *, travel: str, pushed: str, springs: Sequence[Spring]
 ) -> Drawing:
     """Return the drawing of a clutch with balls.
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth import Design
+
 from .. import centrifugal as blocks
 from .. import practice
 from ..mechanics import centrifugal_levers as formulas
@@ -145,7 +147,7 @@ class CentrifugalReversed(LeverClutch):
         )
         blocks.declare_objectives(d, scope=scope)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, lever and springs.
 
         Parameters

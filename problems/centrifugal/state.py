@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth import Design
 from synth.declaration import Setting
 
 from ..mechanics import centrifugal
@@ -115,7 +116,7 @@ def of_path(spec: Mapping[str, Any], path: Path, speed: float) -> pd.DataFrame:
 
 def of_lever(
     spec: Mapping[str, Any],
-    design: Any,
+    design: Design,
     kind: lever_curves.LeverKind,
     speed: float,
 ) -> pd.DataFrame:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
 from .. import centrifugal as blocks
@@ -183,7 +183,7 @@ class CentrifugalTwoSpring(DesignProblem):
         blocks.advise_stop_load(d, stop_force=load, clamp_force=clamp, rules=rules)
         blocks.declare_objectives(d, scope=scope)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Curves that the torque demands; of a design forces and travel over speed, both branches.
 
         Parameters
@@ -206,7 +206,7 @@ class CentrifugalTwoSpring(DesignProblem):
             frames |= curves.over_speed(self, spec, curves.two_spring_path(self, spec, design))
         return frames
 
-    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame:
         """State of the flyweights at a speed, the pressing force and the torque that can be carried.
 
         Parameters
@@ -220,7 +220,7 @@ class CentrifugalTwoSpring(DesignProblem):
         """
         return states.of_path(spec, curves.two_spring_path(self, spec, design), point["speed"])
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, ramp or lever, and springs.
 
         Parameters

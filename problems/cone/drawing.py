@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     XY,
     Angle,
@@ -54,7 +55,7 @@ class _Face:
         return self.at(0.0, low), self.at(self.wide, low), self.at(self.wide, high), self.at(0.0, high)
 
 
-def cone_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+def cone_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
     """Return the drawing of a cone clutch.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
 from synth.text.numbers import number_text, typed_number
 
@@ -214,7 +214,7 @@ class ConeClutch(DesignProblem):
         friction.declare_envelope(d, duty=duty, force=shape.force, diameter=size.diameter, length=size.length)
         self._declare_objectives(d)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through the engaged cones."""
         from . import drawing as cone_drawing  # costly to import; searches do without
 
@@ -551,11 +551,11 @@ class ConeClutch(DesignProblem):
             source="Neale, Tribology Handbook, Table 7.4; S0 (Szoke 1966), cooling of the plates",
         )
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the conical shell over repeated engagements."""
         return startup_curves.startup_frames(self, spec, design)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return axial forces over the half angle, for some friction values and of a design, and the start-up.
 
         Parameters
@@ -608,7 +608,7 @@ class ConeClutch(DesignProblem):
         }
         return frame
 
-    def _force_over_angle(self, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    def _force_over_angle(self, spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
         import pandas as pd
 
         value, step, pair = design.values, design.steps, design.parts["friction_pair"]

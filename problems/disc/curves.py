@@ -17,7 +17,7 @@ from ..sources import S1
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 LININGS_SHOWN = (0.02, 0.4)  # friction times allowed pressure [N/mm2], about from wet to ceramic linings
 
@@ -62,7 +62,7 @@ def diameter_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.
     return frame
 
 
-def pressure_over_radius(problem: DesignProblem, design: Any) -> pd.DataFrame:
+def pressure_over_radius(problem: DesignProblem, design: Design) -> pd.DataFrame:
     """Pressure on the lining over the radius, new and worn in.
 
     Parameters
@@ -103,7 +103,7 @@ def pressure_over_radius(problem: DesignProblem, design: Any) -> pd.DataFrame:
     return frame
 
 
-def torque_over_force(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+def torque_over_force(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
     """Torque and pressure over the axial force, new and worn in.
 
     Parameters

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     Balloon,
     Detail,
@@ -118,7 +119,7 @@ def disc_detail(size: Sizes, discs: DrawnDiscs, letter: str = "X") -> Detail:
     )
 
 
-def disc_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+def disc_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
     """Return the drawing of a disc clutch.
 
     Parameters

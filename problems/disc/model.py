@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
 from .. import friction, practice, wear
@@ -124,17 +124,17 @@ class DiscClutch(DesignProblem):
             d.objective(name, default=False)
         wear.offer_wear_life(d)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through the released discs, with their hubs where the whole clutch is counted."""
         from . import drawing as disc_drawing  # costly to import; searches do without
 
         return disc_drawing.disc_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""
         return startup_curves.startup_frames(self, spec, design)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return the size a torque needs and what starts cost; of a design pressure over radius, torque over force.
 
         Parameters

@@ -18,7 +18,7 @@ from . import formulas as pot_magnet
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 SOURCE = f"{S4}, section 6.6; derived, not measured"
 
@@ -45,7 +45,7 @@ class Built:
         return np.maximum(pot_magnet.magnet_force(flux_density, self.shape) - self.return_force, 0.0)
 
 
-def built(spec: Mapping[str, Any], design: Any) -> Built:
+def built(spec: Mapping[str, Any], design: Design) -> Built:
     """Sizes of the magnet of a design as the formulas take them."""
     value = design.values
     shape = pot_magnet.PotMagnet(
@@ -60,7 +60,7 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
     return Built(circuit, spec["return_spring_force"])
 
 
-def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
+def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> CoilDrawings:
     """Curves of the coil of a design; torque is in proportion to the force on the pack.
 
     Parameters
@@ -129,7 +129,7 @@ def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataF
     )
 
 
-def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
     """Pull of the magnet over the gap at each pole, at the current of the design, with and without iron.
 
     Parameters

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     Area,
     Balloon,
@@ -131,7 +132,7 @@ def _magnet(size: Sizes, start: float, top: float, first: int) -> _Magnet:
     )
 
 
-def plate_magnet_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+def plate_magnet_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
     """Return the drawing of a magnet that presses a multi-plate pack.
 
     Parameters
@@ -232,7 +233,7 @@ def plate_magnet_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool
     )
 
 
-def disc_magnet_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+def disc_magnet_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
     """Return the drawing of a magnet that presses dry discs.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
 from .. import cost, friction, practice, wear
@@ -112,14 +112,14 @@ class ElectromagneticClutch(DesignProblem):
             if pack == "multi_plate":
                 d.objective("inner_inertia", default=False)
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pack over repeated engagements.
 
         The torque rises in ``ramp_time``; the rise of the current is not simulated.
         """
         return startup_curves.startup_frames(self, spec, design)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return the curves of pack and start-up; of a design torque over current and temperature, force over gap.
 
         Parameters
@@ -148,7 +148,7 @@ class ElectromagneticClutch(DesignProblem):
             frames["heat_balance"] = coil.heat_balance()
         return frames
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through pack, armature and pot, with details of a lining and of the gap."""
         from . import drawing as magnet_drawing  # costly to import; searches do without
 

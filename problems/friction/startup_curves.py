@@ -23,7 +23,7 @@ from ..mechanics import ring as ring_formulas
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
     from ..mechanics.startup_simulation import StartupRun
 
@@ -41,7 +41,7 @@ SETTINGS: Mapping[str, Setting] = {
 WORST = "worst_case"
 
 
-def startup_frames(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+def startup_frames(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
     """Simulate the start-up of a friction clutch of any family.
 
     Parameters
@@ -88,7 +88,7 @@ def startup_frames(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
     return frames
 
 
-def simulate_duty(problem: DesignProblem, spec: Mapping[str, Any], design: Any, torque: float) -> StartupRun:
+def simulate_duty(problem: DesignProblem, spec: Mapping[str, Any], design: Design, torque: float) -> StartupRun:
     """Simulate the start-up under the duty of a spec.
 
     Parameters
@@ -182,7 +182,7 @@ def _frame(problem: DesignProblem, spec: Mapping[str, Any], run: StartupRun, mor
     return frame
 
 
-def _temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun) -> pd.DataFrame:
+def _temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Design, run: StartupRun) -> pd.DataFrame:
     from ..mechanics.startup_simulation import simulate_switching
 
     capacity, surface = design.steps["heat_capacity"], design.steps["cooled_area"]
@@ -198,7 +198,7 @@ def _temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any, r
 RAMPS = (0.0, 0.5, 1.0, 2.0)  # in units of omega1 J2/M_load, the time that the load torque alone would take
 
 
-def startup_over_torque(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
+def startup_over_torque(problem: DesignProblem, spec: Mapping[str, Any], design: Design | None = None) -> pd.DataFrame:
     """Friction work, slip time and peak power over the torque of the start-up: what the duty alone decides.
 
     Parameters

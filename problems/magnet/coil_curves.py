@@ -15,7 +15,7 @@ from ..mechanics import magnetics
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 POINTS = 121
 ZERO_CELSIUS = 273.15  # [K]
@@ -70,7 +70,7 @@ class Warmth:
         ]
 
 
-def warmth(spec: Mapping[str, Any], design: Any, limited_by: str) -> Warmth:
+def warmth(spec: Mapping[str, Any], design: Design, limited_by: str) -> Warmth:
     """Heating and cooling of the body of a design; ``limited_by`` says whose limit it is."""
     step = design.steps
     return Warmth(
@@ -133,7 +133,7 @@ class CoilDrawings:
     """
 
     problem: DesignProblem
-    design: Any
+    design: Design
     heat: Warmth
     torque_of: Callable[[np.ndarray], Any]
     torques: Sequence[dict[str, Any]]

@@ -18,7 +18,7 @@ from . import formulas as powder
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 POLE_LENGTHS = (0.01, 0.02, 0.04)  # [m]
 SOURCE = f"{S4} [P1] to [P8]; the shear curve of the powder is unverified"
@@ -49,7 +49,7 @@ class Built:
         return powder.torque(stress, layout.gap_radius, layout.pole_length)
 
 
-def built(spec: Mapping[str, Any], design: Any) -> Built:
+def built(spec: Mapping[str, Any], design: Design) -> Built:
     """Sizes of a design as the formulas take them."""
     value, row = design.values, design.parts["powder"]
     still = design.choices["coil"] == "stationary"
@@ -105,7 +105,7 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
     return frame
 
 
-def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
+def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> CoilDrawings:
     """Curves of the coil of a design.
 
     Parameters

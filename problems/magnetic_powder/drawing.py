@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     Area,
     Balloon,
@@ -47,7 +48,7 @@ class _Places:
         self.coil = self.bore + size("coil_height")
 
 
-def powder_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool) -> Drawing:
+def powder_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
     """Return the drawing of a magnetic-powder clutch.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
 
 from .. import cost, practice
@@ -437,13 +437,13 @@ class MagneticPowderClutch(DesignProblem):
                 ],
             )
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through rotor, gaps, body and coil; of a complete clutch shields and shaft as well."""
         from . import drawing as powder_drawing  # costly to import; searches do without
 
         return powder_drawing.powder_drawing(spec, design, complete=self.option("mass_scope") == "complete")
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return the shear stress that a torque needs; of a design torque over current and temperature, heat balance.
 
         Parameters

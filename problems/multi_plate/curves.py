@@ -16,7 +16,7 @@ from ..sources import S0
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 IDEAL, FIRST = "no guide friction", "geometric series (5)"
 SERIES = {
@@ -41,7 +41,7 @@ def _limits(step: Mapping[str, float], threshold: float) -> list[dict[str, Any]]
     return [{"x": float(x), "label": f"worth while to {number_text(float(x), 3)} {label}"} for label, x in named]
 
 
-def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
+def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Design | None = None) -> pd.DataFrame:
     """Torque over the number of friction surfaces by every series, exact and ideal, with the limits (14) to (16).
 
     Parameters
@@ -133,7 +133,7 @@ def _sum_factor_over_plates(problem: DesignProblem, spec: Mapping[str, Any]) -> 
     return frame
 
 
-def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
     """Contact force and pressure on every friction surface, counted from the actuator.
 
     Parameters

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     Area,
     Balloon,
@@ -149,7 +150,7 @@ def pack_detail(size: Sizes, pack: DrawnPack, *, wall: float, letter: str = "X")
     return Detail(letter, window, dimensions, least=min(lining, core[1] - core[0]))
 
 
-def multi_plate_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool, piston: bool) -> Drawing:
+def multi_plate_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, piston: bool) -> Drawing:
     """Return the drawing of a multi-plate clutch.
 
     Parameters

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Declaration, Part
 
 from .. import cost, friction, practice, wear
@@ -161,11 +161,11 @@ class MultiPlateClutch(DesignProblem):
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
         self._declare_objectives(d, scope=scope)
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the steel plates over repeated engagements."""
         return startup_curves.startup_frames(self, spec, design)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return torque over plates and start-up over torque; with a design also force and pressure along the pack."""
         frames = {
             "torque_over_plates": pack_curves.torque_over_plates(self, spec, design),
@@ -175,7 +175,7 @@ class MultiPlateClutch(DesignProblem):
             frames["force_along_pack"] = pack_curves.force_along_pack(self, spec, design)
         return frames
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through the released clutch; the pack alone where only that is counted."""
         from . import drawing as pack_drawing  # costly to import; searches do without
 

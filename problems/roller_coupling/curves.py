@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth import Design
 from synth.text.numbers import number_text
 
 from ..sources import EXTENDS_S3, S3
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+def pin_force(spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
     """Return forces on a pin over the arm radius; the float and its centrifugal force are those of the design."""
     import pandas as pd
 
@@ -97,7 +98,7 @@ def _turn(spec: Mapping[str, Any], offset: float | None = None) -> kinematics.Tu
     return kinematics.turn(spec["offset"], spec["float_distance"], spec["shaft_angle"], spec["guide_angle"])
 
 
-def one_turn(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+def one_turn(spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
     """Return positions of the float, roller gaps and forces of a design over one turn, from exact kinematics."""
     import pandas as pd
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     XY,
     Angle,
@@ -97,7 +98,7 @@ class _Shape:
         return [*first, (self.arm * x, self.arm * y), (-self.arm * x, -self.arm * y)]
 
 
-def coupling_drawing(spec: Mapping[str, Any], design: Any) -> Drawing:
+def coupling_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
     """Return the drawing of a roller coupling.
 
     Parameters

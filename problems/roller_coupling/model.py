@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import cost, practice
@@ -1034,13 +1034,13 @@ class RollerCoupling(DesignProblem):
 
     # -- curves and motion -------------------------------------------------------------------------
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section along one guide, and the float with rollers and pins from the front."""
         from . import drawing as coupling_drawing  # costly to import; searches do without
 
         return coupling_drawing.coupling_drawing(spec, design)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return the force on a pin over the arm radius, of the torque alone or of a design, and of angled shafts."""
         found: dict[str, pd.DataFrame] = {}
         if design is not None:
@@ -1051,7 +1051,7 @@ class RollerCoupling(DesignProblem):
             found["angled_shafts"] = curves.angled_shafts(spec)
         return found
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return positions of the float, roller gaps and forces over one turn, from exact kinematics."""
         return {"motion": curves.one_turn(spec, design)}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import practice
@@ -304,13 +304,13 @@ class ActuatedWrapSpringClutch(DesignProblem):
         if rules is not None:
             d.objective("length")
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, Any]:
         """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through hubs, spring and collar, engaged, and a detail of the coils."""
         from . import drawing as wrap_spring  # costly to import; searches do without
 

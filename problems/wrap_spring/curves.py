@@ -15,7 +15,7 @@ from . import formulas
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth import DesignProblem
+    from synth import Design, DesignProblem
 
 POINTS = 161
 MM, MEGA, RPM = 1e-3, 1e6, 2 * math.pi / 60
@@ -75,7 +75,7 @@ class Fitted:
         return formulas.wire_stress(bending, tension, self.width, self.thickness)
 
 
-def fitted(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> Fitted:
+def fitted(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> Fitted:
     """Return the figures of a design that both fits need.
 
     Parameters

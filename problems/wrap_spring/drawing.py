@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from synth import Design
 from synth.drawing import (
     Area,
     Balloon,
@@ -128,7 +129,7 @@ class _Spring:
         return Detail("X", window, tuple(dimensions), side="bottom")
 
 
-def interference_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool, seed: bool) -> Drawing:
+def interference_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, seed: bool) -> Drawing:
     """Return the drawing of a clutch with interference fit.
 
     Parameters
@@ -156,7 +157,7 @@ def interference_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool
     )  # fmt: skip
 
 
-def clearance_drawing(spec: Mapping[str, Any], design: Any, *, complete: bool, seed: bool) -> Drawing:
+def clearance_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, seed: bool) -> Drawing:
     """Return the drawing of a clutch with clearance fit, engaged; parameters as for the other one.
 
     What is complete has its control collar.

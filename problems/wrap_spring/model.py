@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth import DesignProblem
+from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import practice, wear
@@ -310,13 +310,13 @@ class WrapSpringClutch(DesignProblem):
             if "overrun_life" in d.derived:
                 d.objective("overrun_life", "max", default=False)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, Any]:
         """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
         if design is None:
             return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
         return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
 
-    def drawing(self, spec: Mapping[str, Any], design: Any) -> Drawing:
+    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through hubs and spring, and a detail of the coils."""
         from . import drawing as wrap_spring  # costly to import; searches do without
 

@@ -16,8 +16,8 @@ from typing import Any
 from synth.drawing import Area, Drawing, Item, Vertex
 from synth.drawing.shapes import arc_of, sides
 from synth.results.drawings import EXTRAS
+from synth.results.report_request import About
 
-from ..about import About
 from ..extras import needed
 
 NO_DATE = "1970-01-01T00:00:00"  # the same drawing gives the same file; dates are told by --about
@@ -55,7 +55,7 @@ def left_out(drawing: Drawing) -> list[Item]:
     return [item for item in drawing.items if item.number not in there]
 
 
-def step_of(drawing: Drawing, title: str, program: str, about: Any = None) -> bytes:
+def step_of(drawing: Drawing, title: str, program: str, about: About | None = None) -> bytes:
     """Return the round parts of a drawing as a STEP file, each by its name.
 
     Parameters
@@ -65,7 +65,7 @@ def step_of(drawing: Drawing, title: str, program: str, about: Any = None) -> by
         Of the family.
     program : str
         What computed the design, with its version.
-    about : About or mapping, optional
+    about : About, optional
         Whose date the file has.
 
     Raises
@@ -74,7 +74,7 @@ def step_of(drawing: Drawing, title: str, program: str, about: Any = None) -> by
         The extra is not installed.
     """
     cad = _cad()
-    date = About.of(about).date
+    date = (about or About()).date
     stamp = f"{date}T00:00:00" if re.fullmatch(r"\d{4}-\d\d-\d\d", date) else NO_DATE
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "drawing.step"
@@ -88,7 +88,7 @@ def step_of(drawing: Drawing, title: str, program: str, about: Any = None) -> by
     return USED.sub(numbered, text)
 
 
-def glb_of(drawing: Drawing, title: str, program: str, about: Any = None) -> bytes:
+def glb_of(drawing: Drawing, title: str, program: str, about: About | None = None) -> bytes:
     """Return the round parts of a drawing as binary glTF; parameters and errors as for :func:`step_of`."""
     cad = _cad()
     with tempfile.TemporaryDirectory() as folder:

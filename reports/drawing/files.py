@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from synth.drawing import Drawing
+from synth.results.report_request import About
 
-from ..about import About
 from .dxf import drawing_dxf
 from .page import paper_sheet
 from .svg import drawing_svg
 
 
-def svg_of(drawing: Drawing, title: str, program: str, about: Any = None, prefix: str = "drawing") -> str:
+def svg_of(drawing: Drawing, title: str, program: str, about: About | None = None, prefix: str = "drawing") -> str:
     """Return a drawing as an SVG file.
 
     Parameters
@@ -22,15 +20,15 @@ def svg_of(drawing: Drawing, title: str, program: str, about: Any = None, prefix
         Of the family.
     program : str
         What computed the design, with its version.
-    about : About or mapping, optional
+    about : About, optional
         What the title block tells.
     prefix : str
         Of the names inside, which must differ where several drawings stand in one page.
     """
-    return drawing_svg(paper_sheet(drawing, title, program, About.of(about)), drawing, prefix)
+    return drawing_svg(paper_sheet(drawing, title, program, about), drawing, prefix)
 
 
-def dxf_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str:
+def dxf_of(drawing: Drawing, title: str, program: str, about: About | None = None) -> str:
     """Return a drawing as a DXF file; parameters as for :func:`svg_of`.
 
     Raises
@@ -38,4 +36,4 @@ def dxf_of(drawing: Drawing, title: str, program: str, about: Any = None) -> str
     InputError
         The extra is not installed.
     """
-    return drawing_dxf(paper_sheet(drawing, title, program, About.of(about)), drawing)
+    return drawing_dxf(paper_sheet(drawing, title, program, about), drawing)

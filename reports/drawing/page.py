@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from synth.drawing import Box2, Detail, Drawing, LineKind, View
+from synth.results.report_request import About
 
-from ..about import About
 from .paper import PaperSheet, PlacedView, Stroke
 from .sheet_blocks import (
     BLOCK,

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from synth.drawing import Drawing, Item, LineKind
+from synth.results.report_request import About
 
-from ..about import About
 from .lettering import LABEL, SMALL, TEXT, fitted, wrapped
 from .paper import Ring, Stroke, Text, scale_label
 

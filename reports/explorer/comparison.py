@@ -6,12 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from synth.drawing import Drawing
-from synth.results import Certificate, Design, ParetoFront
-from synth.results.calculation import Calculation
+from synth.results import Certificate, Design
+from synth.results.report_request import ComparisonRequest
 from synth.text.plain_text import counted
 
-from ..about import About
 from ..front_report import NOT_COVERED
 from ..sheet.design_sheet import as_sentence, program_name
 from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
@@ -19,32 +17,9 @@ from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 TITLE = "Comparison of families"
 
 
-def comparison_record(
-    content: Mapping[str, Any],
-    fronts: Mapping[str, ParetoFront],
-    calculations: Mapping[str, Calculation],
-    *,
-    about: Any = None,
-    links: Mapping[str, str] | None = None,
-    drawings: Mapping[int, Drawing] | None = None,
-) -> dict[str, Any]:
-    """Explorer record of a comparison, as JSON holds it.
-
-    Parameters
-    ----------
-    content : mapping
-        Of comparison.json; its designs have the rank in their family as ``own_rank``.
-    fronts : mapping
-        Family -> its own front, of those that were searched.
-    calculations : mapping
-        Family -> what tells the meaning of its quantities and limits.
-    about : About or mapping, optional
-    links : mapping, optional
-        Family -> file of its report beside the page.
-    drawings : mapping, optional
-        Rank in the common front -> Drawing.
-    """
-    told = _Compared(content, fronts, calculations, About.of(about), links or {}, drawings or {})
+def comparison_record(asked: ComparisonRequest) -> dict[str, Any]:
+    """Explorer record of a comparison, as JSON holds it."""
+    content, fronts, told = asked.content, asked.fronts, _Compared(asked)
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(next(iter(fronts.values()), None)),
@@ -66,23 +41,15 @@ def comparison_record(
 
 
 class _Compared:
-    def __init__(
-        self,
-        content: Mapping[str, Any],
-        fronts: Mapping[str, ParetoFront],
-        calculations: Mapping[str, Calculation],
-        about: About,
-        links: Mapping[str, str],
-        drawings: Mapping[int, Drawing],
-    ) -> None:
-        self.content, self.fronts, self.about, self.links = content, fronts, about, links
-        self.drawings = drawings
-        self.records = {family: RecordOf(fronts[family], calculations[family], about) for family in calculations}
+    def __init__(self, asked: ComparisonRequest) -> None:
+        self.content, self.fronts, self.about = asked.content, asked.fronts, asked.how.about
+        self.links, self.drawings = asked.links, asked.drawings
+        self.records = {name: RecordOf(self.fronts[name], x, self.about) for name, x in asked.calculations.items()}
         self.titles = self._titles()
         self.quantities: dict[str, dict[str, Any]] = {}
         self.units: dict[str, str] = {}
         self.limits: dict[tuple[str, str, str], dict[str, Any]] = {}
-        listed = dict.fromkeys(x["family"] for x in content["designs"])
+        listed = dict.fromkeys(x["family"] for x in self.content["designs"])
         for family in listed or self.records:
             self._gather(family)
 

@@ -11,10 +11,10 @@ from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.design import reached_limits
 from synth.results.rating_tables import yield_percent
+from synth.results.report_request import About, ReportRequest
 from synth.text.numbers import typed_number
 from synth.units import finite_from_si, miss_text, unit_text
 
-from ..about import About
 from ..drawing.files import svg_of
 from ..front_report import NOT_COVERED
 from ..reasons import SIGN_OF, why
@@ -28,33 +28,20 @@ HOW_RATED = ("mode", "samples", "seed", "confidence")  # in what is asked of rob
 WORDS = {"global": "Proven", "exhaustive": "Every combination solved", "heuristic": "Not proven"}
 
 
-def explorer_record(
-    front: ParetoFront,
-    calculation: Calculation,
-    *,
-    about: Any = None,
-    prices: Sequence[Mapping[str, Any]] = (),
-    files: Mapping[int, Mapping[str, str]] | None = None,
-    drawings: Mapping[int, Drawing] | None = None,
-) -> dict[str, Any]:
+def explorer_record(asked: ReportRequest, files: Mapping[int, Mapping[str, str]] | None = None) -> dict[str, Any]:
     """Explorer record of a front, as JSON holds it.
 
     Parameters
     ----------
-    front : ParetoFront
-    calculation : Calculation
-        Tells the meaning, symbol and source of quantities and limits.
-    about : About or mapping, optional
-        A title, and the facts of its head.
-    prices : list of mapping
-        Rows of prices.json, if it is there.
+    asked : ReportRequest
+        Of a front; drawings are shown as pictures, in which nothing runs.
     files : mapping
         Rank -> label -> file beside the page.
-    drawings : mapping
-        Rank -> Drawing; it is shown as a picture, in which nothing runs.
     """
-    told = RecordOf(front, calculation, About.of(about))
-    pictures = {rank: told.picture(drawing) for rank, drawing in (drawings or {}).items()}
+    front = asked.front
+    assert front is not None
+    told = RecordOf(front, asked.calculation, asked.how.about)
+    pictures = {rank: told.picture(drawing) for rank, drawing in asked.drawings.items()}
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
@@ -70,7 +57,7 @@ def explorer_record(
         "limits": [told.limit(name) for name in front.frame.limit_units],
         "parts": told.parts(),
         "spec": told.spec(),
-        "designs": [told.design(d, prices, (files or {}).get(d.rank or 0, {}), pictures) for d in front.designs],
+        "designs": [told.design(d, asked.prices, (files or {}).get(d.rank or 0, {}), pictures) for d in front.designs],
     }
 
 

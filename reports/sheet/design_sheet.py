@@ -12,9 +12,9 @@ from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, 
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import robust_sentence, yield_text
 from synth.results.ratings import NOT_SHOWN
+from synth.results.report_request import About
 from synth.text.numbers import gap_text, used_share
 
-from ..about import About
 from ..formula.layout import Amount, Letter, Word, textbook
 from ..numbers import in_step, printed
 from .blocks import (

@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from synth.analysis.calculation import calculation, calculation_of
 from synth.analysis.designs import part_row
 from synth.analysis.drawing import drawings_of
 from synth.analysis.restate import problem_of, question_of, table_differences
+from synth.drawing import Drawing
 from synth.errors import ExtraNeededError, InputError, first_with_others
 from synth.folders.csv_style import unstyled
 from synth.folders.files import read_bytes, read_json
@@ -20,17 +21,19 @@ from synth.folders.output_folder import save_files
 from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, knee_of
 from synth.question.instance import Instance
-from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
+from synth.results import Design, ParetoFront, PartRow, design_columns, design_row, foremost, named_designs
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE, result_digest
+from synth.results.hookspecs import Made
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
+from synth.results.report_request import ComparisonRequest, ReportOptions, ReportRequest
 from synth.text.plain_text import csv_cell
 
 CURVES = ("*.svg",)
+PLAIN = ReportOptions()
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank
-Made = tuple[dict[str, str | bytes], list[str], tuple[ExtraNeededError, ...]]  # files, notes, and what is lacking
-NO_REPORTS = "the package reports, which clutchsynth is installed with"
+Hook = TypeVar("Hook")
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,19 @@ class WrittenReport:
         return self.folder
 
 
+def installed(hook: Hook | None, verb: str) -> Hook:
+    """Hook of the reports.
+
+    Raises
+    ------
+    InputError
+        They are not installed; ``verb`` is what needs them.
+    """
+    if hook is None:
+        raise InputError(verb, None, "the package reports, which clutchsynth is installed with")
+    return hook
+
+
 def write_report(
     folder: Path,
     files: Mapping[str, str | bytes],
@@ -92,16 +108,12 @@ def write_report(
 def report(
     front: ParetoFront,
     folder: str | Path,
+    how: ReportOptions = PLAIN,
     *,
     design: Any = 1,
     full: int = 5,
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
     problem: Any = None,
     catalogs: Any = None,
-    about_folder: Path | None = None,
 ) -> WrittenReport:
     """Write the report of a front, and calculation sheets of some of its designs.
 
@@ -109,23 +121,13 @@ def report(
     ----------
     front : ParetoFront
     folder : path
+    how : ReportOptions
     design : int, str or list of these
         Designs that get sheets: ranks, or ``knee``.
     full : int
         Designs that the front report tells in full.
-    formats : list of str
-        Some of ``html``, ``explorer``, ``pdf``, ``xlsx``, ``json``, ``svg``, ``dxf``,
-        ``step``, ``glb``.
-    about : mapping, optional
-        Project, customer, number, author, date, ...
-    length : {"summary", "normal", "full"}
-        Of the sheets.
-    fonts : list of path
-        Folders of fonts for the PDF beside its own.
     problem, catalogs : optional
         For a loaded front of a problem of one's own, and own tables that were in memory.
-    about_folder : Path, optional
-        Where a logo is looked for.
 
     Returns
     -------
@@ -139,7 +141,6 @@ def report(
     """
     place = Path(folder)
     _refuse_another_front(front, place)
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = list(design) if isinstance(design, (list, tuple)) else [design]
     files, notes, lacking = _of_front(front, chosen, full, how, place, problem, catalogs)
     return write_report(place, files, notes, bool(front.designs), lacking)
@@ -155,9 +156,7 @@ def explore(
     InputError
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
-    frame = report_named("explorer_frame")
-    if frame is None:
-        raise InputError("explore", None, NO_REPORTS)
+    frame = installed(report_named("explorer_frame"), "explore")
     return NotebookFrame(frame(explored(front, about=about, problem=problem, catalogs=catalogs), height))
 
 
@@ -173,14 +172,12 @@ def explored(
     InputError
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
-    record = report_named("explorer_record")
-    if record is None:
-        raise InputError("explore", None, NO_REPORTS)
+    record = installed(report_named("explorer_record"), "explore")
     read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
-    beside = _beside(Path(front.folder), front) if front.folder is not None else {}
     pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
-    found: dict[str, Any] = record(front, read, about=about, prices=beside.get("prices", ()), drawings=pictures)
-    return found
+    how = ReportOptions.read(about=about)
+    asked = ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_beside(front))
+    return record(asked)
 
 
 def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
@@ -191,19 +188,16 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     InputError
         The comparison cannot be read, or reports are not installed.
     """
-    record = report_named("explorer_comparison")
-    if record is None:
-        raise InputError("explore", None, NO_REPORTS)
+    record = installed(report_named("explorer_comparison"), "explore")
     content, _, fronts = _compared(source)
-    drawings = _drawings_of_all(content["designs"], fronts)
-    found: dict[str, Any] = record(content, fronts, _calculations(fronts), about=about, drawings=drawings)
-    return found
+    asked = ComparisonRequest(content=content, fronts=fronts, how=ReportOptions.read(about=about))
+    return record(_explored(asked))
 
 
-def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Any]:
+def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Drawing]:
     """Return drawings of the first designs of a common front, by their rank there."""
     first = listed[:DRAWN]
-    found: dict[int, Any] = {}
+    found: dict[int, Drawing] = {}
     for family, front in fronts.items():
         ranks = {x["own_rank"]: int(x["rank"]) for x in first if x["family"] == family}
         drawn, _ = _drawings(front, [d for d in front.designs if d.rank in ranks])
@@ -211,42 +205,10 @@ def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, P
     return found
 
 
-def _calculations(fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
-    return {family: calculation(front) for family, front in fronts.items()}
-
-
-@dataclass(frozen=True)
-class ReportOptions:
-    """How a report is written; fields as for :func:`report`."""
-
-    formats: tuple[str, ...]
-    about: Any
-    length: str
-    fonts: tuple[Path, ...]
-    about_folder: Path | None
-
-    @staticmethod
-    def read(
-        formats: str | Sequence[str], about: Any, length: str, fonts: Sequence[str | Path], about_folder: Path | None
-    ) -> ReportOptions:
-        """Options as they were stated; reports refuse wrong ones themselves."""
-        words = (formats,) if isinstance(formats, str) else tuple(formats)
-        return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
-
-    @property
-    def draws(self) -> bool:
-        """Whether files of drawings are asked for."""
-        return bool({"svg", "dxf", "step", "glb"} & set(self.formats))
-
-    def asked(self) -> dict[str, Any]:
-        """Return it as reports take it."""
-        return {
-            "formats": list(self.formats),
-            "about": self.about,
-            "about_folder": self.about_folder,
-            "length": self.length,
-            "fonts": list(self.fonts),
-        }
+def _explored(asked: ComparisonRequest) -> ComparisonRequest:
+    """Request with what the explorer needs."""
+    drawings = _drawings_of_all(asked.content["designs"], asked.fronts)
+    return replace(asked, calculations={name: calculation(x) for name, x in asked.fronts.items()}, drawings=drawings)
 
 
 def _of_front(
@@ -261,23 +223,28 @@ def _of_front(
     """Return the files of the report of a front, which will stand in a place."""
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
-    asked: dict[str, Any] = {
-        "calculation": calculation(front, problem=problem, catalogs=catalogs if problem else None),
-        "front": front.placed(place),
-        "chosen": [str(x) for x in chosen],
-        "full": int(full),
-    }
-    if "xlsx" in how.formats:
-        asked["rows"] = _offered(front, problem, catalogs)
-    if front.folder is not None:
-        asked |= _beside(Path(front.folder), front)
-    asked["drawings"], untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=how.draws)
+    read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
+    drawings, untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=_draws(how))
     shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
     shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
-    more = {d.rank: d for d in shown if d.rank not in asked["drawings"]}
-    asked["drawings"] |= _drawings(front, list(more.values()), problem, catalogs)[0]
-    files, notes, lacking = _made(asked, how)
+    more = {d.rank: d for d in shown if d.rank not in drawings}
+    asked = ReportRequest(
+        calculation=read,
+        front=front.placed(place),
+        chosen=[str(x) for x in chosen],
+        full=int(full),
+        how=how,
+        rows=_offered(front, problem, catalogs) if "xlsx" in how.formats else {},
+        drawings=drawings | _drawings(front, list(more.values()), problem, catalogs)[0],
+        **_beside(front),
+    )
+    files, notes, lacking = installed(report_named("files"), "report")(asked)
     return files, [*notes, *untold, *_differences(front, problem, catalogs)], lacking
+
+
+def _draws(how: ReportOptions) -> bool:
+    """True if files of drawings are requested."""
+    return bool({"svg", "dxf", "step", "glb"} & set(how.formats))
 
 
 def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
@@ -292,7 +259,7 @@ def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
 
 def _drawings(
     front: ParetoFront, designs: Sequence[Design], problem: Any = None, catalogs: Any = None, *, asked: bool = False
-) -> tuple[dict[int, Any], list[str]]:
+) -> tuple[dict[int, Drawing], list[str]]:
     """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
     try:
         own, _ = problem_of(front, problem, catalogs, kept=True)
@@ -311,41 +278,27 @@ def _refuse_another_front(front: ParetoFront, place: Path) -> None:
 
 
 def report_design(
-    design: Design,
-    instance: Instance,
-    folder: str | Path,
-    *,
-    name: str = "design",
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
-    about_folder: Path | None = None,
+    design: Design, instance: Instance, folder: str | Path, how: ReportOptions = PLAIN, *, name: str = "design"
 ) -> WrittenReport:
     """Write the calculation sheet of one design that was checked; arguments and returns as for :func:`report`."""
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     place = Path(folder)
     # The sheet of a front's design says how far the front is proven; this one must not take its place.
     name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
-    asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design.placed(place), "name": name}
-    if "xlsx" in how.formats:
-        asked["rows"] = _rows(instance)
-    asked["drawings"], untold = drawings_of(instance.problem, [design], asked=how.draws)
-    files, notes, lacking = _made(asked, how)
+    drawings, untold = drawings_of(instance.problem, [design], asked=_draws(how))
+    asked = ReportRequest(
+        calculation=calculation_of(instance),
+        design=design.placed(place),
+        name=name,
+        how=how,
+        rows=_rows(instance) if "xlsx" in how.formats else {},
+        drawings=drawings,
+    )
+    files, notes, lacking = installed(report_named("files"), "report")(asked)
     return write_report(place, files, [*notes, *untold], design.status is not Status.INFEASIBLE, lacking)
 
 
 def report_comparison(
-    source: Path,
-    folder: Path,
-    *,
-    design: Sequence[str] = ("1",),
-    full: int = 5,
-    formats: Sequence[str] = ("html",),
-    about: Any = None,
-    length: str = "normal",
-    fonts: Sequence[str | Path] = (),
-    about_folder: Path | None = None,
+    source: Path, folder: Path, how: ReportOptions = PLAIN, *, design: Sequence[str] = ("1",), full: int = 5
 ) -> WrittenReport:
     """Write the report of several families that were asked the same, and that of each family in a folder of its name.
 
@@ -358,7 +311,6 @@ def report_comparison(
     """
     content, places, fronts = _compared(source)
     listed = content["designs"]
-    how = ReportOptions.read(formats, about, length, fonts, about_folder)
     chosen = _chosen_of_all(listed, design)
     files: dict[str, str | bytes] = {}
     notes, links, lacking = list[str](), dict[str, str](), dict[str, ExtraNeededError]()
@@ -370,12 +322,9 @@ def report_comparison(
         notes += [note for note in told if note not in notes]
         first = next((name for name in made if name.startswith(("report.", "explorer."))), "")
         links |= {family: f"{place}/{first}"}
-    make = report_named("comparison")
-    assert make is not None
-    asked: dict[str, Any] = {"content": content, "fronts": fronts, "links": links}
-    if "explorer" in how.formats:
-        asked |= {"calculations": _calculations(fronts), "drawings": _drawings_of_all(listed, fronts)}
-    own, told, lacks = make({**asked, **how.asked()})
+    make = installed(report_named("comparison"), "report")
+    asked = ComparisonRequest(content=content, fronts=fronts, how=how, links=links)
+    own, told, lacks = make(_explored(asked) if "explorer" in how.formats else asked)
     lacking |= {error.extra: error for error in lacks}
     notes += [note for note in told if note not in notes]
     return write_report(folder, {**own, **files}, notes, bool(listed), list(lacking.values()))
@@ -417,17 +366,11 @@ def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) ->
     return list({known[word]["rank"]: known[word] for word in words}.values())
 
 
-def _made(asked: Mapping[str, Any], how: ReportOptions) -> Made:
-    """Return the files of a report by name, what else is to be told, and which extras lack for more files."""
-    make = report_named("files")
-    if make is None:
-        raise InputError("report", None, NO_REPORTS)
-    files, notes, lacking = make({**asked, **how.asked()})
-    return dict(files), list(notes), tuple(lacking)
-
-
-def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:
-    """Further results on a front, in its folder or in one below."""
+def _beside(front: ParetoFront) -> dict[str, Any]:
+    """Further results on a front, in its folder or in one below; nothing where it has none."""
+    if front.folder is None:
+        return {}
+    folder = Path(front.folder)
     found: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
     digest = front.result_digest
     for path in (folder / "prices.json", *sorted(folder.glob("*/prices.json"))):
@@ -457,20 +400,20 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     return {}
 
 
-def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[Any]]:
+def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[PartRow]]:
     """Return the rows that slots offer; where the question cannot be posed again those that the designs use."""
     try:
         return _rows(question_of(front, problem, catalogs, kept=True))
     except InputError:
-        used: dict[str, dict[str, Any]] = {}
+        used: dict[str, dict[str, PartRow]] = {}
         for design in front.designs:
             for slot, row in design.parts.items():
                 used.setdefault(slot, {})[str(row)] = row
         return {slot: list(rows.values()) for slot, rows in used.items()}
 
 
-def _rows(instance: Instance) -> dict[str, list[Any]]:
-    found: dict[str, list[Any]] = {}
+def _rows(instance: Instance) -> dict[str, list[PartRow]]:
+    found: dict[str, list[PartRow]] = {}
     chosen = {s.slot: (s.table, s.rows) for s in instance.selection.slots}
     for slot, part in instance.model.declaration.slots.items():
         whole = instance.catalogs.table(part.table)

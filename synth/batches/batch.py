@@ -109,11 +109,13 @@ class BatchResult:
             Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
             it is written.
         """
-        from synth.batches.batch_report import BatchReportOptions, report_result
+        from synth.batches.batch_report import BatchOptions, report_result
+        from synth.results.report_request import ReportOptions
 
-        how = BatchReportOptions.read(row=row, formats=formats, about=about, fonts=fonts)
+        named = "" if row is None else str(row).strip()
+        options = BatchOptions(named, ReportOptions.read(formats, about, fonts=fonts))
         target = self.folder if folder is None else Path(folder)
-        return report_result(self.folder, target, how, self.database, self.job, self.catalogs, self.own).complete()
+        return report_result(self.folder, target, options, self.database, self.job, self.catalogs, self.own).complete()
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from synth.analysis.calculation import calculation_of
 from synth.analysis.drawing import drawings_of
 from synth.analysis.evaluate import evaluate_in_si
-from synth.analysis.reporting import NO_REPORTS, WrittenReport, write_report
+from synth.analysis.reporting import WrittenReport, installed, write_report
 from synth.batches.batch_folder import job_of_folder, job_written, opened_batch
 from synth.batches.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, missed_limits, status_of
 from synth.batches.solve import GROUP, LIKE
@@ -33,6 +33,7 @@ from synth.results.batch_record import BatchRecord, BatchRow, RowInFull
 from synth.results.certificate import Certificate
 from synth.results.drawings import report as report_named
 from synth.results.provenance import installed_versions
+from synth.results.report_request import BatchReportRequest, ReportOptions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.text.numbers import typed_number
@@ -46,52 +47,15 @@ RANGE, VARIANTS, ASSIGNED = "size_range.json", "variants.csv", "assignment.csv"
 TOLD_LINES = 6  # of rows that a name fits
 
 
-@dataclass(frozen=True, kw_only=True)
-class BatchReportOptions:
-    """How a batch is reported; fields as for ``BatchResult.report``."""
+@dataclass(frozen=True)
+class BatchOptions:
+    """How a batch is reported; ``row`` is the one in full, empty for the first with designs."""
 
-    row: str = ""
-    formats: tuple[str, ...] = ("html",)
-    about: Any = None
-    about_folder: Path | None = None
-    fonts: tuple[Path, ...] = ()
-
-    @staticmethod
-    def read(
-        *,
-        row: str | int | None = None,
-        formats: str | Sequence[str] = ("html",),
-        about: Any = None,
-        about_folder: Path | None = None,
-        fonts: Sequence[str | Path] = (),
-    ) -> BatchReportOptions:
-        """Requested options.
-
-        Raises
-        ------
-        InputError
-            A format is none of a batch.
-        """
-        words = (formats,) if isinstance(formats, str) else tuple(formats)
-        for word in words or ("",):
-            if word not in FORMATS:
-                raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
-        named = "" if row is None else str(row).strip()
-        return BatchReportOptions(
-            row=named, formats=words, about=about, about_folder=about_folder, fonts=tuple(Path(x) for x in fonts)
-        )
-
-    def asked(self) -> dict[str, Any]:
-        """Return it as reports take it."""
-        return {
-            "formats": list(self.formats),
-            "about": self.about,
-            "about_folder": self.about_folder,
-            "fonts": list(self.fonts),
-        }
+    row: str
+    how: ReportOptions
 
 
-def report_batch(source: Path, folder: Path, how: BatchReportOptions, database: str | None = None) -> WrittenReport:
+def report_batch(source: Path, folder: Path, options: BatchOptions, database: str | None = None) -> WrittenReport:
     """Write the report of the batch that stands in a folder.
 
     Raises
@@ -102,11 +66,11 @@ def report_batch(source: Path, folder: Path, how: BatchReportOptions, database: 
     written = job_written(source)
     with opened_batch(source, database) as store:
         job = job_of_folder(store, source, written)
-        return _written(store, job, source, folder, how, _tables_of(job, None), None)
+        return _written(store, job, source, folder, options, _tables_of(job, None), None)
 
 
 def report_result(
-    source: Path, folder: Path, how: BatchReportOptions, database: Any, job: str, tables: Any = None, own: Any = None
+    source: Path, folder: Path, options: BatchOptions, database: Any, job: str, tables: Any = None, own: Any = None
 ) -> WrittenReport:
     """Write the report of a batch that was asked from Python; ``tables`` and ``own`` are those that it was given.
 
@@ -114,11 +78,11 @@ def report_result(
     """
     with opened_batch(source, database) as store:
         found = job_of_folder(store, source, job)
-        return _written(store, found, source, folder, how, _tables_of(found, tables), own)
+        return _written(store, found, source, folder, options, _tables_of(found, tables), own)
 
 
 def batch_report_files(
-    store: Store, job: Job, how: BatchReportOptions, tables: Any = None, own: Any = None, beside: Path | None = None
+    store: Store, job: Job, options: BatchOptions, tables: Any = None, own: Any = None, beside: Path | None = None
 ) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
     """Return the files of the report of a batch, what else is to be told, whether some row has designs, what lacks.
 
@@ -126,7 +90,7 @@ def batch_report_files(
     ----------
     store, job
         Where the batch is kept.
-    how : BatchReportOptions
+    options : BatchOptions
     tables : catalogs, InputError or None
         Own part tables; why they cannot be had.
     own : DesignProblem subclass, optional
@@ -134,22 +98,23 @@ def batch_report_files(
     beside : Path, optional
         A folder in which a size range may stand.
     """
-    make = report_named("batch_files")
-    if make is None:
-        raise InputError("report", None, NO_REPORTS)
-    record, notes = _BatchReader(store, job, tables, own).record(how.row, beside)
-    files, told, lacking = make({"batch": record, **how.asked()})
-    return dict(files), [*notes, *told], any(row.designs for row in record.rows), tuple(lacking)
+    for word in options.how.formats or ("",):
+        if word not in FORMATS:
+            raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
+    make = installed(report_named("batch_files"), "report")
+    record, notes = _BatchReader(store, job, tables, own).record(options.row, beside)
+    files, told, lacking = make(BatchReportRequest(record, options.how))
+    return files, [*notes, *told], any(row.designs for row in record.rows), lacking
 
 
 def _written(
-    store: Store, job: Job, source: Path, folder: Path, how: BatchReportOptions, tables: Any, own: Any
+    store: Store, job: Job, source: Path, folder: Path, options: BatchOptions, tables: Any, own: Any
 ) -> WrittenReport:
     check_kind(folder, BATCH)
     there = job_written(folder)
     if there not in (None, job.id):
         raise InputError("output", str(folder), "another folder: this one holds another batch")
-    files, notes, found, lacking = batch_report_files(store, job, how, tables, own, source)
+    files, notes, found, lacking = batch_report_files(store, job, options, tables, own, source)
     return write_report(folder, files, notes, found, lacking)
 
 

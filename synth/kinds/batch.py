@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.batches.batch import BatchJob
-from synth.batches.batch_report import BatchReportOptions, batch_report_files
+from synth.batches.batch_report import BatchOptions, batch_report_files
 from synth.batches.outputs import write_outputs
 from synth.batches.row_questions import Fault
 from synth.batches.row_table import RowTable, read_table
@@ -42,6 +42,7 @@ from synth.question.settings import SearchSettings
 from synth.question.spec_keys import shown_kind
 from synth.queue.records import TABLE, Posed, Record, Sources, Tell
 from synth.results.drawings import can_make
+from synth.results.report_request import ReportOptions
 from synth.tables.table_file import EXCEL
 
 UPLOAD, ROWS = "upload", "rows"
@@ -181,12 +182,12 @@ def _report(name: str, file: str, sources: Sources) -> bytes | str:
     ExtraNeededError
         It needs an extra that is not installed.
     """
-    how = BatchReportOptions(formats=(REPORTS[file],))
+    options = BatchOptions("", ReportOptions(formats=(REPORTS[file],)))
     with Store(sources.database, create=False) as store:
         job = store.job(name)
         if job is None:
             raise UnknownFileError(file)
-        made, *_, lacking = batch_report_files(store, job, how, catalogs_of(job.content.get("catalogs"), sources))
+        made, *_, lacking = batch_report_files(store, job, options, catalogs_of(job.content.get("catalogs"), sources))
         if file not in made:
             raise first_with_others(lacking)
         return made[file]

@@ -9,7 +9,7 @@ import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from synth.analysis.drawing import is_drawn
 from synth.analysis.reporting import explored, explored_comparison
@@ -155,7 +155,7 @@ def _front_files(front: ParetoFront) -> list[str]:
     return [*derived, *drawn, WORKBOOK, *REPORTS, *(f"{stem}{ending}" for stem in stems for ending in endings)]
 
 
-def _explorer_files(needed: str) -> list[str]:
+def _explorer_files(needed: Literal["explorer_record", "explorer_comparison"]) -> list[str]:
     """Return the names of the files that explore, where the reports that are installed can make them."""
     return [EXPLORER, EXPLORED] if report(needed) is not None else []
 

@@ -35,6 +35,7 @@ from synth.queue.records import Posed, Record, Sources, Tell
 from synth.results import named_designs
 from synth.results.drawings import EXTRAS, can_make
 from synth.results.loading import load_front
+from synth.results.report_request import About, ReportOptions
 from synth.text.input_limits import INPUT_LIMITS
 
 MAIN = "report.json"  # which files there are, and what else is to be told
@@ -87,15 +88,9 @@ class ReportAsked:
         stated: dict[str, Any] = {"design": list(self.design), "full": self.full, "formats": list(self.formats)}
         return {**stated, "length": self.length, **({"about": dict(self.about)} if self.about else {})}
 
-    def arguments(self) -> dict[str, Any]:
-        """Return it as the verb takes it."""
-        return {
-            "design": list(self.design),
-            "full": self.full,
-            "formats": list(self.formats),
-            "length": self.length,
-            "about": None if self.about is None else dict(self.about),
-        }
+    def options(self) -> ReportOptions:
+        """Formats, length and head of the report."""
+        return ReportOptions(formats=self.formats, length=self.length, about=About.of(self.about))
 
 
 def _about(given: Any) -> dict[str, Any] | None:
@@ -181,11 +176,13 @@ def reported(
         unpack(records, source)
         target.mkdir()
         if is_comparison(records) and family is None:
-            written = report_comparison(source, target, **asked.arguments())
+            written = report_comparison(source, target, asked.options(), design=asked.design, full=asked.full)
         else:
             folder = source if family is None else source / family
             stated = front_in(records, family).frame.restated.get("catalogs")
             tables = catalogs_of(stated, sources) if "xlsx" in asked.formats else None
-            written = write_report(load_front(folder), target, catalogs=tables, **asked.arguments())
+            written = write_report(
+                load_front(folder), target, asked.options(), design=asked.design, full=asked.full, catalogs=tables
+            )
         files = {name: (target / name).read_bytes() for name in written.files}
         return files, [*written.notes, *map(str, written.lacking)]

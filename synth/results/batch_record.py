@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from synth.drawing import Drawing
 from synth.results.calculation import Calculation
-from synth.results.front import ParetoFront
+
+if TYPE_CHECKING:
+    from synth.results import ParetoFront
 
 # How rows stand, those with designs first, then what somebody must look at.
 WITH_DESIGNS = ("optimal", "feasible")

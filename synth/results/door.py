@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar, cast
 if TYPE_CHECKING:
     from synth.results.calculation import Calculation
     from synth.results.notebook import NotebookFrame
+    from synth.results.report_request import ReportOptions
     from synth.results.verification import Verification
 
 
@@ -37,7 +38,7 @@ class Door(Protocol):
         """Search on from the designs."""
         ...
 
-    def report(self, front: object, folder: str | Path, /, **options: object) -> ReportOnDisk:
+    def report(self, front: object, folder: str | Path, how: ReportOptions, /, **options: object) -> ReportOnDisk:
         """Write report and sheets."""
         ...
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from synth.plugins import installed
+from synth.results import hookspecs as specs
+
+if TYPE_CHECKING:
+    from synth.results import Design
 
 REPORTS = "clutchsynth.reports"
 PLOT = "front.svg"  # the picture of a front in its folder
@@ -25,17 +29,43 @@ def can_make(word: str) -> bool:
     return word not in EXTRAS or find_spec(EXTRAS[word][0]) is not None
 
 
-def report(name: str) -> Callable[..., Any] | None:
-    """Return a report by its registered name; None where it is not installed."""
-    for point in installed(REPORTS):
-        if point.name == name:
-            found: Callable[..., Any] = point.load()
-            return found
-    return None
+@overload
+def report(name: Literal["batch_files"]) -> specs.BatchFiles | None: ...
+@overload
+def report(name: Literal["comparison"]) -> specs.ComparisonFiles | None: ...
+@overload
+def report(name: Literal["comparison_table"]) -> specs.CommonFrontTable | None: ...
+@overload
+def report(name: Literal["explorer_comparison"]) -> specs.ExplorerComparison | None: ...
+@overload
+def report(name: Literal["explorer_files"]) -> specs.ExplorerFiles | None: ...
+@overload
+def report(name: Literal["explorer_frame"]) -> specs.ExplorerFrame | None: ...
+@overload
+def report(name: Literal["explorer_record"]) -> specs.ExplorerRecord | None: ...
+@overload
+def report(name: Literal["files"]) -> specs.FrontFiles | None: ...
+@overload
+def report(name: Literal["front_workbook"]) -> specs.FrontWorkbook | None: ...
+@overload
+def report(name: Literal["plot"]) -> specs.FrontPlot | None: ...
+@overload
+def report(name: Literal["plot_file"]) -> specs.FrontPlotFile | None: ...
+@overload
+def report(name: Literal["figure"]) -> specs.FrameFigure | None: ...
+@overload
+def report(name: Literal["table"]) -> specs.FrontTable | None: ...
+@overload
+def report(name: Literal["terminal_plot"]) -> specs.TerminalPlot | None: ...
+@overload
+def report(name: Literal["workbook"]) -> specs.LiveWorkbook | None: ...
+def report(name: str) -> Any:
+    """Report by its registered name; None where it is not installed."""
+    return next((point.load() for point in installed(REPORTS) if point.name == name), None)
 
 
 def front_picture(
-    designs: Sequence[Any],
+    designs: Sequence[Design],
     objectives: Mapping[str, str],
     title: str,
     proven: str,
@@ -60,4 +90,4 @@ def front_picture(
     """
     draw = report("plot_file")
     stopped = f"stopped: {interrupted}; " if interrupted else ""
-    return "" if draw is None else str(draw(designs, objectives, title, stopped + proven, families))
+    return "" if draw is None else draw(designs, objectives, title, stopped + proven, families)

@@ -24,6 +24,7 @@ from synth.results.notebook import NotebookFrame, notebook_html
 from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
+from synth.results.report_request import ReportOptions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
@@ -241,19 +242,9 @@ class ParetoFront:
             Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
             it is written.
         """
-        written = door().report(
-            self,
-            folder,
-            design=design,
-            full=full,
-            formats=formats,
-            about=about,
-            length=length,
-            fonts=fonts,
-            problem=problem,
-            catalogs=catalogs,
-        )
-        return written.complete()
+        how = ReportOptions.read(formats, about, length, fonts)
+        options = {"design": design, "full": full, "problem": problem, "catalogs": catalogs}
+        return door().report(self, folder, how, **options).complete()
 
     def explore(
         self, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None

@@ -15,6 +15,7 @@ from synth.terminal.session import BAD_INPUT, INFEASIBLE, check_output, tell, te
 
 if TYPE_CHECKING:
     from synth.analysis.reporting import WrittenReport
+    from synth.results.report_request import ReportOptions
 
 FULL = 5  # designs that a report tells in full unless it is told otherwise
 FILES = (".yaml", ".yml", ".json")
@@ -80,18 +81,16 @@ def report(
         ("glb", as_step),
         ("json", as_json),
     )
-    asked: dict[str, Any] = {
-        "formats": ["html", *(word for word, on in wanted if on)],
-        "length": length,
-        "fonts": fonts or [],
-        **_about(about),
-    }
     if fonts and not as_pdf:
         raise InputError("--font-path", str(fonts[0]), "--pdf as well: only PDF takes fonts")
     if folder is not None:
         check_output(folder)
     if source.name == SUMMARY and source.is_file():
         source = source.parent
+    from synth.results.report_request import ReportOptions
+
+    formats = ["html", *(word for word, on in wanted if on)]
+    how = ReportOptions.read(formats, _about(about), length, fonts or (), None if about is None else about.parent)
     flags = (
         ("--design", design),
         ("--full", full),
@@ -102,7 +101,7 @@ def report(
         if length != "normal":
             raise InputError("--length", length, "the folder of a front with it: a batch has no sheets")
         target = folder or source
-        written = _of_batch(source, target, row, asked, database)
+        written = _of_batch(source, target, row, how, database)
     elif row is not None:
         raise InputError("--row", row, "the folder of a batch with it")
     elif source.suffix in FILES and source.is_file() and source.name != "front.json":
@@ -110,10 +109,10 @@ def report(
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent
-        written = _of_design(source, target, asked, quiet)
+        written = _of_design(source, target, how, quiet)
     else:
         target = folder or (source if source.is_dir() else source.parent)
-        written = _of_front(source, target, design or "1", FULL if full is None else full, asked)
+        written = _of_front(source, target, design or "1", FULL if full is None else full, how)
     if not quiet:
         tell_written(written.folder, target, written.files)
     for note in (*written.notes, *map(str, written.lacking)):
@@ -124,13 +123,11 @@ def report(
         raise typer.Exit(INFEASIBLE)
 
 
-def _about(file: Path | None) -> dict[str, Any]:
+def _about(file: Path | None) -> Any:
     """About block of a report, read from a file."""
-    if file is None:
-        return {}
     from synth.question.spec import read_content
 
-    return {"about": read_content(file, "about"), "about_folder": file.parent}
+    return None if file is None else read_content(file, "about")
 
 
 def _is_batch(source: Path) -> bool:
@@ -154,17 +151,14 @@ def _refuse(flags: Sequence[tuple[str, Any]], right: str, but: Sequence[str]) ->
             raise InputError("report", flag, right) if value is True else InputError(flag, value, right)
 
 
-def _of_batch(
-    source: Path, target: Path, row: str | None, asked: dict[str, Any], database: str | None
-) -> WrittenReport:
+def _of_batch(source: Path, target: Path, row: str | None, how: ReportOptions, database: str | None) -> WrittenReport:
     """Write the report of a batch."""
-    from synth.batches.batch_report import BatchReportOptions, report_batch
+    from synth.batches.batch_report import BatchOptions, report_batch
 
-    how = BatchReportOptions.read(row=row, **{key: value for key, value in asked.items() if key != "length"})
-    return report_batch(source, target, how, database)
+    return report_batch(source, target, BatchOptions((row or "").strip(), how), database)
 
 
-def _of_front(source: Path, target: Path, design: str, full: int, asked: dict[str, Any]) -> WrittenReport:
+def _of_front(source: Path, target: Path, design: str, full: int, how: ReportOptions) -> WrittenReport:
     """Write the report of a front, or of several families."""
     from synth.analysis.reporting import report as write
     from synth.analysis.reporting import report_comparison
@@ -172,11 +166,11 @@ def _of_front(source: Path, target: Path, design: str, full: int, asked: dict[st
 
     chosen = [word.strip() for word in design.split(",")]
     if (source / COMPARISON).is_file():
-        return report_comparison(source, target, design=chosen, full=full, **asked)
-    return write(load_front(source), target, design=chosen, full=full, **asked)
+        return report_comparison(source, target, how, design=chosen, full=full)
+    return write(load_front(source), target, how, design=chosen, full=full)
 
 
-def _of_design(source: Path, target: Path, asked: dict[str, Any], quiet: bool) -> WrittenReport:
+def _of_design(source: Path, target: Path, how: ReportOptions, quiet: bool) -> WrittenReport:
     """Write the sheet of a design that stands in a file."""
     from synth.analysis.design_spec import given_design, must_be_a_design
     from synth.analysis.reporting import report_design
@@ -190,4 +184,4 @@ def _of_design(source: Path, target: Path, asked: dict[str, Any], quiet: bool) -
     if not quiet:
         tell_readings(catalogs)
     instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)
-    return report_design(design, instance, target, name=source.stem, **asked)
+    return report_design(design, instance, target, how, name=source.stem)

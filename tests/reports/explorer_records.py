@@ -10,6 +10,7 @@ from typing import Any
 from synth.reports.explorer.record import explorer_record
 
 import synth
+from synth.results.report_request import ReportRequest
 
 HOSTILE = "</script><img src=x onerror=alert(1)>\u202egnp.exe\u2066 <b>&amp;`${1}`"
 ASKED = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
@@ -38,7 +39,7 @@ def empty_front() -> synth.ParetoFront:
 @cache
 def _record() -> dict[str, Any]:
     front = small_front()
-    return explorer_record(front, synth.calculation(front))
+    return explorer_record(ReportRequest(calculation=synth.calculation(front), front=front))
 
 
 def small_record() -> dict[str, Any]:
@@ -48,7 +49,7 @@ def small_record() -> dict[str, Any]:
 
 def empty_record() -> dict[str, Any]:
     """Return the record of a front without a design."""
-    return explorer_record(empty_front(), synth.calculation(empty_front()))
+    return explorer_record(ReportRequest(calculation=synth.calculation(empty_front()), front=empty_front()))
 
 
 def grown(count: int) -> dict[str, Any]:

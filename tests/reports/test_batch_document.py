@@ -11,7 +11,6 @@ from typing import Any
 
 import openpyxl
 import pytest
-from synth.reports.about import About
 from synth.reports.batch_report import batch_report, batch_state
 from synth.reports.batch_workbook import batch_workbook
 from synth.reports.files import batch_files
@@ -20,6 +19,7 @@ from synth.reports.sheet.html import AT_A_TIME, html
 from synth.batches.batch_report import chosen_row
 from synth.errors import InputError
 from synth.results.batch_record import BatchRecord, BatchRow
+from synth.results.report_request import About, BatchReportRequest, ReportOptions
 from tests.reports.browser import chromium, needs_chromium, opened, serious
 from tests.terminal.test_report_commands import Page
 
@@ -97,7 +97,7 @@ def test_no_text_is_markup_or_code() -> None:
 
 
 def test_hostile_texts_are_texts_of_a_pdf() -> None:
-    files, notes, _ = batch_files({"batch": hostile(), "formats": ["pdf"], "fonts": []})
+    files, notes, _ = batch_files(BatchReportRequest(hostile(), ReportOptions(formats=("pdf",))))
     data = files["report.pdf"]
     assert isinstance(data, bytes)
     assert data.startswith(b"%PDF-1.7")

@@ -14,6 +14,7 @@ from synth.analysis.drawing import drawing_of, quantity_of, weighed
 from synth.analysis.reporting import report
 from synth.drawing import Area, Drawing, Item, Line, LineKind, View, disc, rectangle
 from synth.errors import InputError
+from synth.results.report_request import About, ReportOptions
 
 pytestmark = pytest.mark.slow
 
@@ -64,7 +65,7 @@ def test_the_extra_is_named_where_it_is_missing(front, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "build123d", None)
     for word in ("step", "glb"):
         with pytest.raises(InputError, match=r"^--step needs the extra step: pip install 'clutchsynth\[step\]'$"):
-            report(front, tmp_path, formats=[word])
+            report(front, tmp_path, ReportOptions.read([word]))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -74,7 +75,7 @@ def test_a_drawing_without_round_parts_has_no_bodies_and_it_is_told(front, tmp_p
         return Drawing("front view", (View("Front view", (area,)),), (Item(1, "Plate"),), ("the rest",))
 
     monkeypatch.setattr(type(synth.load("multi_plate_clutch")), "drawing", flat)
-    written = report(front, tmp_path, formats=["svg", "step", "glb"])
+    written = report(front, tmp_path, ReportOptions.read(["svg", "step", "glb"]))
     assert [name for name in written.files if "drawing" in name] == ["design_01_drawing.svg"]
     assert written.lacking == ()  # nothing is missed where there is nothing to make
     assert written.notes == [
@@ -126,12 +127,12 @@ def test_the_same_drawing_gives_the_same_files():
     drawing = everything()
     assert step_of(drawing, "Clutch", "program") == step_of(drawing, "Clutch", "program")
     assert glb_of(drawing, "Clutch", "program") == glb_of(drawing, "Clutch", "program")
-    assert b"'2026-03-01T00:00:00'" in step_of(drawing, "Clutch", "program", {"date": "2026-03-01"})
+    assert b"'2026-03-01T00:00:00'" in step_of(drawing, "Clutch", "program", About(date="2026-03-01"))
 
 
 def test_files_of_a_report_are_written(front, tmp_path):
     pytest.importorskip("build123d")
-    written = report(front, tmp_path, formats=["step", "glb"])
+    written = report(front, tmp_path, ReportOptions.read(["step", "glb"]))
     assert {"design_01_drawing.step", "design_01_drawing.glb"} <= set(written.files)
     assert written.notes == []
 

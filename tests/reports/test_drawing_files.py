@@ -35,6 +35,7 @@ from synth.drawing import (
     rectangle,
 )
 from synth.errors import InputError
+from synth.results.report_request import About, ReportOptions
 from tests.reports.dxf_measures import drawn_measure, measured_in
 
 pytestmark = pytest.mark.slow
@@ -129,7 +130,7 @@ def test_of_a_detail_only_its_window_is_drawn():
 
 def test_the_same_design_gives_the_same_files(front, tmp_path):
     for word in ("a", "b"):
-        report(front, tmp_path / word, formats=["svg", "dxf"])
+        report(front, tmp_path / word, ReportOptions.read(["svg", "dxf"]))
     for name in ("design_01_drawing.svg", "design_01_drawing.dxf"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
@@ -137,7 +138,7 @@ def test_the_same_design_gives_the_same_files(front, tmp_path):
 def test_dimensions_say_their_quantity_in_svg(front):
     design = front.designs[0]
     drawing = drawing_of(synth.load("multi_plate_clutch"), design)
-    text = svg_of(drawing, design.frame.title, "program", {"project": "Hoist 7", "author": "Á. Őri <b>"})
+    text = svg_of(drawing, design.frame.title, "program", About(project="Hoist 7", author="Á. Őri <b>"))
     told = dict(re.findall(r'data-quantity="([^"]+)" data-measure="([^"]+)"', text))
     assert float(told["length"]) == pytest.approx(design.values["length"] * 1e3, rel=1e-12)
     assert float(told["drum_wall"]) == pytest.approx(6.0)
@@ -146,7 +147,7 @@ def test_dimensions_say_their_quantity_in_svg(front):
 
 
 def test_sheets_and_the_explorer_show_the_drawing(front, tmp_path):
-    report(front, tmp_path, formats=["html", "svg", "explorer"])
+    report(front, tmp_path, ReportOptions.read(["html", "svg", "explorer"]))
     sheet = (tmp_path / "design_01_sheet.html").read_text()
     assert "Not part of the model, not drawn:" in sheet
     assert "design_01_drawing.svg" in (tmp_path / "explorer.html").read_text()
@@ -193,7 +194,7 @@ def test_hostile_texts_do_nothing_in_drawings(text):
     items = tuple(replace(item, name=text, material=text, note=text) for item in drawing.items)
     views = tuple(replace(view, name=text[:60]) for view in drawing.views)
     hostile = replace(drawing, title=text[:60], items=items, omitted=(text[:300],), remarks=(text[:300],), views=views)
-    about = {"project": text[:200], "company": text[:200]}
+    about = About(project=text[:200], company=text[:200])
     picture = svg_of(hostile, text[:60], "program", about)
     tree = ElementTree.fromstring(picture)
     assert not [e.tag for e in tree.iter() if e.tag.endswith(("script", "foreignObject", "image"))]
@@ -205,7 +206,7 @@ def test_hostile_texts_do_nothing_in_drawings(text):
 def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_path):
     design = front.designs[0]
     old = replace(design, steps=type(design.steps)({k: v for k, v in design.steps.items() if k != "release_gap"}))
-    written = report(replace(front, designs=(old,)), tmp_path, formats=["html", "svg"])
+    written = report(replace(front, designs=(old,)), tmp_path, ReportOptions.read(["html", "svg"]))
     assert written.files == ["report.html", "design_01_sheet.html"]
     assert [
         note for note in written.notes if note.startswith("no drawing of design #1: design: release_gap: is missing")
@@ -215,5 +216,5 @@ def test_a_front_of_another_version_has_a_report_without_a_drawing(front, tmp_pa
 def test_the_extra_is_named_where_it_is_missing(front, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "ezdxf", None)
     with pytest.raises(InputError, match=r"^--dxf needs the extra dxf: pip install 'clutchsynth\[dxf\]'$"):
-        report(front, tmp_path, formats=["dxf"])
+        report(front, tmp_path, ReportOptions.read(["dxf"]))
     assert list(tmp_path.iterdir()) == []

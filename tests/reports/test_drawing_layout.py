@@ -6,13 +6,13 @@ import itertools
 import xml.etree.ElementTree as ET
 
 import pytest
-from synth.reports.about import About
 from synth.reports.drawing.lettering import fitted, width, wrapped
 from synth.reports.drawing.page import paper_sheet
 from synth.reports.drawing.paper import overlap
 from synth.reports.drawing.svg import drawing_svg
 
 from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, disc, rectangle
+from synth.results.report_request import About
 from synth.text.plain_text import one_line
 
 HOSTILE = (

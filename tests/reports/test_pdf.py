@@ -13,7 +13,6 @@ import pypdfium2
 import pytest
 import typst
 from fontTools.ttLib import TTFont
-from synth.reports.about import About
 from synth.reports.extras import needed
 from synth.reports.formula.layout import PLUS, TIMES, Amount, Cases, Fence, Fraction, Letter, Power, Row, Sign, Word
 from synth.reports.numbers import ShownQuantity
@@ -40,6 +39,7 @@ from synth.reports.sheet.typst_source import typst_source
 from synth import InputError
 from synth.analysis.calculation import calculation_of
 from synth.analysis.designs import make_design, make_frame, part_row
+from synth.results.report_request import About
 from synth.text.numbers import Shown
 from tests.conformance.cases import CASES, question
 

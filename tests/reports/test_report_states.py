@@ -13,6 +13,7 @@ from synth.reports.sheet.html import asset
 import synth
 from synth.results import front_record as records
 from synth.results.plain import digest_of
+from synth.results.report_request import ReportOptions, ReportRequest
 from tests.analysis.test_calculation import Beam
 from tests.terminal.test_report_commands import Page
 
@@ -25,7 +26,8 @@ def front():
 
 
 def page_of(front, **more):
-    files, notes, _ = report_files({"calculation": synth.calculation(front), "front": front, **more})
+    how = ReportOptions.read(more.pop("formats", ("html",)), more.pop("about", None))
+    files, notes, _ = report_files(ReportRequest(calculation=synth.calculation(front), front=front, how=how, **more))
     assert notes == []
     return Page(files["report.html"]), files
 

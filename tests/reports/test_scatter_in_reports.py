@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-from typing import Any
 
 import pytest
 from synth.reports.explorer.record import explorer_record
 from synth.reports.files import report_files
 
 import synth
+from synth.results.report_request import ReportOptions, ReportRequest
 from tests.sample_problems.scattered_limit import ScatteredLimit, ridged
 from tests.terminal.test_report_commands import Page
 
@@ -25,15 +25,16 @@ def unknown() -> synth.ParetoFront:
 
 
 @pytest.fixture(scope="module")
-def request_of(unknown: synth.ParetoFront) -> dict[str, Any]:
-    return {"calculation": synth.calculation(unknown), "front": unknown, "formats": ["html", "xlsx"]}
+def request_of(unknown: synth.ParetoFront) -> ReportRequest:
+    how = ReportOptions(formats=("html", "xlsx"))
+    return ReportRequest(calculation=synth.calculation(unknown), front=unknown, how=how)
 
 
 def words(text: str) -> str:
     return " ".join(" ".join(Page(text).words).split())
 
 
-def test_pages_say_that_it_is_not_shown(request_of: dict[str, Any]) -> None:
+def test_pages_say_that_it_is_not_shown(request_of: ReportRequest) -> None:
     files, *_ = report_files(request_of)
     report, sheet = words(files["report.html"]), words(files["design_01_sheet.html"])
     for page in (report, sheet):
@@ -46,7 +47,7 @@ def test_pages_say_that_it_is_not_shown(request_of: dict[str, Any]) -> None:
     assert "not shown sampled" in rows[: rows.index("sampled") + len("sampled")]
 
 
-def test_workbooks_say_that_it_is_not_shown(request_of: dict[str, Any]) -> None:
+def test_workbooks_say_that_it_is_not_shown(request_of: ReportRequest) -> None:
     openpyxl = pytest.importorskip("openpyxl")
     files, *_ = report_files(request_of)
     books = {name: openpyxl.load_workbook(io.BytesIO(files[name])) for name in ("designs.xlsx", "design_01_live.xlsx")}
@@ -61,9 +62,9 @@ def test_workbooks_say_that_it_is_not_shown(request_of: dict[str, Any]) -> None:
 
 
 def test_the_explorer_and_notebooks_say_that_it_is_not_shown(
-    unknown: synth.ParetoFront, request_of: dict[str, Any]
+    unknown: synth.ParetoFront, request_of: ReportRequest
 ) -> None:
-    record = explorer_record(unknown, request_of["calculation"])
+    record = explorer_record(request_of)
     own = record["designs"][0]["robust"]
     assert own["verdict"] == "not shown"
     assert own["yield"] < 100

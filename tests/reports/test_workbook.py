@@ -13,7 +13,6 @@ from dataclasses import replace
 import numpy as np
 import openpyxl
 import pytest
-from synth.reports.about import About
 from synth.reports.excel_formula import LONGEST
 from synth.reports.workbook import live_workbook
 
@@ -22,6 +21,7 @@ from synth import InputError
 from synth.errors import RefusedError
 from synth.model.problem import DesignProblem
 from synth.results.design import PartRow
+from synth.results.report_request import About
 from synth.units import typed_quantity
 from tests.conformance.cases import CASES
 from tests.repetitions import repetitions

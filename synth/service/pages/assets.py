@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import entry_points
 from importlib.resources import files
 from types import MappingProxyType
 
 from fastapi import APIRouter, Request, Response
 
+from synth.results.drawings import report
 from synth.service.api.asking import tag_of, tagged
 from synth.service.errors import not_found
 from synth.ui import ui_files
@@ -21,7 +21,6 @@ MEDIA = MappingProxyType(
     {"css": "text/css; charset=utf-8", "js": "text/javascript; charset=utf-8", "svg": "image/svg+xml"}
 )
 FOR_GOOD = "public, max-age=31536000, immutable"
-REPORTS, EXPLORER_FILES = "clutchsynth.reports", "explorer_files"
 EXPLORER = "explorer"  # folder of the modules that draw a front
 EXPLORER_MODULE = f"{EXPLORER}/explorer.js"
 
@@ -52,10 +51,8 @@ def assets() -> Mapping[str, Asset]:
 
 def _explorer() -> Mapping[str, str]:
     """Return the modules that draw a front, where the reports bring some."""
-    for point in entry_points(group=REPORTS, name=EXPLORER_FILES):
-        brought: Callable[[], Mapping[str, str]] = point.load()
-        return brought()
-    return {}
+    load = report("explorer_files")
+    return {} if load is None else load()
 
 
 @cache
