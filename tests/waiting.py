@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 PATIENCE = 600.0  # s
-SOON, OFTEN = 0.02, 0.1  # s until another look, and as a share of how long it was waited: looks take work from others
+SOON, LATER = 0.02, 0.1  # s until another look, at first and after a second: looks take work from others
 
 
 def until(look: Callable[[], Any], right: Callable[[Any], bool] = bool) -> Any:
@@ -16,5 +16,5 @@ def until(look: Callable[[], Any], right: Callable[[Any], bool] = bool) -> Any:
     while not right(value := look()):
         waited = time.monotonic() - begun
         assert waited < PATIENCE, f"not within {PATIENCE:.0f} s: {value}"
-        time.sleep(min(SOON + OFTEN * waited, 1.0))
+        time.sleep(SOON if waited < 1.0 else LATER)
     return value
