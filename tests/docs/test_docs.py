@@ -290,6 +290,7 @@ def offered() -> list[tuple[str, list[str]]]:
     return found
 
 
+@pytest.mark.slow
 def test_every_command_and_option_is_documented() -> None:
     text = all_pages()
     found = offered()

@@ -68,6 +68,7 @@ def test_boxes_with_the_largest_possible_gain_come_first_until_too_many_wait(for
         assert len(waiting) + len(batch) == len(left)
 
 
+@pytest.mark.slow
 def test_what_does_not_close_ends_by_the_count_of_boxes(form):
     limits = SearchEffort(seconds=np.inf, spell=200, patience=2, most_waiting=500, most_stuck=5)
     ends = []
