@@ -38,6 +38,17 @@ def without(packages: str, *words: object) -> subprocess.CompletedProcess[str]:
     return _run([sys.executable, "-c", f"{LACKING}{COMMAND[-1]}", *map(str, words)], ROOT, {"LACKING": packages})
 
 
+def without_at_once(packages: str, *words: object) -> subprocess.CompletedProcess[str]:
+    """Run it in this process, in which packages, told apart by blanks, cannot be imported meanwhile."""
+    lacking = packages.split()
+    with pytest.MonkeyPatch.context() as patch:
+        for name in [name for name in sys.modules if name.partition(".")[0] in lacking]:
+            patch.delitem(sys.modules, name)
+        for package in lacking:
+            patch.setitem(sys.modules, package, None)
+        return at_once(*words)
+
+
 def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run it in a process of its own, as a person does."""
     return _run([*COMMAND, *map(str, words)], folder, environment)
