@@ -572,7 +572,6 @@ def test_no_name_has_a_letter_that_acts_on_what_shows_it() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("letter", ["\u202e", "\u2066", "\u200f", "\u061c", "\u2028", "\u2029", "\x85", "\n", "\x1b"])
 @pytest.mark.parametrize(
     ("path", "body", "place"),
     [
@@ -582,11 +581,10 @@ def test_no_name_has_a_letter_that_acts_on_what_shows_it() -> None:
         ("/api/v1/catalogues", {"name": "a", "csv": "x", "note": "b"}, "note"),
     ],
 )
-def test_names_that_act_on_a_screen_are_refused(
-    service: Service, path: str, body: dict[str, Any], place: str, letter: str
-) -> None:
-    answer = service("POST", path, json={**body, place: f"a{letter}b"})
-    assert (answer.status_code, code_of(answer)) == (422, "bad_input")
-    (problem,) = answer.json()["error"]["problems"]
-    assert (problem["path"], "one line" in problem["expected"]) == ([place], True)
-    assert letter not in problem["message"]
+def test_names_that_act_on_a_screen_are_refused(service: Service, path: str, body: dict[str, Any], place: str) -> None:
+    for letter in ("\u202e", "\u2066", "\u200f", "\u061c", "\u2028", "\u2029", "\x85", "\n", "\x1b"):
+        answer = service("POST", path, json={**body, place: f"a{letter}b"})
+        assert (answer.status_code, code_of(answer)) == (422, "bad_input"), ascii(letter)
+        (problem,) = answer.json()["error"]["problems"]
+        assert (problem["path"], "one line" in problem["expected"]) == ([place], True), ascii(letter)
+        assert letter not in problem["message"]
