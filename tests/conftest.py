@@ -3,10 +3,22 @@
 import gc
 import os
 import signal
+from pathlib import Path
 
 import pytest
 
 from tests.repetitions import SWITCH
+
+# Files of more than a minute, the longest first.
+LONGEST = (
+    "service/pages/test_stories.py",
+    "docs/test_docs.py",
+    "service/pages/test_whatif_pages.py",
+    "certificates/test_global_claims.py",
+    "conformance/test_families.py",
+    "search/test_first_by_rank.py",
+)
+TESTS = Path(__file__).parent
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -29,9 +41,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run files with slow tests first: a long one at the end would keep one process at work while others wait."""
-    long = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in long)
+    """Run long files first, then those with slow tests: one at the end would keep one process at work alone."""
+    place = {TESTS / name: k for k, name in enumerate(LONGEST)}
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: place.get(item.path, len(place) + (item.path not in slow)))
 
 
 def pytest_collection_finish() -> None:

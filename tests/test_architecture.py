@@ -12,6 +12,7 @@ import pytest
 
 import synth
 from synth.plugins import AROUND_THE_ENGINE
+from tests.conftest import LONGEST
 from tests.shipped import FAMILIES
 
 ROOT = Path(__file__).parents[1]
@@ -235,6 +236,10 @@ def test_tests_stand_in_folders_named_like_what_they_test() -> None:
         "test_layers.py",
         "test_portability.py",
     }
+
+
+def test_files_that_run_first_are_there() -> None:
+    assert [name for name in LONGEST if not (ROOT / "tests" / name).is_file()] == []
 
 
 def test_the_list_of_packages_is_that_of_the_folders() -> None:

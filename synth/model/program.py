@@ -10,6 +10,8 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from types import CodeType
 from typing import Any
 
 import casadi as ca
@@ -80,6 +82,11 @@ COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.
 
 class UnsupportedOperation(TypeError):
     """A formula uses an operation that cannot be evaluated over arrays."""
+
+
+@lru_cache(maxsize=128)  # questions of one family have many programs in common
+def _compiled(source: str) -> CodeType:
+    return compile(source, "<generated from the trace>", "exec")
 
 
 @dataclass(frozen=True)
@@ -208,11 +215,11 @@ class Program:
 
     def downstream(self, sources: Iterable[int]) -> np.ndarray:
         """Return, for every node, whether it is one of the given nodes or depends on one."""
-        marked = np.zeros(len(self.nodes), dtype=bool)
+        marked = bytearray(len(self.nodes))  # an array takes three times as long
         wanted = set(sources)
         for k, node in enumerate(self.nodes):
-            marked[k] = k in wanted or any(marked[a] for a in node.args)
-        return marked
+            marked[k] = k in wanted or any(map(marked.__getitem__, node.args))
+        return np.frombuffer(marked, dtype=bool)
 
     def empty_without(self, inputs: Sequence[int], node: int) -> int:
         """Node that is not-a-number where an input (given by number) is, and else the same as a node.
@@ -288,10 +295,7 @@ class Program:
             # Registers are handed on as soon as their last reader is done, so big batches stay small in memory.
             done = [a for a in dict.fromkeys(node.args) if a in register and last_use[a] == k]
             free.extend(register.pop(a) for a in done)
-            slot = free.pop() if free else len(register) + len(free)
-            while slot in register.values():
-                slot += 1
-            register[k] = slot
+            slot = register[k] = free.pop() if free else len(register)
             names[k] = f"r{slot}"
             lines.append(f"        r{slot} = {code}")
         lines.append("        return [" + ", ".join(names[k] for k in wanted) + "]")
@@ -300,5 +304,5 @@ class Program:
             from scipy.special import erf  # costly to import; few formulas name it
 
             scope["erf"] = erf
-        exec(compile("\n".join(lines), "<generated from the trace>", "exec"), scope)
+        exec(_compiled("\n".join(lines)), scope)
         return scope["evaluate"]  # type: ignore[no-any-return]

@@ -58,6 +58,7 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> synth.BatchResult:
     return synth.batch(Rod, [*rows(8), *more], tmp_path_factory.mktemp("plain"))
 
 
+@pytest.mark.slow
 def test_the_files_say_what_became_of_each_row(plain: synth.BatchResult) -> None:
     assert plain.stopped == ""
     assert plain.counts == {"bad_input": 1, "infeasible": 1, "optimal": 9}
@@ -219,6 +220,7 @@ def test_a_process_that_dies_does_not_disturb_the_others() -> None:
         pool.shutdown()
 
 
+@pytest.mark.slow
 def test_processes_that_are_ended_at_work_are_ended_once_and_not_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     """A pipe closed twice takes with it whatever file has got its number meanwhile."""
     ended, end = [], executors._Worker.end
@@ -276,6 +278,7 @@ def test_work_that_is_lost_is_asked_for_again_and_is_no_attempt(tmp_path: Path) 
     job.close()
 
 
+@pytest.mark.slow
 def test_cancelling_stops_and_resuming_goes_on(tmp_path: Path) -> None:
     tick = 0.1
     job = job_of(tmp_path, 9, BatchSettings(runner=RunnerSettings(tick=tick)))

@@ -116,6 +116,7 @@ def test_a_number_that_is_written_in_two_ways_is_in_the_group_twice() -> None:
     assert sorted(map(len, found.values())) == [5, 5]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "units"), [(32, 2), (200, 12), (1024, 64), (1100, 64), (2047, 64), (2048, 64), (3000, 64)]
 )
@@ -303,6 +304,7 @@ def test_progress_shows_within_a_group(tmp_path: Path) -> None:
     assert states[-1]["done"] == 20
 
 
+@pytest.mark.slow
 def test_a_job_that_is_cancelled_stops_within_a_group(
     together: synth.BatchResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

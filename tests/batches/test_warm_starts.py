@@ -96,6 +96,7 @@ def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_
         assert set(designs.loc[[f"R{k}"], "status"]) == {"optimal"}
 
 
+@pytest.mark.slow
 def test_a_teacher_that_has_no_design_teaches_nothing() -> None:
     numbers = BatchSettings(warm_starts=WarmStartSettings(one_in=3))
     table = [{"force [kN]": 10 + k, "diameter_limit [mm]": 1 if k % 2 else 40} for k in range(20)]

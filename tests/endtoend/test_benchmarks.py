@@ -110,6 +110,7 @@ def test_wrong_options_are_refused(arguments: list[str], monkeypatch: pytest.Mon
     assert stopped.value.code == 2
 
 
+@pytest.mark.slow
 def test_a_question_to_a_family_is_measured() -> None:
     question = QUESTIONS[0]
     found = measure(question, repeat=1, time_limit=60.0, points=2)

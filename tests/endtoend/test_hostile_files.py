@@ -108,6 +108,7 @@ def test_what_is_no_file_of_a_sensible_size_is_refused(place: Path, reader: str,
     assert not (place / "never").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", NO_FILES)
 def test_tables_that_are_no_files_are_refused(place: Path, make: Callable[[Path], None]) -> None:
     (place / "tables").mkdir()

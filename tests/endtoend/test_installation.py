@@ -134,6 +134,7 @@ LEFT_OUT = (
 )
 
 
+@pytest.mark.slow
 def test_a_family_that_is_broken_disturbs_no_other(beside: dict[str, str], tmp_path: Path) -> None:
     def clutchsynth(*words: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "synth", *words]
@@ -167,6 +168,7 @@ def test_families_of_somebody_else_change_no_test(beside: dict[str, str]) -> Non
     run(ROOT, beside, "-m", "pytest", "-q", "-m", "not slow", "-p", "no:cacheprovider", *tests)
 
 
+@pytest.mark.slow
 def test_a_wheel_computes_with_the_same_digests(wheel: Path, tmp_path: Path) -> None:
     ask = "from synth.results.provenance import *; import synth; "
     ask += "print(code_digest(), problem_digest([type(synth.load('cone_clutch'))]))"

@@ -42,6 +42,7 @@ def test_a_declaration_without_details_knows_nothing_more():
     assert [float(x) for x in function.bounds([(np.nan, np.nan)])] == [-np.inf, np.inf]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formula", [reactive_friction_work, reactive_peak_slip_power])
 @pytest.mark.parametrize("sense", ["at_most", "at_least"])
 def test_propagation_keeps_every_design_that_exists(formula, sense):

@@ -20,7 +20,9 @@ PAIR = {
         "driven_inertia": "30 kg*m2",
         "engagements_per_hour": "50 1/h",
     },
+    "fix": {"ramp_time": "2 s"},
     "points": 3,
+    "gap": 0.05,
 }
 
 

@@ -210,7 +210,7 @@ def test_null_takes_an_entry_of_an_earlier_job_back() -> None:
 
 
 @given(requests())
-@settings(deadline=None, derandomize=True, max_examples=repetitions(300, 20_000))
+@settings(deadline=None, derandomize=True, max_examples=repetitions(100, 20_000))
 def test_any_request_is_read_or_refused_and_what_is_read_fits_its_schema(drawn: tuple[str, Any]) -> None:
     kind, request = drawn
     if answer(read, kind=kind, request=request):
@@ -218,7 +218,7 @@ def test_any_request_is_read_or_refused_and_what_is_read_fits_its_schema(drawn: 
 
 
 @given(requests())
-@settings(deadline=None, derandomize=True, max_examples=repetitions(100, 5_000))
+@settings(deadline=None, derandomize=True, max_examples=repetitions(40, 5_000))
 def test_any_request_is_checked_as_a_spec_as_a_design_and_as_rows(drawn: tuple[str, Any]) -> None:
     _, request = drawn
     assert answer(check, request=request)

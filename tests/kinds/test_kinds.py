@@ -78,6 +78,7 @@ def test_the_kinds_tell_what_waits_behind_what() -> None:
 # ---- requests -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BUILT)
 def test_a_stored_request_reads_as_itself(name: str) -> None:
     first = posed(name, OF[name])

@@ -164,6 +164,7 @@ def same(found, expected, where):
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9, err_msg=str(where))
 
 
+@pytest.mark.slow
 def test_limits_of_family_and_user_are_one_list_in_the_order_of_reports(asked):
     instance, own = asked.instance, asked.instance.limits.judging
     assert [x.name for x in instance.constraints] == [x.name for x in (*instance.model.limits, *own)]

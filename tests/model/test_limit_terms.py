@@ -71,6 +71,7 @@ def test_a_variable_that_can_be_zero_has_a_size_there():
     np.testing.assert_allclose(found, [1e-5, 1e-5, 3.0])
 
 
+@pytest.mark.slow
 def test_formulas_nested_more_deeply_than_python_calls():
     x = ca.SX.sym("x")
     deep = x

@@ -107,6 +107,7 @@ def test_numpy_code_equals_casadi_on_the_multi_plate_family(traced):
     assert good.mean() > 0.999
 
 
+@pytest.mark.slow
 def test_symbolic_form_of_the_program_equals_the_declaration(traced):
     reference = traced.casadi(traced.outputs())
     again = traced.casadi(traced.model.program.symbolic(traced.model.inputs))

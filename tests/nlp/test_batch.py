@@ -594,6 +594,7 @@ def test_what_is_too_large_for_the_kernel_is_solved_over_arrays():
         np.testing.assert_allclose(small.solve([float(n)], 2.0, 0.1, 9.0).variables, np.ones((1, n)), rtol=1e-4)
 
 
+@pytest.mark.slow
 @BUILT
 @pytest.mark.parametrize("level", [level for level in LEVELS if level < processor_level()])
 @pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])

@@ -246,6 +246,7 @@ def cut_some(program):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_narrow_ranges_keep_every_value_that_keeps_the_limits(seed):
     traced, rng = Traced(seed, cut_some), np.random.default_rng(seed)

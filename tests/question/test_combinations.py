@@ -57,6 +57,7 @@ PARTS = st.sampled_from([{}, {"plate": ["core 1.8", "core 1"]}])
 ENDS = st.sampled_from([{}, {"end": "eye"}])
 
 
+@pytest.mark.slow
 @given(DENSITIES, LIMITS, PARTS, ENDS)
 @settings(deadline=None, derandomize=True, max_examples=30)
 def test_number_and_description_go_round(densities: list[float], limits: Any, parts: Any, fix: Any) -> None:

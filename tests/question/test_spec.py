@@ -244,6 +244,7 @@ def test_whatever_stands_in_a_spec_is_asked_or_refused(
         assert len(str(error)) < 2000  # noqa: PT017
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["yaml", "json"])
 @pytest.mark.parametrize("digits", [400, 5000])
 @pytest.mark.parametrize("key", FIELDS)

@@ -267,6 +267,7 @@ def over(store: Store, *jobs: str) -> None:
         connection.execute(sa.update(Job).where(Job.id.in_(jobs)).values(expires=moment() - 1.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["of", "parent"])
 @pytest.mark.parametrize("why", ["open", "younger", "pinned"])
 def test_what_a_job_refers_to_stays_as_long_as_that_does(store: Store, how: str, why: str) -> None:
@@ -387,6 +388,7 @@ def test_a_census_counts_what_there_is(store: Store) -> None:
     assert 0 <= found["oldest"] < 60
 
 
+@pytest.mark.slow
 def test_a_stopped_job_keeps_what_it_has_found(store: Store) -> None:
     job, _ = store.submit(asked())
     taken = store.claim_next("me", CODE)
@@ -399,6 +401,7 @@ def test_a_stopped_job_keeps_what_it_has_found(store: Store) -> None:
     assert list(store.records(job)) == ["front.json"]
 
 
+@pytest.mark.slow
 def test_every_job_is_taken_by_one_worker_only(store: Store) -> None:
     for k in range(12):
         store.submit(asked(str(k)))

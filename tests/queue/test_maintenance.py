@@ -91,6 +91,7 @@ WOUNDS: dict[str, Callable[[bytearray], bytes]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wound", WOUNDS)
 def test_a_damaged_file_is_told_not_copied_and_not_served(tmp_path: Path, wound: str) -> None:
     file = tmp_path / "jobs.sqlite"

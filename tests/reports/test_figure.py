@@ -115,6 +115,7 @@ def test_everything_that_was_asked_for_is_written() -> None:
         assert text in texts, text
 
 
+@pytest.mark.slow
 def test_nothing_leaves_the_page_or_covers_anything_else() -> None:
     assert_readable(sample())
     crowd = [{"x": 1 + 0.05 * k, "label": f"event number {k}"} for k in range(6)]
@@ -166,6 +167,7 @@ def words(labels: list[str]) -> pd.DataFrame:
     return frame
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("labels", "rotation", "first"),
     [
@@ -303,6 +305,7 @@ def test_the_drawing_depends_on_the_frame_alone() -> None:
     assert ET.fromstring(svg).tag.endswith("svg")
 
 
+@pytest.mark.slow
 def test_png_has_the_same_size_on_paper() -> None:
     picture = imread(io.BytesIO(figure_png(sample(), resolution=100)))
     page = ET.fromstring(figure_svg(sample()))

@@ -211,6 +211,7 @@ def test_rating_ends_where_time_is_over_and_keeps_what_is_done():
     assert seen == [0.0, 0.5]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("block", "words"),
     [

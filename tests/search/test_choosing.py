@@ -45,6 +45,7 @@ def covered(state: FrontState, phi: np.ndarray, tolerance: np.ndarray) -> bool:
 TWO, NARROW, THREE = ["mass", "flexibility"], ["mass", "width"], ["mass", "flexibility", "width"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("objectives", "share", "node_limit", "noted"),
     [
@@ -107,6 +108,7 @@ def test_the_finest_cover_is_kept() -> None:
     assert len(state.proof.bounds) == 4  # with that of the box of everything
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(repetitions(3, 12)))
 def test_what_is_covered_spares_the_search_for_the_first_place_and_changes_nothing_of_it(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -147,6 +147,7 @@ def test_requirements_of_a_light_clutch(light, name):
     assert light.elasticity["mass"][name] == pytest.approx(expected, rel=2e-3, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_requirements_with_room_to_spare_cost_nothing(light):
     for name in ("outer_diameter_limit", "slip_time_limit"):
         assert name not in light.elasticity["mass"]

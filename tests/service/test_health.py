@@ -56,6 +56,7 @@ def test_a_server_that_cannot_write_is_not_ready_as_long(tmp_path: Path) -> None
         assert reasons(service) == []
 
 
+@pytest.mark.slow
 def test_what_finds_no_room_is_507_with_the_reason(service: Service) -> None:
     token = bearer(service.token("read", "admin"))
     sa.event.listen(service.store.engine, "connect", _is_full)
@@ -171,6 +172,7 @@ def test_jobs_and_workers_are_told_as_the_database_has_them(service: Service) ->
     assert again["clutchsynth_job_ends_total", (("kind", "synthesis"), ("outcome", "optimal"))] == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("address", "headers", "scope", "status"),
     [

@@ -109,6 +109,7 @@ def elsewhere(database: str, tmp_path: Path) -> Iterator[Service]:
         yield own
 
 
+@pytest.mark.slow
 def test_it_is_the_same_on_both_databases(elsewhere: Service) -> None:
     made = elsewhere("POST", "/api/v1/tokens", json={"name": "a", "scopes": ["admin", "read"], "tenant": "acme"})
     assert made.status_code == 201

@@ -33,6 +33,7 @@ TOKENS = "/api/v1/tokens"
 # ---- one form of refusal --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "path", "status", "code"),
     [
@@ -78,6 +79,7 @@ def test_every_address_tells_all_its_methods(service: Service) -> None:
     assert seen >= 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "media", "status", "code"),
     [
@@ -124,6 +126,7 @@ def added(service: Service, raised: BaseException) -> None:
     service.app.add_api_route("/fail", fail, methods=["GET"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("raised", "status", "code"),
     [
@@ -183,6 +186,7 @@ def test_a_database_that_is_away_is_waited_for(service: Service) -> None:
 # ---- names and sites ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("host", "public", "status"),
     [
@@ -210,6 +214,7 @@ def test_only_own_names_are_answered(tmp_path: Path, host: str, public: bool, st
 FOREIGN = {"origin": "https://evil.example"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("headers", "cookie", "status"),
     [
@@ -244,6 +249,7 @@ def test_reading_is_not_hindered_by_where_it_comes_from(service: Service) -> Non
     assert "access-control-allow-origin" not in answer.headers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", ["/healthz", "/nothing", "/fail", TOKENS])
 def test_every_answer_keeps_browsers_from_doing_more_than_showing_it(service: Service, path: str) -> None:
     added(service, RuntimeError())
@@ -391,6 +397,7 @@ def test_what_readers_of_json_do_not_agree_upon_is_told_with_its_place(
     assert [(one["path"], one["message"]) for one in answer.json()["error"]["problems"]] == faults
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "message"),
     [
@@ -429,6 +436,7 @@ def test_bodies_of_another_kind_are_told_what_is_taken(service: Service) -> None
 LIBRARIES = re.compile(r"(input|string|list) should|value error|validation|pydantic|\.\d+:|'JSON'", re.IGNORECASE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "path", "body", "message"),
     [
@@ -478,6 +486,7 @@ def test_what_schemas_refuse_is_told_in_words_for_people(
 VALUES = (None, True, 0, -1, 1.5, 1e300, "", " ", "x", "x" * 400, "\n", [], [None], ["x"] * 9, {}, {"x": 1})
 
 
+@pytest.mark.slow
 def test_no_word_of_a_library_is_in_a_refusal(service: Service) -> None:
     described = service.app.openapi()
     seen = 0
@@ -562,7 +571,7 @@ def test_no_name_has_a_letter_that_acts_on_what_shows_it() -> None:
                     adapter.validate_python(text)
 
 
-@pytest.mark.parametrize("letter", ["\u202e", "\u2066", "\u200f", "\u061c", "\u2028", "\u2029", "\x85", "\n", "\x1b"])
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "body", "place"),
     [
@@ -572,11 +581,10 @@ def test_no_name_has_a_letter_that_acts_on_what_shows_it() -> None:
         ("/api/v1/catalogues", {"name": "a", "csv": "x", "note": "b"}, "note"),
     ],
 )
-def test_names_that_act_on_a_screen_are_refused(
-    service: Service, path: str, body: dict[str, Any], place: str, letter: str
-) -> None:
-    answer = service("POST", path, json={**body, place: f"a{letter}b"})
-    assert (answer.status_code, code_of(answer)) == (422, "bad_input")
-    (problem,) = answer.json()["error"]["problems"]
-    assert (problem["path"], "one line" in problem["expected"]) == ([place], True)
-    assert letter not in problem["message"]
+def test_names_that_act_on_a_screen_are_refused(service: Service, path: str, body: dict[str, Any], place: str) -> None:
+    for letter in ("\u202e", "\u2066", "\u200f", "\u061c", "\u2028", "\u2029", "\x85", "\n", "\x1b"):
+        answer = service("POST", path, json={**body, place: f"a{letter}b"})
+        assert (answer.status_code, code_of(answer)) == (422, "bad_input"), ascii(letter)
+        (problem,) = answer.json()["error"]["problems"]
+        assert (problem["path"], "one line" in problem["expected"]) == ([place], True), ascii(letter)
+        assert letter not in problem["message"]

@@ -120,6 +120,7 @@ def test_changes_of_counts() -> None:
     assert found.breaks[0].change == "strands 1 -> 2"
 
 
+@pytest.mark.slow
 def test_refusals_begin_somewhere() -> None:
     # The cheaper rope may not be used beyond 33 kN, nor in two strands beyond 25.
     worn = ropes((10, 1), (30, 1), worn=[33, 1000])
@@ -184,6 +185,7 @@ def test_against_a_dense_scan() -> None:
 # ---- two things varied ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["load", "share"])
 def test_breaks_with_two_things_varied(first: str) -> None:
     both = {"load": "4:44:20 kN", "share": "0.5, 1, 2"}
@@ -227,6 +229,7 @@ def test_a_thing_that_nothing_reads_changes_no_break() -> None:
         check([b], [(10, "a1", "b1")])
 
 
+@pytest.mark.slow
 def test_several_objectives_have_breaks_of_their_own() -> None:
     # The second is the least bulky as long as it may be used.
     table = ropes((10, 2), (20, 1), (16, 1.5), worn=[1000, 17, 1000])
@@ -239,6 +242,7 @@ def test_several_objectives_have_breaks_of_their_own() -> None:
 # ---- along a limit and along weights --------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_breaks_along_a_limit() -> None:
     table = ropes((10, 2), (20, 1), (35, 0.5))
     below = study(FREE, {"strength <=": "10, 20 kN"}, table, requirements={"load": "15 kN"})
@@ -247,6 +251,7 @@ def test_breaks_along_a_limit() -> None:
     check(capped.breaks, [(35, "-", "b1")])
 
 
+@pytest.mark.slow
 def test_breaks_along_weights() -> None:
     # At 15 kN the costs are 45, 38, 35, 36 and 44; the dearer to buy, the less bulky.
     table = ropes((10, 7 / 3), (16, 22 / 15), (20, 1), (25, 11 / 15), (36, 8 / 15))
@@ -316,6 +321,7 @@ def test_breaks_that_are_kept_are_not_searched_again(tmp_path: Path) -> None:
     assert kept(tmp_path).breaks == first.breaks
 
 
+@pytest.mark.slow
 def test_breaks_after_an_interruption_are_the_same(tmp_path: Path) -> None:
     whole = kept(None).files()["breaks.csv"]
 

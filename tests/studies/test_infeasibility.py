@@ -107,6 +107,7 @@ def test_every_patch_makes_the_question_feasible(name: str) -> None:
             assert any(word in str(entries) for word in [str(way.needed), *way.sentence.split()])
 
 
+@pytest.mark.slow
 def test_less_than_an_amount_does_not_do() -> None:
     spec = question("limits and a requirement")
     for way in explained("limits and a requirement").single:
@@ -117,6 +118,7 @@ def test_less_than_an_amount_does_not_do() -> None:
             assert not is_feasible(patched(spec, {key: {w: less / {"F": 1, "room": 1e-3}[w] for w in entries}}))
 
 
+@pytest.mark.slow
 def test_a_refusal_is_explained_with_amounts() -> None:
     why = explained("refused")
     (guard,) = why.fired
@@ -150,6 +152,7 @@ def test_only_what_was_asked_gives_way_unless_physics_may() -> None:
     assert all(way.patch is None for way in all_of_it.single if way.name in family)
 
 
+@pytest.mark.slow
 def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) -> None:
     spec, why = question("refused on its edge"), explained("refused on its edge")
     told = json.loads(why.save(tmp_path)[1].read_text(encoding="utf-8"))
@@ -159,6 +162,7 @@ def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) ->
     assert is_feasible(patched(spec, told["ways"][0]["patch"]))
 
 
+@pytest.mark.slow
 def test_values_are_told_to_six_digits_and_pinned_ones_stated_in_full() -> None:
     joint = explained("pins").joint
     assert joint is not None

@@ -159,6 +159,7 @@ def test_weights_change_the_order_alone() -> None:
     assert last.settings["robust"] == first.settings["robust"]
 
 
+@pytest.mark.slow
 def test_what_is_kept_is_kept_for_its_range_alone(tmp_path: Path) -> None:
     vary = {"torque": "90, 110 N*m"}
     first = study(vary, WIDE, NEEDED, folder=tmp_path, **HUMMING)
@@ -236,6 +237,7 @@ def test_wear_is_varied_by_its_own_name() -> None:
     assert scattering == [{"torque": "+-5 %"}, {"torque": "+-5 %", "wear": "new and worn"}]
 
 
+@pytest.mark.slow
 def test_none_is_no_scatter_wherever_a_block_stands() -> None:
     plain = synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=3)
     none = synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=3, robust={"friction": "None"})

@@ -299,6 +299,7 @@ def test_steps_that_were_lost_are_searched_again(
         assert found["designs"] == known["designs"]
 
 
+@pytest.mark.slow
 def test_steps_that_were_changed_are_not_believed(tmp_path: Path) -> None:
     text = csv_of(asked("one", None), tmp_path / "whole")
     asked("one", tmp_path)

@@ -82,6 +82,7 @@ PAGES = st.sampled_from(sorted(ALPHABETS))
 ASCII = st.text(st.characters(min_codepoint=97, max_codepoint=122), min_size=1, max_size=4)
 
 
+@pytest.mark.slow
 @given(st.data(), PAGES)
 @settings(deadline=None, derandomize=True, max_examples=300)
 def test_a_text_is_read_as_it_was_written_or_asked_back(data: st.DataObject, page: str) -> None:

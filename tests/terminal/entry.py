@@ -7,9 +7,11 @@ import os
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from functools import cache
 from pathlib import Path
 
 import pytest
+import typer.main
 
 from synth.terminal import batch_commands
 from synth.terminal.cli import main
@@ -17,6 +19,7 @@ from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
+BUILT = cache(typer.main.get_command)  # all commands, at each call anew otherwise
 
 LACKING = """
 import os, sys
@@ -33,6 +36,17 @@ sys.meta_path.insert(0, Lacking())
 def without(packages: str, *words: object) -> subprocess.CompletedProcess[str]:
     """Run it in a process of its own in which packages, told apart by blanks, cannot be imported."""
     return _run([sys.executable, "-c", f"{LACKING}{COMMAND[-1]}", *map(str, words)], ROOT, {"LACKING": packages})
+
+
+def without_at_once(packages: str, *words: object) -> subprocess.CompletedProcess[str]:
+    """Run it in this process, in which packages, told apart by blanks, cannot be imported meanwhile."""
+    lacking = packages.split()
+    with pytest.MonkeyPatch.context() as patch:
+        for name in [name for name in sys.modules if name.partition(".")[0] in lacking]:
+            patch.delitem(sys.modules, name)
+        for package in lacking:
+            patch.setitem(sys.modules, package, None)
+        return at_once(*words)
 
 
 def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -58,6 +72,7 @@ def at_once(*words: object, folder: Path = ROOT, **environment: str) -> subproce
     texts = [str(word) for word in words]
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
         patch.setattr(sys, "argv", ["clutchsynth", *texts])
+        patch.setattr(typer.main, "get_command", BUILT)
         patch.chdir(folder)
         for name, value in environment.items():
             patch.setenv(name, value)

@@ -121,6 +121,7 @@ def test_a_batch_says_what_it_reads_and_what_came_out(done: tuple[Path, Complete
         assert [row["id"] for row in csv.DictReader(file)] == ["A1", "A2"]
 
 
+@pytest.mark.slow
 def test_jobs_are_listed_shown_cancelled_and_resumed(done: tuple[Path, CompletedProcess[str]]) -> None:
     folder, _ = done
     job = json.loads((folder / "out" / "batch.json").read_text())["job"]
@@ -174,6 +175,7 @@ def test_nothing_feasible_has_its_code(tmp_path: Path) -> None:
     assert clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, "-q", folder=tmp_path).returncode == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "expected"),
     [

@@ -85,6 +85,7 @@ def test_the_front_is_not_written_over(saved: Path) -> None:
 # ---- prices ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_prices_are_shown_and_saved_beside_the_front(saved: Path) -> None:
     folder = saved / "out"
     done = at_once("prices", folder, "--design", 2, "--design", 1, "-o", folder)
@@ -219,6 +220,7 @@ def test_a_comparison_is_verified_over_all_its_families(compared: tuple[Path, st
     assert "beats design" in done.stdout
 
 
+@pytest.mark.slow
 def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Path) -> None:
     (tmp_path / "tight.yaml").write_text(
         SEVERAL.replace("load_torque: 60 N*m", "load_torque: 60 N*m\n  actuation_force_limit: 300 N").replace(
@@ -254,6 +256,7 @@ def test_a_careless_sheet_is_refused(tmp_path: Path, old: str, new: str, words: 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_several_families_are_no_design_to_check(compared: tuple[Path, str], tmp_path: Path) -> None:
     (tmp_path / "design.yaml").write_text(SEVERAL + "values: {ramp_time: 1 s}\n")
     done = at_once("check", tmp_path / "design.yaml")

@@ -147,6 +147,7 @@ def test_describe_as_csv() -> None:
     assert not [name for kind, name in rows if kind == "step"]
 
 
+@pytest.mark.slow
 def test_describe_lists_quantities_on_the_way_where_they_are_asked_for() -> None:
     shown = at_once("describe", "multi_plate_clutch", "--all").stdout
     listed = shown.split("\nQuantities on the way to others")[1].split("\nLimits\n")[0]
@@ -239,6 +240,7 @@ def test_own_limits_on_variables_and_counts_are_tested_as_well(tmp_path: Path) -
 # ---- bad input ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "text", "words"),
     [
@@ -278,6 +280,7 @@ def test_a_folder_that_cannot_be_one_is_refused_before_the_search(tmp_path: Path
     assert (tmp_path / "taken").read_text() == "a file"
 
 
+@pytest.mark.slow
 def test_flags_are_checked_like_the_spec(tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert "--points: got 0" in refused(at_once("run", HOIST, "-o", out, "--points", "0"))
@@ -362,6 +365,7 @@ def test_units_of_name_plates_are_told_once_and_not_where_all_is_quiet(tmp_path:
         assert at_once("check", design).returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("torque", "says"),
     [
@@ -433,6 +437,7 @@ def test_what_is_far_off_is_told_as_a_factor_and_without_exponents(tmp_path: Pat
     assert "clutchsynth explain 'too light.yaml'" in done.stdout
 
 
+@pytest.mark.slow
 def test_what_a_family_refuses_names_explain_as_well(tmp_path: Path) -> None:
     (tmp_path / "room.yaml").write_text(
         "family: disc_clutch\nrequirements: {load_torque: 60 N*m, driver_speed: 1500 1/min, "

@@ -33,6 +33,7 @@ def table(path: Path) -> str:
     return path.read_bytes().decode()
 
 
+@pytest.mark.slow
 def test_designs_say_the_same(saved: Path) -> None:
     german = table(saved / "de" / "designs.csv")
     assert german.startswith("\ufeffrank;score;status;gap;note;alternatives;mass [kg];")
@@ -49,6 +50,7 @@ def test_designs_say_the_same(saved: Path) -> None:
             assert a == b or float(a) == float(b)
 
 
+@pytest.mark.slow
 def test_a_front_in_either_style_holds(saved: Path) -> None:
     for style in ("en", "de"):
         assert at_once("verify", saved / style).returncode == 0

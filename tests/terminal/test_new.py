@@ -26,6 +26,7 @@ def some_value(row: dict[str, object]) -> str:
     return f"{row['lower']!r} {row['unit']}" if row["unit"] not in ("", "-") else repr(row["lower"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_spec_of_every_family_reads_back_and_asks_what_is_asked_without_it(family: str, tmp_path: Path) -> None:
     problem = load(family)
@@ -72,6 +73,7 @@ def test_symbols_stand_for_names_and_options_that_differ_are_stated(tmp_path: Pa
     assert content["options"] == {"lubrication": "dry"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -121,6 +123,7 @@ def test_a_terminal_asks_for_what_is_needed_until_it_is_right(tmp_path: Path) ->
     assert b"to be filled in: driven_inertia" in shown
 
 
+@pytest.mark.slow
 def test_run_without_a_folder_shows_and_writes_nothing(tmp_path: Path) -> None:
     spec = tmp_path / "spec.yaml"
     spec.write_text(
@@ -140,6 +143,7 @@ def test_run_without_a_folder_shows_and_writes_nothing(tmp_path: Path) -> None:
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
+@pytest.mark.slow
 def test_shells_complete_commands_and_families() -> None:
     complete = {"_CLUTCHSYNTH_COMPLETE": "complete_bash"}
     commands = clutchsynth(**complete, COMP_WORDS="clutchsynth ne", COMP_CWORD="1").stdout.split()

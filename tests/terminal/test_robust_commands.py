@@ -133,6 +133,7 @@ def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, 
     assert at_once("simulate", folder / "design_01.yaml", "-o", tmp_path / "sim").returncode == 0
 
 
+@pytest.mark.slow
 def test_a_folder_that_is_used_again_keeps_nothing_of_the_range(saved: Path, robust: tuple[Path, str]) -> None:
     folder = saved / "twice"
     (saved / "rate.yaml").write_text(ROBUST.replace("robust: {", "robust: {mode: rate, "))

@@ -205,6 +205,7 @@ def test_tables_are_written_where_no_drawing_is_installed(tmp_path: Path, monkey
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".csv"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["simulate", "curves"])
 def test_help_of_a_command_imports_nothing_heavy(command: str) -> None:
     program = (

@@ -54,6 +54,7 @@ def test_tables_and_pictures_are_written(saved: tuple[Path, str]) -> None:
     assert (out / "breaks.csv").read_text().startswith("objective,")
 
 
+@pytest.mark.slow
 def test_the_same_command_keeps_what_it_has(saved: tuple[Path, str], folder: Path) -> None:
     out, shown = saved
     before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in sorted((out / "steps").iterdir())}
@@ -160,6 +161,7 @@ def test_where_a_range_ends_before_its_end_is_told(folder: Path) -> None:
     assert at_once(*command, "--time-limit", "1e-9", "--quiet").stdout == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("vary", "words"),
     [

@@ -599,6 +599,7 @@ def test_no_text_makes_anything_but_an_input_error(text: str, unit: str) -> None
     assert is_finite_or_refused(text, unit)
 
 
+@pytest.mark.slow
 @QUICK
 @given(
     st.from_regex(r"[+-]?[0-9.,' ]{0,8}([eE][+-]?[0-9]{0,6})? ?[ANJWKmkp1sh2-9*/()·^ °%-]{0,10}", fullmatch=True),

@@ -109,6 +109,7 @@ def test_it_is_the_best_of_all_choices(batch: synth.BatchResult, pairs: tuple[np
     assert found.taken_from_row == {"rod": ["length"]}
 
 
+@pytest.mark.slow
 def test_rows_that_no_variant_serves_are_told_with_the_reason(batch: synth.BatchResult) -> None:
     found = synth.size_range(batch)
     assert [(row["line"], row["status"]) for row in found.unserved] == [(11, "infeasible"), (12, "bad_input")]

@@ -466,6 +466,7 @@ def test_a_front_that_lacks_something_is_refused(saved, tmp_path):
 ONLY_BY_CHECKSUM = {"digest", "title", "versions", "statistics", "explanation", "options"}
 
 
+@pytest.mark.slow
 def test_nonsense_is_found_or_refused_but_never_a_fault_of_the_program(saved, tmp_path):
     content = json.loads((saved / "front.json").read_text(encoding="utf-8"))
     for key in content.keys() - ONLY_BY_CHECKSUM:

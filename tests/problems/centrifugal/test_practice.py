@@ -216,6 +216,7 @@ def test_worked_spring_circles_of_reversed_levers(clamping, returning, taken):
     assert "spring_circle" not in missed(nested)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_every_rule_can_bind_and_can_be_widened(family):
     sizes, requirements, parts = WRONG[family]
@@ -226,6 +227,7 @@ def test_every_rule_can_bind_and_can_be_widened(family):
         assert set(rules) - found == {name for name, own in rules.items() if own == requirement}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_mass_and_length_of_the_whole_clutch(family):
     found, parts = design(family), design(family, mass_scope="parts")

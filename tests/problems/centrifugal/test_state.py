@@ -94,6 +94,7 @@ def test_a_ball_ramp_by_hand():
     assert at_full == pytest.approx(v["full_speed_torque"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_state_lies_on_the_curves(clutch):
     _, problem, requirements, design = clutch
     drawn = synth.curves(problem, requirements, design)

@@ -82,6 +82,7 @@ def test_a_list_may_name_the_lining_and_what_it_stands():
     assert listed("other", plain).limits["set_pressure"][0] > 0
 
 
+@pytest.mark.slow
 def test_the_search_chooses_among_rows_and_computed_ones_say_so():
     front = synth.synthesize(synth.load("disc_clutch", plates="standard"), DUTY, points=3)
     assert front.certificate.kind == "global"

@@ -72,6 +72,7 @@ def test_worked_numbers(case, part, mass, length, life, speed, thickness):
     assert found.limits["hub_bore"][1] == pytest.approx(21.1636e-3, rel=6e-6)
 
 
+@pytest.mark.slow
 def test_every_rule_can_bind_and_can_be_widened():
     assert "pressure_plate_stiffness" in missed(design(THIN))
     assert "pressure_plate_stiffness" not in missed(design(THIN, {"plate_stiffness_ratio": 70}))

@@ -166,6 +166,7 @@ BINDING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rule", "sizes", "requirement", "narrow", "wide"), BINDING, ids=[b[0] for b in BINDING])
 def test_every_rule_can_bind_and_can_be_widened(rule, sizes, requirement, narrow, wide):
     assert rule in missed(design(sizes, THEN | {requirement: narrow}))

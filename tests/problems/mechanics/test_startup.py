@@ -96,6 +96,7 @@ def cases():
     return found
 
 
+@pytest.mark.slow
 def test_closed_forms_against_integration():
     for case in cases():
         expected = integrate(*case)
@@ -111,6 +112,7 @@ def test_closed_forms_against_integration():
         assert expected["work"] == pytest.approx(inertia * speed**2 / 2 + expected["resisting"], rel=1e-8), case
 
 
+@pytest.mark.slow
 def test_phases_against_integration():
     for case in cases():
         expected = integrate(*case)

@@ -258,6 +258,7 @@ def test_a_weak_motor_stalls_and_both_are_reported():
     assert flywheel.friction_work == pytest.approx(26.6**2 / 2, rel=1e-8)
 
 
+@pytest.mark.slow
 @QUICK
 @given(
     st.floats(1.05, 3),

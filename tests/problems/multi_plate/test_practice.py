@@ -152,6 +152,7 @@ def missed(found):
     return {name for name, residual in found.residuals.items() if residual > 1e-6}
 
 
+@pytest.mark.slow
 def test_every_rule_can_bind_and_can_be_widened():
     wide = {
         "friction_surfaces_max": 60,
@@ -225,6 +226,7 @@ def test_yaml_may_say_on_and_off():
     assert synth.load("multi_plate_clutch", practice="yes").option("practice") == "on"
 
 
+@pytest.mark.slow
 def test_designs_by_practice_are_ones_that_are_built():
     """The hoist: few surfaces, plates that stay flat, no drag worth naming; the lightest is proven."""
     asked = {k: v for k, v in DUTY.items() if k != "heat_transfer"} | {"jerk_limit": "18 rad/s3"}
