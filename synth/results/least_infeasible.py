@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from synth.results.record import UNSET, Number, Record, Unset
+from synth.results.record import UNSET, FileRecord, Number, Unset
 from synth.text.plain_text import counted
 
 
-class MissedLimit(Record, frozen=True, kw_only=True, eq=False):
+class MissedLimit(FileRecord, frozen=True, kw_only=True, eq=False):
     """A limit that the nearest design misses.
 
     Parameters
@@ -32,7 +32,7 @@ class MissedLimit(Record, frozen=True, kw_only=True, eq=False):
     sentence: str | Unset = UNSET
 
 
-class LeastInfeasible(Record, frozen=True, kw_only=True, eq=False):
+class LeastInfeasible(FileRecord, frozen=True, kw_only=True, eq=False):
     """The ``explanation`` of a front; only the message is told where no design could be evaluated.
 
     Parameters

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import msgspec
 
-from synth.results.record import UNSET, Number, Record, Unset, force_setattr
+from synth.results.record import UNSET, FileRecord, Number, Unset, force_setattr
 
 YES, NO, NOT_SHOWN = "yes", "no", "not shown"
 SAMPLED = "sampled"
 
 
-class RangeVerdict(Record, frozen=True, kw_only=True, eq=False):
+class RangeVerdict(FileRecord, frozen=True, kw_only=True, eq=False):
     """Whether limits hold over a range.
 
     Parameters
@@ -116,7 +116,7 @@ class DesignRating(RangeVerdict, frozen=True, kw_only=True, eq=False):
         super().__post_init__()
 
 
-class RatingCounts(Record, frozen=True, kw_only=True, eq=False):
+class RatingCounts(FileRecord, frozen=True, kw_only=True, eq=False):
     """The ``robust`` of the statistics of a front.
 
     Parameters

@@ -14,10 +14,10 @@ from synth.results.plain import plain
 
 Number = float | Literal["inf", "-inf"] | None  # JSON has no infinity; null is not-a-number
 
-__all__ = ["UNSET", "Number", "Record", "Unset", "force_setattr"]
+__all__ = ["UNSET", "FileRecord", "Number", "Unset", "force_setattr"]
 
 
-class Record(msgspec.Struct, frozen=True, kw_only=True, eq=False):
+class FileRecord(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """Immutable record that reads like the mapping of its file; fields that are not set are no keys.
 
     msgspec checks types when a file is read, and makes the JSON schema.
@@ -25,7 +25,7 @@ class Record(msgspec.Struct, frozen=True, kw_only=True, eq=False):
 
     @classmethod
     def from_json(cls, content: Any) -> Self:
-        """Record from its entry of a file; keys of other versions are left out.
+        """FileRecord from its entry of a file; keys of other versions are left out.
 
         Raises
         ------
@@ -79,4 +79,4 @@ class Record(msgspec.Struct, frozen=True, kw_only=True, eq=False):
         return [(key, self[key]) for key in self]
 
 
-Mapping.register(Record)
+Mapping.register(FileRecord)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth.results.record import UNSET, Record, Unset
+from synth.results.record import UNSET, FileRecord, Unset
 
 
-class SettingsRecord(Record, frozen=True, kw_only=True, eq=False):
+class SettingsRecord(FileRecord, frozen=True, kw_only=True, eq=False):
     """The ``settings`` of a front: with its frame they pose the question again.
 
     Parameters

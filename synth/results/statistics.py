@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from synth.results.ratings import RatingCounts
-from synth.results.record import UNSET, Record, Unset
+from synth.results.record import UNSET, FileRecord, Unset
 
 
-class SearchStatistics(Record, frozen=True, kw_only=True, eq=False):
+class SearchStatistics(FileRecord, frozen=True, kw_only=True, eq=False):
     """The ``statistics`` of a front; what a search has not done is not told.
 
     Parameters

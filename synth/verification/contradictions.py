@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.results.record import Record
+from synth.results.record import FileRecord
 from synth.units import parse_unit
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _without_units(names: Mapping[str, Any], units: Mapping[str, str], place: st
             yield f"{place}: {name} is in {unit!r}"
 
 
-def _missing(record: Record, keys: tuple[str, ...], place: str) -> Iterator[str]:
+def _missing(record: FileRecord, keys: tuple[str, ...], place: str) -> Iterator[str]:
     for key in keys:
         if key not in record:
             yield f"{place}: {key} is missing"

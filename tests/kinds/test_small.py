@@ -17,12 +17,13 @@ from synth.kinds.small import check, declaration, evaluate, examples, families
 from tests.kinds.jobs import DISC, PAIR, SPECS, earlier
 from tests.question.hostile_values import ENTRIES, JUNK
 from tests.shipped import FAMILIES
+from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.slow
 
 
 def places(request: Any, sources: Sources | None = None) -> list[list[Any]]:
-    found = check(request, sources or Sources())
+    found = check(request, sources or Sources(), KindSettings(seconds=PATIENCE))
     json.dumps(found, allow_nan=False)
     assert found["ready"] == (not found["problems"])
     return [one["path"] for one in found["problems"]]
@@ -97,7 +98,7 @@ def test_all_faults_are_told_at_once_and_what_is_read() -> None:
         "colour": "red",
     }
     del wrong["requirements"]["driver_speed"]
-    found = check(wrong)
+    found = check(wrong, settings=KindSettings(seconds=PATIENCE))
     assert not found["ready"]
     assert sorted(map(str, places(wrong))) == sorted(
         map(

@@ -15,7 +15,7 @@ import synth
 from synth.results import ParetoFront
 from synth.results.least_infeasible import LeastInfeasible, MissedLimit
 from synth.results.ratings import DesignRating, LimitRating, RatingCounts
-from synth.results.record import UNSET, Record
+from synth.results.record import UNSET, FileRecord
 from synth.results.search_record import SettingsRecord
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 
@@ -96,7 +96,7 @@ def test_a_design_that_was_not_rated_tells_nothing(infeasible: ParetoFront) -> N
     ],
     ids=lambda x: type(x).__name__,
 )
-def test_records_go_through_files_and_processes(told: Record) -> None:
+def test_records_go_through_files_and_processes(told: FileRecord) -> None:
     for again in (
         pickle.loads(pickle.dumps(told)),
         copy.deepcopy(told),
@@ -128,6 +128,6 @@ def test_keys_of_other_versions_are_left_out() -> None:
         (LeastInfeasible, {"conflicts": [7]}, r"Expected `object`, got `int` - at `\$.conflicts\[0\]`"),
     ],
 )
-def test_what_is_no_record_is_refused_with_its_place(record: type[Record], content: object, words: str) -> None:
+def test_what_is_no_record_is_refused_with_its_place(record: type[FileRecord], content: object, words: str) -> None:
     with pytest.raises(msgspec.ValidationError, match=words):
         record.from_json(content)

@@ -11,6 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from msgspec import structs
+
 from synth.folders.output_folder import claimed
 from synth.model.problem import DesignProblem
 from synth.question.request import Request
@@ -319,7 +321,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     """Return a front with other weights: the designs are the same, their order is not."""
     weights = list(question.weights.values())
     _, designs = ranked(front.designs, question.chosen, weights, front.complete, front.scale)
-    return replace(front, designs=designs, settings=replace(front.settings, **question.record()))
+    return replace(front, designs=designs, settings=structs.replace(front.settings, **question.record()))
 
 
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
