@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from synth.analysis.evaluate import evaluate
     from synth.analysis.hooks import curves, second_opinion, simulate
     from synth.analysis.operating_state import state
+    from synth.batches.batch import BatchResult, batch
     from synth.client.connection import connect
-    from synth.jobs.batch import BatchResult, batch
     from synth.model.problem import DesignProblem
     from synth.model.registry import families, load
     from synth.results import Design, ParetoFront
@@ -82,7 +82,7 @@ __all__ = [
 
 # CasADi and pandas are costly to import; the command line must answer --help without them.
 _HOME = {
-    "BatchResult": "synth.jobs.batch",
+    "BatchResult": "synth.batches.batch",
     "Comparison": "synth.studies.families.comparison",
     "Design": "synth.results",
     "DesignProblem": "synth.model.problem",
@@ -96,7 +96,7 @@ _HOME = {
     "Relaxation": "synth.studies.infeasibility.explanation",
     "SizeRange": "synth.variants.size_range",
     "Study": "synth.studies.whatif.study",
-    "batch": "synth.jobs.batch",
+    "batch": "synth.batches.batch",
     "calculation": "synth.analysis.calculation",
     "compare": "synth.studies.families.compare",
     "connect": "synth.client.connection",

@@ -14,9 +14,9 @@ from synth.question.uncertainty import Uncertainty
 from synth.robust.rating import Rater
 from synth.search.question import Question
 from synth.search.question import pose as posed
+from synth.search.settings import TUNING, Tuning
 from synth.studies.whatif.steps import Steps
 from synth.tables.catalogs import Catalogs
-from synth.tuning import TUNING, Tuning
 
 
 def pose(

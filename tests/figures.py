@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from tests.test_layers import NAMED_FROM_BELOW
+from tests.test_layers import upward
 
 ROOT = Path(__file__).parents[1]
 TABLE = Path(__file__).parent / "figures.csv"
@@ -105,7 +105,7 @@ def loose_modules() -> int:
 
 def names_from_below() -> int:
     """Texts by which a module names one of a floor above."""
-    return len(NAMED_FROM_BELOW)
+    return len(upward())
 
 
 def facade_imports() -> int:

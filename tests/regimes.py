@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from synth.model.constraint import void_limits
-from synth.nlp.ipopt import ParametricNlp, Solution, Task
 from synth.search.formulation import Formulation
+from tests.referees.ipopt import ParametricNlp, Solution, Task
 
 
 def referee(form: Formulation) -> ParametricNlp:

@@ -169,7 +169,7 @@ def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
 
     graph = {name: {module_of(other) for other in imported_by(path)} - {""} for name, path in modules.items()}
     assert len(graph) > 10
-    assert "synth.jobs.store" in graph["synth.jobs.batch"]
+    assert "synth.batches.store" in graph["synth.batches.batch"]
     assert circles(graph) == set()
 
 
@@ -216,6 +216,7 @@ KINDS = {
     "endtoend": "what people meet, across packages",
     "docs": "what the documentation shows",
     "benchmarks": "run by hand",
+    "referees": "independent solvers that answers are compared with",
     "sample_problems": "small problems for tests of the engine",
 }
 

@@ -10,8 +10,8 @@ import synth
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import SEARCHED
+from synth.search.settings import TUNING, Tuning
 from synth.search.synthesize import find_front
-from synth.tuning import TUNING, Tuning
 
 
 def tuned(**changes: Mapping[str, Any]) -> Tuning:

@@ -10,8 +10,8 @@ from synth.bounds.influences import Influences
 from synth.bounds.kernel_propagation import KernelPropagation
 from synth.bounds.propagation import Propagation
 from synth.bounds.question_bounds import QuestionBounds
+from synth.bounds.settings import BranchingSettings, KernelSizes
 from synth.question.search_space import SearchSpace
-from synth.tuning import Tuning
 
 
 class Bounding:
@@ -22,7 +22,10 @@ class Bounding:
     question : QuestionBounds
     workers : int
         Threads that may tighten boxes at the same time, where kernels compute.
-    tuning : Tuning
+    settings : BranchingSettings
+    sizes : KernelSizes
+    margins : tuple of float
+        By how much a value may miss the grid: relative, and absolute in SI.
 
     Attributes
     ----------
@@ -38,9 +41,16 @@ class Bounding:
         Median sizes of the objectives over the question.
     """
 
-    def __init__(self, question: QuestionBounds, workers: int, tuning: Tuning) -> None:
-        self._tuning = tuning
-        self._influences = Influences(question, tuning.branching)
+    def __init__(
+        self,
+        question: QuestionBounds,
+        workers: int,
+        settings: BranchingSettings,
+        sizes: KernelSizes,
+        margins: tuple[float, float],
+    ) -> None:
+        self._settings, self._sizes, self._margins = settings, sizes, margins
+        self._influences = Influences(question, settings)
         self.goal_sizes = self._influences.goal_sizes
         trees = [self._influences.clusters(factor) for factor in question.factors]
         self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)), workers)
@@ -56,8 +66,6 @@ class Bounding:
         return own
 
     def _begin(self, propagation: Propagation, workers: int) -> None:
-        tuning = self._tuning
         self.question, self.propagation = propagation.question, propagation
-        self.branching = BranchingWeights(self.question, propagation.cells.trees, self._influences, tuning.branching)
-        margins, sizes = tuning.tolerances.margins, tuning.kernels
-        self.kernel = KernelPropagation(propagation, self.branching, workers, margins, sizes)
+        self.branching = BranchingWeights(self.question, propagation.cells.trees, self._influences, self._settings)
+        self.kernel = KernelPropagation(propagation, self.branching, workers, self._margins, self._sizes)

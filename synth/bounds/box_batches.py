@@ -12,7 +12,7 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
 from synth.bounds.root_propagation import Root
-from synth.tuning import KernelSizes
+from synth.bounds.settings import KernelSizes
 
 # Rows of scores are as long as a multiple of it, so that registers hold whole ones.
 SCORE_WIDTH = 16

@@ -15,7 +15,7 @@ from synth.bounds.boxes import Boxes
 from synth.bounds.clusters import ClusterTree
 from synth.bounds.influences import Influences
 from synth.bounds.question_bounds import QuestionBounds
-from synth.tuning import BranchingSettings
+from synth.bounds.settings import BranchingSettings
 
 # Widths are finite: one without bounds (a missing cutoff, ends too far apart for a ratio) times no influence is none.
 LARGEST_RATIO = float(np.finfo(float).max)

@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.bounds.clusters import ClusterTree, Factor
 from synth.bounds.question_bounds import QuestionBounds
-from synth.tuning import BranchingSettings
+from synth.bounds.settings import BranchingSettings
 
 
 class Influences:

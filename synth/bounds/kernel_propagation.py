@@ -14,7 +14,7 @@ from synth.bounds.branching import BranchingWeights, ScoreTables
 from synth.bounds.kernel_boxes import BoxKernel, box_kernel
 from synth.bounds.kernel_subtrees import CutoffTables, Growth, Halves
 from synth.bounds.propagation import Propagation
-from synth.tuning import KernelSizes
+from synth.bounds.settings import KernelSizes
 
 
 class KernelPropagation:

@@ -43,10 +43,10 @@ from synth.bounds.log_forms import ELASTIC, LARGEST, SUM, LogForms, Relation, lo
 from synth.bounds.propagated_nodes import CONSTANT
 from synth.bounds.propagation import Propagation
 from synth.bounds.root_propagation import Leaves, propagated_boxes
+from synth.bounds.settings import TogetherLimits
 from synth.model.constraint import NodeConstraint
 from synth.model.program import Program
 from synth.order.margins import above, below
-from synth.tuning import TogetherLimits
 
 ROUNDED = 1e-11  # in logarithm: more than the rounding of any formula, and of the coefficients here
 SUMMED = 1e-13  # of the terms of a sum: more than the rounding of adding them up

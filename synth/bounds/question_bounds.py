@@ -19,11 +19,11 @@ from synth.bounds.clusters import Factor
 from synth.bounds.contractor import Contractor
 from synth.bounds.propagated_nodes import INNER, MovingInputs, PropagatedNodes
 from synth.bounds.root_propagation import Leaves, Root, propagated_root
+from synth.bounds.settings import BranchingSettings
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SPECIAL
 from synth.question.search_space import SearchSpace
 from synth.special import SpecialCall, expanded
-from synth.tuning import BranchingSettings
 
 
 class QuestionBounds:

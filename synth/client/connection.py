@@ -9,11 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from synth.batches.row_table import ROWS, read_table
 from synth.client.remote_job import Progress, RemoteJob, job_of
 from synth.client.transport import CLIENT, ClientSettings, ServiceRefusedError, Transport
 from synth.errors import InputError
 from synth.folders.files import csv_text, read_bytes
-from synth.jobs.row_table import ROWS, read_table
 from synth.question.count_domain import stated_value
 from synth.results import ParetoFront
 from synth.tables.table_file import table_file
@@ -219,8 +219,8 @@ class ServiceClient:
         front: ParetoFront | RemoteJob | str,
         design: int,
         within: Any = None,
-        count: int | None = None,
         *,
+        count: int | None = None,
         progress: Progress | None = None,
         **asked: Any,
     ) -> RemoteJob:

@@ -1,6 +1,6 @@
 """Many small continuous problems at once: one set of rows, a combination of parts and a task each.
 
-The problem is that of :class:`synth.nlp.ipopt.ParametricNlp`,
+The problem of one combination is
 
     minimise  weights . phi + t_weight t
     over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cutoff_k,
@@ -26,9 +26,9 @@ from synth.nlp.interior_point_numpy import InteriorPoint
 from synth.nlp.kernel_solver import KernelSolver, kernel_solver
 from synth.nlp.row_functions import RowFunctions
 from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.nlp.settings import NLP, NlpSettings
 from synth.order.feasibility import SMALLEST, size_of_miss
 from synth.system import deadline
-from synth.tuning import TUNING, NlpSettings
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class BatchNlp:
         rows: Rows,
         edge: float = 0.0,
         conditions: int = 0,
-        settings: NlpSettings = TUNING.nlp,
+        settings: NlpSettings = NLP,
     ) -> None:
         self.rows, self.settings = rows, settings
         self.functions = RowFunctions(program, n_variables, rows, edge)

@@ -34,7 +34,7 @@ from typing import Any
 import numpy as np
 
 from synth.nlp.row_functions import RowFunctions
-from synth.tuning import InteriorPointSettings
+from synth.nlp.settings import InteriorPointSettings
 
 CONVERGED, INFEASIBLE, STUCK, STOPPED = 1, 2, 3, 4
 

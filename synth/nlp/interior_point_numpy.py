@@ -23,8 +23,8 @@ from synth.nlp.interior_point import (
     split,
 )
 from synth.nlp.row_functions import RowFunctions
+from synth.nlp.settings import NLP, InteriorPointSettings, NlpSettings
 from synth.system import deadline
-from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 
 
 class InteriorPoint:
@@ -36,7 +36,7 @@ class InteriorPoint:
     settings : NlpSettings
     """
 
-    def __init__(self, functions: RowFunctions, settings: NlpSettings = TUNING.nlp) -> None:
+    def __init__(self, functions: RowFunctions, settings: NlpSettings = NLP) -> None:
         self.functions, self.settings = functions, settings
         self.point = functions.compile_point()
         self.layout = SparsityPattern(functions)

@@ -11,7 +11,7 @@ import numpy as np
 from synth.kernels.loading import kernel
 from synth.nlp.interior_point import Ends, Problems, SparsityPattern
 from synth.nlp.row_functions import RowFunctions
-from synth.tuning import InteriorPointSettings
+from synth.nlp.settings import InteriorPointSettings
 
 # Sizes that the kernel has room for; what is larger is solved over arrays.
 # Variables are goals as well: the last that settle ties.

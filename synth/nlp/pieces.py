@@ -31,7 +31,7 @@ from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SELECT, Program
 from synth.nlp.batch import BatchNlp, Solutions, Tasks, worth_of
 from synth.nlp.rows import Rows
-from synth.tuning import TUNING, NlpSettings
+from synth.nlp.settings import NLP, NlpSettings
 
 DECISIONS = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
 
@@ -277,7 +277,7 @@ class PiecedNlp:
     settings : NlpSettings
     """
 
-    def __init__(self, pieces: Pieces, settings: NlpSettings = TUNING.nlp) -> None:
+    def __init__(self, pieces: Pieces, settings: NlpSettings = NLP) -> None:
         self.pieces, self.settings, self.nlp_settings = pieces, settings.pieces, settings
 
     @cached_property

@@ -1,8 +1,8 @@
 """How closely numbers must agree to be the same, and by how much ends are moved outward against rounding.
 
 The kernels have :func:`below` and :func:`above` in ``kernels/c/margins.h``. Not here is what limits may be
-missed by (``synth.order.feasibility``), what the search takes for equal inside that (``synth.tuning.Tolerances``), and
-what verification does, which shares neither (``synth.proof.settings``).
+missed by (``synth.order.feasibility``), what the search takes for equal inside that
+(``synth.search.settings.Tolerances``), and what verification does, which shares neither (``synth.proof.settings``).
 """
 
 from __future__ import annotations

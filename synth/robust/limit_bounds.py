@@ -22,7 +22,7 @@ from synth.order.feasibility import TOLERANCE, holds
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
 from synth.proof.interval_arithmetic import DEFINED_FROM, ZERO, Pair, is_thin
 from synth.proof.tape import Expr, Ref, Tape
-from synth.tuning import RobustLimits
+from synth.robust.settings import RobustLimits
 
 Box: TypeAlias = tuple[np.ndarray, np.ndarray]  # lower and upper positions (things,), or of many boxes (boxes, things)
 WHERE = (OP_SELECT, ca.OP_IF_ELSE_ZERO)

@@ -29,10 +29,10 @@ from synth.question.uncertainty import Uncertainty
 from synth.results import Design
 from synth.results.ratings import SAMPLED, DesignRating, LimitRating
 from synth.robust.limit_bounds import LimitBounds, MonotoneLimit, MovingInput
+from synth.robust.settings import ROBUST, RobustLimits
 from synth.robust.uncertainty import Member, check_values, scattered
 from synth.robust.worst_points import stretched, worst_point
 from synth.text.row_cells import cell_value
-from synth.tuning import TUNING, RobustLimits
 
 PROVEN, BOUNDED = "proven", "bounded"
 
@@ -54,7 +54,7 @@ class Rater:
         When the problem has no such thing.
     """
 
-    def __init__(self, request: Request, asked: Uncertainty, settings: RobustLimits = TUNING.robust) -> None:
+    def __init__(self, request: Request, asked: Uncertainty, settings: RobustLimits = ROBUST) -> None:
         self.settings = settings
         self.instance = Instance(replace(request, parts={}, fix={}), restrict=False)
         self.model, self.asked = self.instance.model, asked

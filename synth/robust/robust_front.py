@@ -16,14 +16,23 @@ from synth.results import Design, ParetoFront
 from synth.results.assembly import ranked, scale_of
 from synth.results.ratings import DesignRating, RatingCounts
 from synth.robust.rating import Rater
+from synth.robust.settings import RobustLimits
 from synth.robust.uncertainty import check_rows
-from synth.tuning import RobustLimits, Tuning
 
 GRACE = 2.0  # s, in which designs that were found are rated although time is over
 NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
 
 
 # ---- fronts ---------------------------------------------------------------------------------------------------------
+
+
+class Tunes(Protocol):
+    """Settings of a search."""
+
+    @property
+    def robust(self) -> RobustLimits:
+        """Those of worst cases."""
+        ...
 
 
 class Asks(Protocol):
@@ -35,8 +44,8 @@ class Asks(Protocol):
         ...
 
     @property
-    def tuning(self) -> Tuning:
-        """What its search goes by."""
+    def tuning(self) -> Tunes:
+        """Settings of its search."""
         ...
 
     def within(self, seconds: float | None) -> Asks:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from synth.tuning import AscentSettings
+from synth.robust.settings import AscentSettings
 
 Residual = Callable[[np.ndarray], np.ndarray]  # positions (points, things) -> residuals (points,)
 

@@ -10,7 +10,7 @@ import numpy as np
 from synth.order.pareto import non_dominated
 from synth.search.dominance import SortedPoints, sorted_points
 from synth.search.dominance_code import dominance_code
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 @dataclass(frozen=True)

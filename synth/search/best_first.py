@@ -20,7 +20,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule, TabledPruningRule, reaches_beyond
-from synth.tuning import SearchEffort
+from synth.search.settings import SearchEffort
 
 
 @dataclass(frozen=True, kw_only=True)

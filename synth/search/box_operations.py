@@ -15,8 +15,8 @@ from synth.search.counters import SearchCounters
 from synth.search.log_objectives import LogObjectives
 from synth.search.makeable_values import MakeableValues
 from synth.search.refused_cells import RefusedCells, not_refused
+from synth.search.settings import TUNING, Tuning
 from synth.system import deadline
-from synth.tuning import TUNING, Tuning
 
 
 class BoxOperations:

@@ -17,7 +17,7 @@ from synth.nlp.batch import BatchNlp, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.nlp.rows import Rows
 from synth.search.counters import SearchCounters
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 def rows_of_question(question: QuestionBounds, log_goals: Sequence[bool]) -> Rows:

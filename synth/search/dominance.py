@@ -12,7 +12,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from synth.search.dominance_code import DominanceCode
-from synth.tuning import DominanceSettings
+from synth.search.settings import DominanceSettings
 
 WORD = 64  # bits
 SHIFT = 3  # of the shortest block, which is a power of two: the C source takes eight points at a time

@@ -22,7 +22,7 @@ from synth.search.log_objectives import LogObjectives
 from synth.search.makeable_values import MakeableValues
 from synth.search.point_evaluation import PointEvaluation
 from synth.search.resolution import declared_resolution
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 class Formulation:
@@ -87,7 +87,7 @@ class Formulation:
         question = QuestionBounds(
             instance, self.node_constraints, self.goals, self.bounded, infeasibility, tuning.branching
         )
-        self.bounding = Bounding(question, workers, tuning)
+        self.bounding = Bounding(question, workers, tuning.branching, tuning.kernels, tuning.tolerances.margins)
         self.objectives = self._log_objectives(sizes)
         self._rows = rows_of_question(question, self.objectives.log.tolist())
         self._kinks = open_kinks(question, self._rows)

@@ -26,11 +26,11 @@ from synth.search.nearest_ideal import ScoredFront
 from synth.search.proven_gap import Bound, Level, LevelBound
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.search.resolution import ranges
+from synth.search.settings import TUNING, TreeLimits, Tuning
 from synth.search.shown_designs import ShownDesigns
 from synth.search.stage_progress import StageProgress
 from synth.search.turns import TurnBudget
 from synth.search.warm_start import WarmStart
-from synth.tuning import TUNING, TreeLimits, Tuning
 
 
 @dataclass(frozen=True, kw_only=True)

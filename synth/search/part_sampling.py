@@ -25,9 +25,9 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings
 from synth.search.pruning import PruningRule
+from synth.search.settings import TUNING, Tuning
 from synth.system.file_locks import alone
 from synth.system.operating_system import cache_home
-from synth.tuning import TUNING, Tuning
 
 BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"
 

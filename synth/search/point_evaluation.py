@@ -20,7 +20,7 @@ from synth.question.search_space import SearchSpace
 from synth.search.archive import Candidate, rows_of
 from synth.search.log_objectives import LogObjectives
 from synth.search.refused_cells import not_refused
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 class PointEvaluation:

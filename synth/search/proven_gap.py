@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.order.pareto import non_dominated
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 
 
 @dataclass(frozen=True)

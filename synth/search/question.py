@@ -16,8 +16,8 @@ from synth.results import Design, ParetoFront
 from synth.results.search_record import SettingsRecord
 from synth.search.front_search import FrontSearch, Report
 from synth.search.front_state import FrontTask
+from synth.search.settings import TUNING, Tuning
 from synth.search.warm_start import WarmStart
-from synth.tuning import TUNING, Tuning
 
 
 @dataclass(frozen=True, kw_only=True)

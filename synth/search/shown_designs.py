@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from synth.search.formulation import Formulation
-from synth.tuning import ProgressLimits
+from synth.search.settings import ProgressLimits
 from synth.units import from_si, header
 
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from synth.question.settings import Progress
-from synth.tuning import TUNING, ProgressLimits
+from synth.search.settings import TUNING, ProgressLimits
 
 
 class StageProgress:

@@ -13,7 +13,7 @@ from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import ParetoFront
 from synth.search.question import Question, pose
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 def synthesize(
@@ -21,6 +21,7 @@ def synthesize(
     requirements: Mapping[str, Any],
     objectives: Any = None,
     points: int = 30,
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from synth.tuning import SearchEffort
+from synth.search.settings import SearchEffort
 
 
 class TurnTree(Protocol):

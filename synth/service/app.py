@@ -11,9 +11,9 @@ from fastapi import APIRouter, Depends, FastAPI
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.middleware import Middleware
 
+from synth.batches.store import Store
 from synth.errors import InputError
-from synth.jobs.accounts import Accounts
-from synth.jobs.store import Store
+from synth.queue.accounts import Accounts
 from synth.service import figures, health, token_routes
 from synth.service.addresses import Addresses
 from synth.service.api import (
@@ -76,7 +76,7 @@ def create_app(
     store : Store
         The job database; whoever has opened it closes it.
     engines : EngineCalls
-        For small questions, such as :class:`synth.jobs.engine_process.Engines`.
+        For small questions, such as :class:`synth.workers.engine_process.Engines`.
     file_engines : EngineCalls, optional
         For files that are read or made; by default the same.
     """

@@ -12,7 +12,7 @@ from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from synth.errors import InputError
-from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
+from synth.queue.accounts import ADMIN, READ, SUBMIT, Principal
 from synth.service.attempts import network_of
 from synth.service.context import Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, again, database_away

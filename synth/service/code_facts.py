@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
-from synth.jobs.engine_tasks import DECLARATION_TASK, EXAMPLES_TASK, FAMILIES_TASK, TABLES_TASK
 from synth.service.recording import log
 from synth.service.shares import Asker
 from synth.service.small_work import BusyError, LateError, SmallWork
+from synth.workers.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
+from synth.workers.engine_tasks import DECLARATION_TASK, EXAMPLES_TASK, FAMILIES_TASK, TABLES_TASK
 
 SERVER = Asker("the server", None)
 NOTHING: Mapping[str, Any] = MappingProxyType({})

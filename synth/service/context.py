@@ -12,8 +12,8 @@ from typing import Annotated, ParamSpec, TypeVar
 from anyio.to_thread import run_sync
 from fastapi import Depends, Request
 
-from synth.jobs.accounts import Accounts
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.accounts import Accounts
 from synth.service.attempts import FailedTokens
 from synth.service.code_facts import CodeFacts
 from synth.service.event_hub import EventHub

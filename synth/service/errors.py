@@ -25,13 +25,13 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from synth.errors import ExtraNeededError, InputError
-from synth.jobs.database import DISK_FULL
-from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
-from synth.jobs.job_table import KeyTakenError, QueueFullError
+from synth.queue.database import DISK_FULL
+from synth.queue.job_table import KeyTakenError, QueueFullError
 from synth.service.addresses import Addresses
 from synth.service.small_work import BusyError, LateError
 from synth.service.wording import fault_of
 from synth.system.operating_system import NO_ROOM
+from synth.workers.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 
 JSON = "application/json"
 NO_SPACE_SENTENCE = "there is no room on the disk of the service; nothing was kept, whoever runs it has to make room"

@@ -13,10 +13,10 @@ from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from synth.jobs.accounts import Principal
-from synth.jobs.job_table import LIVE, Happening
-from synth.jobs.store import Store
-from synth.jobs.views import Standing, standings
+from synth.batches.store import Store
+from synth.batches.views import Standing, standings
+from synth.queue.accounts import Principal
+from synth.queue.job_table import LIVE, Happening
 from synth.service.settings import ServiceSettings
 
 END, PROGRESS, REMARK, RESYNC, SNAPSHOT = "end", "progress", "remark", "resync", "snapshot"

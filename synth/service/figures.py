@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST
 
-from synth.jobs.accounts import ADMIN, READ
+from synth.queue.accounts import ADMIN, READ
 from synth.service.auth import address_of, principal_of
 from synth.service.context import Context, in_thread
 from synth.service.errors import ServiceError

@@ -9,7 +9,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import SQLAlchemyError
 
 from synth.errors import InputError
-from synth.jobs.database import HEAD
+from synth.queue.database import HEAD
 from synth.service.context import Context, ServiceContext, in_thread
 from synth.service.errors import again
 from synth.text.numbers import number_text, typed_number

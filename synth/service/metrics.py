@@ -17,10 +17,10 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.registry import Collector
 
-from synth.jobs.job_table import LIVE
-from synth.jobs.models import Job, moment
-from synth.jobs.store import Store
+from synth.batches.store import Store
 from synth.plugins import family_names
+from synth.queue.job_table import LIVE
+from synth.queue.models import Job, moment
 from synth.service.settings import ServiceSettings
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")

@@ -15,7 +15,7 @@ from typing import Any
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from synth.errors import shortened, where_raised
-from synth.jobs.log_lines import log_line
+from synth.queue.log_lines import log_line
 from synth.service.errors import ServiceError, error_response
 from synth.service.metrics import ServiceMetrics
 

@@ -19,13 +19,12 @@ import uvicorn
 from fastapi import FastAPI
 from sqlalchemy.exc import ArgumentError
 
+from synth.batches.store import Store
 from synth.errors import InputError
-from synth.jobs.accounts import Accounts
-from synth.jobs.database import refuse_damaged
-from synth.jobs.engine_process import Engines
-from synth.jobs.job_settings import INTERACTIVE, StoreSettings
-from synth.jobs.log_lines import json_lines
-from synth.jobs.store import Store
+from synth.queue.accounts import Accounts
+from synth.queue.database import refuse_damaged
+from synth.queue.log_lines import json_lines
+from synth.queue.settings import StoreSettings
 from synth.service.app import create_app
 from synth.service.context import ServiceContext
 from synth.service.protocol import bounded
@@ -34,6 +33,8 @@ from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor, worker_command
 from synth.system.file_locks import is_taken, locked, unlock
 from synth.system.operating_system import ENDING, private_file, private_folder
+from synth.workers.engine_process import Engines
+from synth.workers.settings import INTERACTIVE
 
 ADDRESS = "an address of this machine"
 BACKLOG = 128  # connections that the system holds until they are looked at

@@ -278,7 +278,7 @@ class ServiceSettings:
         """The address of the database."""
         if self.database:
             return self.database
-        from synth.jobs.database import file_url  # costly to import
+        from synth.queue.database import file_url  # costly to import
 
         return file_url(self.data.absolute() / JOBS_FILE).render_as_string()
 
@@ -294,7 +294,7 @@ class ServiceSettings:
 
     @property
     def tenant_limits(self) -> dict[str, float]:
-        """What a new tenant may have, by the names of :attr:`synth.jobs.models.Tenant.limits`."""
+        """What a new tenant may have, by the names of :attr:`synth.queue.models.Tenant.limits`."""
         return {
             "open_jobs": self.tenant_open_jobs,
             "running": self.tenant_running,

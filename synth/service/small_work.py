@@ -18,18 +18,18 @@ from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
 
 from synth.errors import InputError
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_process import EngineCrashedError, EngineTimeoutError
+from synth.queue.accounts import Principal
 from synth.service.metrics import QuestionFigures
 from synth.service.shares import Asker, FairShares, NoPlaceError
 from synth.text.numbers import typed_number
+from synth.workers.engine_process import EngineCrashedError, EngineTimeoutError
 
 KEPT = 32  # late questions that are remembered, with their answers
 KEPT_FOR = 60.0  # s, that an answer waits for whoever asks again
 
 
 class EngineCalls(Protocol):
-    """What the service needs of engine processes; see :class:`synth.jobs.engine_process.Engines`."""
+    """What the service needs of engine processes; see :class:`synth.workers.engine_process.Engines`."""
 
     def call(self, task: str, payload: Any, limit: float) -> Any:
         """Have a task done within a time of a processor."""

@@ -10,8 +10,8 @@ from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from synth.errors import InputError
-from synth.jobs.accounts import ADMIN, NAME, NAME_PATTERN, TokenEntry
-from synth.jobs.database import HEAD
+from synth.queue.accounts import ADMIN, NAME, NAME_PATTERN, TokenEntry
+from synth.queue.database import HEAD
 from synth.service.auth import Administrator, Anybody
 from synth.service.context import API, Context, in_thread
 from synth.service.errors import ServiceError, not_found

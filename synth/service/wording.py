@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import Described, InputError, Key
-from synth.jobs.accounts import NAME_PATTERN
+from synth.queue.accounts import NAME_PATTERN
 from synth.text.plain_text import UNSAFE_IN_LINE
 
 WORD = r"^[^\x00]*$"  # PostgreSQL keeps no text with the character 0

@@ -1,6 +1,6 @@
 """The numbers of what is asked about a front afterwards: how much it tries, and when it gives up.
 
-As in ``synth.tuning`` none of them is part of an answer: with other numbers less is told, or later.
+As in ``synth.search.settings`` none of them is part of an answer: with other numbers less is told, or later.
 """
 
 from __future__ import annotations

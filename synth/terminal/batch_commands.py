@@ -41,9 +41,9 @@ from synth.terminal.session import (
 from synth.text.input_limits import INPUT_LIMITS
 
 if TYPE_CHECKING:
-    from synth.jobs.batch import BatchJob
-    from synth.jobs.models import Job
-    from synth.jobs.store import Store
+    from synth.batches.batch import BatchJob
+    from synth.batches.store import Store
+    from synth.queue.models import Job
 
 Progress = Callable[[Mapping[str, Any]], None]
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
@@ -74,6 +74,7 @@ def register(app: typer.Typer) -> None:
 
 
 def batch(
+    *,
     rows: RowsFile,
     folder: RowsFolder = None,
     family: RowFamily = None,
@@ -125,7 +126,7 @@ def batch_job(
     csv: CsvStyle,
 ) -> BatchJob:
     """Return the batch that flags describe."""
-    from synth.jobs.batch import BatchJob
+    from synth.batches.batch import BatchJob
     from synth.question.settings import SearchSettings
     from synth.units import parse_quantity
 
@@ -142,7 +143,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
     if workers is not None:
         whole_number(workers, "--workers", INPUT_LIMITS.workers, path=("workers",))
     if scheduler is not None:
-        from synth.jobs.executors import must_answer
+        from synth.batches.executors import must_answer
 
         must_answer(scheduler)
     with heard_again() as check:
@@ -275,8 +276,8 @@ def resume(
     quiet: Quiet = False,
 ) -> None:
     """Go on with a job that was stopped or cancelled, without its table."""
-    from synth.jobs.batch import resume as go_on
-    from synth.jobs.outputs import write_outputs
+    from synth.batches.batch import resume as go_on
+    from synth.batches.outputs import write_outputs
     from synth.terminal.batch_console import batch_display, print_summary, shown_rows
 
     style = csv_style(csv, "--csv")
@@ -321,9 +322,9 @@ def _let_workers_go_on(store: Store, found: Job) -> None:
 
 def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
     """Return the databases that are meant: the one named, or those in folders."""
-    from synth.jobs.batch_folder import DATABASE
-    from synth.jobs.database import file_url
-    from synth.jobs.store import Store
+    from synth.batches.batch_folder import DATABASE
+    from synth.batches.store import Store
+    from synth.queue.database import file_url
 
     if database is not None and folders is None:
         return [Store(database, create=False)]
@@ -337,7 +338,7 @@ def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
 
 def _find(job: str, database: str | None) -> tuple[Store, Job]:
     """Return the job that is meant by a folder (its latest), or by the beginning of an id."""
-    from synth.jobs.batch_folder import DATABASE
+    from synth.batches.batch_folder import DATABASE
 
     if database is None and (Path(job) / DATABASE).is_file():
         (store,) = _stores(None, [Path(job)])

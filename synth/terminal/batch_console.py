@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from synth.batches.outputs import RowOutcome, row_outcomes
 from synth.errors import shortened
-from synth.jobs.outputs import RowOutcome, row_outcomes
 from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
 from synth.terminal.console import column_heading, console_on, in_common, made_of, output, plain_table, print_wrapped
 from synth.terminal.session import say, tell, tell_written
@@ -21,9 +21,9 @@ from synth.text.numbers import column_texts, number_text, thousands
 from synth.text.plain_text import counted
 
 if TYPE_CHECKING:
-    from synth.jobs.batch import BatchJob
-    from synth.jobs.models import Job
-    from synth.jobs.store import Account, Store
+    from synth.batches.batch import BatchJob
+    from synth.batches.store import Account, Store
+    from synth.queue.models import Job
 
 MOST_ROWS = 20  # that are all shown
 FIRST = 5  # of many that have no design

@@ -37,6 +37,7 @@ def register(app: typer.Typer) -> None:
 
 
 def near_equals(
+    *,
     source: FrontFolder,
     folder: Folder = None,
     design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
@@ -59,7 +60,7 @@ def near_equals(
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     front = load_front(source)
     with progress_display(quiet) as progress:
-        found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
+        found = find(front, design, within, count=count, seed=seed, progress=progress, time_limit=seconds)
     target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_near_equals(found, output())
@@ -71,6 +72,7 @@ def near_equals(
 
 
 def prices(
+    *,
     source: FrontFolder,
     folder: Folder = None,
     design: Annotated[

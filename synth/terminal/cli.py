@@ -196,6 +196,7 @@ def families(
 
 @app.command()
 def describe(
+    *,
     family: Family,
     option: Annotated[
         list[str] | None, typer.Option("--option", help="A structural choice, name=value.", metavar="NAME=VALUE")
@@ -221,6 +222,7 @@ def describe(
 
 @app.command()
 def run(
+    *,
     spec: SpecFile,
     folder: Folder = None,
     points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
@@ -297,6 +299,7 @@ def run(
 
 @app.command()
 def explain(
+    *,
     spec: SpecFile,
     folder: Folder = None,
     physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
@@ -333,6 +336,7 @@ def explain(
 
 @app.command()
 def check(
+    *,
     design: DesignFile,
     folder: Folder = None,
     at: Annotated[
@@ -452,6 +456,7 @@ def curves(
 
 @app.command()
 def verify(
+    *,
     folder: FrontFolder,
     time_limit: Annotated[
         str | None, typer.Option(help="Give the proof up after this time, in seconds or such as '2 min'.")

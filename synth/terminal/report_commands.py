@@ -28,6 +28,7 @@ def register(app: typer.Typer) -> None:
 
 
 def report(
+    *,
     source: Annotated[
         Path, typer.Argument(help="A folder that run or batch has written, or a DESIGN.yaml.", metavar="SOURCE")
     ],
@@ -157,7 +158,7 @@ def _of_batch(
     source: Path, target: Path, row: str | None, asked: dict[str, Any], database: str | None
 ) -> WrittenReport:
     """Write the report of a batch."""
-    from synth.jobs.batch_report import BatchReportOptions, report_batch
+    from synth.batches.batch_report import BatchReportOptions, report_batch
 
     how = BatchReportOptions.read(row=row, **{key: value for key, value in asked.items() if key != "length"})
     return report_batch(source, target, how, database)

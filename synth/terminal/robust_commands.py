@@ -33,6 +33,7 @@ def register(app: typer.Typer) -> None:
 
 
 def rate(
+    *,
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
     folder: Folder = None,
     over: Annotated[

@@ -19,8 +19,8 @@ from synth.terminal.session import INTERNAL, tell
 from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
-    from synth.jobs.accounts import TenantLimits, TokenEntry
-    from synth.jobs.database import Database
+    from synth.queue.accounts import TenantLimits, TokenEntry
+    from synth.queue.database import Database
     from synth.service.settings import ServiceSettings
 
 PACKAGES = ("fastapi", "uvicorn", "httptools", "jinja2", "python_multipart", "prometheus_client", "defusedxml")
@@ -132,8 +132,8 @@ def create_token(
     config: Config = None,
 ) -> None:
     """Make a token, and show it this once."""
-    from synth.jobs.accounts import Accounts
-    from synth.jobs.database import Database
+    from synth.queue.accounts import Accounts
+    from synth.queue.database import Database
 
     if days is not None and days < 0:
         raise InputError("--days", days, "0 or more")
@@ -150,7 +150,7 @@ def create_token(
 @token_app.command(name="list")
 def list_tokens(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """List the tokens, also those that are not valid any more."""
-    from synth.jobs.accounts import Accounts
+    from synth.queue.accounts import Accounts
 
     with _opened(config, data, database) as opened:
         found = Accounts(opened).tokens()
@@ -161,7 +161,7 @@ def list_tokens(data: Data = None, database: ServiceDatabase = None, config: Con
 @token_app.command(name="revoke")
 def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Revoke a token; whoever uses it is nobody from now on."""
-    from synth.jobs.accounts import Accounts
+    from synth.queue.accounts import Accounts
 
     with _opened(config, data, database) as opened:
         accounts = Accounts(opened)
@@ -172,7 +172,7 @@ def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase 
 
 
 def _line(token: TokenEntry) -> tuple[str, ...]:
-    from synth.jobs.log_lines import BEGINNING
+    from synth.queue.log_lines import BEGINNING
 
     return (
         str(token.id),
@@ -197,7 +197,7 @@ def _end(token: TokenEntry) -> str:
 @contextmanager
 def _opened(config: Path | None, data: Path | None, database: str | None) -> Iterator[Database]:
     """Give a database that must be there."""
-    from synth.jobs.database import Database
+    from synth.queue.database import Database
 
     with _settings(config, data, database) as settings, Database(settings.database_url, create=False) as opened:
         yield opened
@@ -223,7 +223,7 @@ def _place(settings: ServiceSettings) -> str:
 @tenant_app.command(name="list")
 def list_tenants(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """List the tenants, and what each may have at most."""
-    from synth.jobs.accounts import Accounts
+    from synth.queue.accounts import Accounts
 
     with _opened(config, data, database) as opened:
         found = Accounts(opened).tenants()
@@ -243,7 +243,7 @@ def limit_tenant(
     config: Config = None,
 ) -> None:
     """Change what a tenant may have at most, from the next request on; the rest stays as it is."""
-    from synth.jobs.accounts import Accounts
+    from synth.queue.accounts import Accounts
 
     stated = {"open_jobs": open_jobs, "running": running, "seconds_limit": seconds_limit, "rows": rows}
     wanted = {name: _most(name, text) for name, text in stated.items() if text is not None}
@@ -281,8 +281,8 @@ def _limits(found: TenantLimits) -> list[str]:
 @database_app.command(name="check")
 def check_database(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Look a database over; nothing is changed."""
-    from synth.jobs.database import HEAD, way_back
-    from synth.jobs.maintenance import examine
+    from synth.queue.database import HEAD, way_back
+    from synth.queue.maintenance import examine
 
     with _settings(config, data, database) as settings:
         found = examine(settings.database_url)
@@ -305,7 +305,7 @@ def back_up_database(
     config: Config = None,
 ) -> None:
     """Copy a database into a file, while it is used."""
-    from synth.jobs.maintenance import back_up
+    from synth.queue.maintenance import back_up
 
     with _settings(config, data, database) as settings:
         back_up(settings.database_url, file)
@@ -315,7 +315,7 @@ def back_up_database(
 @database_app.command(name="migrate")
 def migrate_database(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Bring the tables of a database to the form that this version uses."""
-    from synth.jobs.maintenance import bring_up
+    from synth.queue.maintenance import bring_up
 
     with _settings(config, data, database) as settings:
         before, after = bring_up(_place(settings))
@@ -324,7 +324,7 @@ def migrate_database(data: Data = None, database: ServiceDatabase = None, config
 
 def prune(data: Data = None, database: ServiceDatabase = None, config: Config = None) -> None:
     """Remove jobs whose time is over, apart from pinned ones, and files that nobody has used."""
-    from synth.jobs.store import Store
+    from synth.batches.store import Store
 
     count = 0
     with _settings(config, data, database) as settings, Store(settings.database_url, create=False) as store:

@@ -22,6 +22,7 @@ def register(app: typer.Typer) -> None:
 
 
 def size_range(
+    *,
     source: Annotated[
         Path, typer.Argument(help="The folder of a batch, or a table of rows to run first.", metavar="DIR|ROWS.csv")
     ],

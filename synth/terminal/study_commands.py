@@ -35,6 +35,7 @@ def register(app: typer.Typer) -> None:
 
 
 def whatif(
+    *,
     spec: SpecFile,
     vary: Annotated[
         list[str],

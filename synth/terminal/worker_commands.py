@@ -41,10 +41,10 @@ def register(app: typer.Typer) -> None:
 
 def worker(database: Served, slots: Slots = None, spare: Spare = True, follow: Follow = False) -> None:
     """Work at the jobs of a database until stopped; any number of workers may, on any machines."""
-    from synth.jobs.database import refuse_damaged
-    from synth.jobs.log_lines import follow_switch
-    from synth.jobs.store import Store
-    from synth.jobs.worker import Worker
+    from synth.batches.store import Store
+    from synth.queue.database import refuse_damaged
+    from synth.queue.log_lines import follow_switch
+    from synth.workers.worker import Worker
 
     follow_switch()
 

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.batches.batch import BatchResult
+from synth.batches.batch_folder import job_of_folder, opened_batch
+from synth.batches.outputs import SHORT, explanation_of, status_of
+from synth.batches.store import Store
 from synth.errors import InputError, whole_number
 from synth.folders.csv_style import ENGLISH, CsvStyle
 from synth.folders.files import csv_text, frame_csv
 from synth.folders.output_folder import SIZE_RANGE, save_result
-from synth.jobs.batch import BatchResult
-from synth.jobs.batch_folder import job_of_folder, opened_batch
-from synth.jobs.outputs import SHORT, explanation_of, status_of
-from synth.jobs.store import Store
 from synth.model.model import Model
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
@@ -34,7 +34,7 @@ from synth.variants.variant_settings import VARIANTS, VariantSettings
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth.jobs.models import Job
+    from synth.queue.models import Job
 
 SIZE_RANGE_FORMAT = 1  # of size_range.json
 

@@ -21,11 +21,11 @@ from typing import Any
 import numpy as np
 import sqlalchemy as sa
 
-from synth.jobs import runner
-from synth.jobs.batch import BatchJob
-from synth.jobs.models import Job
-from synth.jobs.outputs import write_outputs
+from synth.batches import runner
+from synth.batches.batch import BatchJob
+from synth.batches.outputs import write_outputs
 from synth.question.settings import SearchSettings
+from synth.queue.models import Job
 from synth.variants.p_median import Chooser
 from tests.benchmarks import cases
 from tests.benchmarks.tables import Report

@@ -13,10 +13,10 @@ import synth
 from synth.kernels.loading import VARIABLE
 from synth.model.constraint import Goal, NodeConstraint
 from synth.nlp.batch import BatchNlp, Solutions, Tasks
-from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import Rows
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
+from tests.referees.ipopt import ParametricNlp, Task
 
 REQUIREMENTS = {
     "load_torque": "600 N*m",

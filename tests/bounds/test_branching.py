@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from synth.bounds.clusters import ClusterTree, Factor
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.sample_problems.strut import designs_of, strut_form
 
 

@@ -22,8 +22,8 @@ from synth.model.program import Program
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
+from synth.search.settings import TUNING
 from synth.special import recorded
-from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.repetitions import repetitions
 from tests.sample_problems.strut import designs_of, strut_form

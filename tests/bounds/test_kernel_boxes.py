@@ -21,6 +21,7 @@ from synth.bounds.intervals import FORWARD
 from synth.bounds.kernel_boxes import MOST, BoxKernel, KernelList, Verdicts, box_kernel
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.bounds.root_propagation import Leaves, propagated_root
+from synth.bounds.settings import KernelSizes
 from synth.kernels.loading import LEVELS, best_variant, processor_level, variant
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, TEMPLATES, Program
@@ -28,8 +29,8 @@ from synth.order.margins import above
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
 from synth.search.makeable_values import MakeableValues
+from synth.search.settings import TUNING
 from synth.special import TABLE, recorded
-from synth.tuning import TUNING, KernelSizes
 from tests.asking import instance_of
 from tests.repetitions import repetitions
 

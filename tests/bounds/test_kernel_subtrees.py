@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from synth.bounds.boxes import Boxes
+from synth.bounds.settings import KernelSizes
 from synth.kernels.loading import best_variant
 from synth.search.archive import Archive
 from synth.search.pruning import EpsilonCover, NonImprovement
-from synth.tuning import TUNING, KernelSizes
+from synth.search.settings import TUNING
 from tests.sample_problems.strut import designs_of, lost, strut_form
 
 TIE = TUNING.tolerances.tie

@@ -11,7 +11,7 @@ from synth.bounds.relaxed_branching import relaxed_scores
 from synth.search.branch_and_bound import best, cover_of_one
 from synth.search.budget import Clock
 from synth.search.relaxed_boxes import RelaxedBoxes
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import pose
 from tests.certificates.kinks import KINKS
 from tests.certificates.signs import SIGNS

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 import synth
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 from tests.certificates.reference import TOLERANCE, Points, Reference
 from tests.certificates.structures import Case, RandomProblem, make
 from tests.tuned import synthesize

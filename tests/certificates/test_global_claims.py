@@ -17,13 +17,14 @@ import pytest
 
 import synth
 from synth.bounds.log_relaxation import LogRelaxation
-from synth.parametric.joint_fronts import JointFrontSearch
-from synth.parametric.joint_groups import joint_key
+from synth.bounds.settings import TogetherLimits
+from synth.search.joint.joint_fronts import JointFrontSearch
+from synth.search.joint.joint_groups import joint_key
 from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.levels import LevelProof
+from synth.search.settings import LevelLimits, SearchEffort
 from synth.search.stages import choosing
 from synth.tables.catalogs import Catalogs
-from synth.tuning import LevelLimits, SearchEffort, TogetherLimits
 from tests.asking import pose
 from tests.certificates.__main__ import tried
 from tests.certificates.claims import PATIENT, Answer, answer, faults, refuted, run, signed, weak_reference

@@ -68,7 +68,7 @@ def test_a_search_returns_the_front_that_synth_returns(client: ServiceClient) ->
     priced = client.prices(front, 1)
     assert priced.result()
     assert len(priced.frame("prices.csv")) > 0
-    near = client.near_equals(front, 1, "5 %", 3)
+    near = client.near_equals(front, 1, "5 %", count=3)
     assert near.result()
 
 

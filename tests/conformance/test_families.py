@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 import synth
-from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
 from synth.testing import FamilyTests
 from synth.testing.fronts import best, first_objective
 from tests.asking import instance_of
 from tests.conformance.cases import CASES
+from tests.referees.ipopt import Task
 from tests.regimes import refereed
 from tests.repetitions import repetitions
 

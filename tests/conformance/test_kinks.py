@@ -12,14 +12,14 @@ import pytest
 import synth
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Tasks
-from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
 from synth.search.formulation import Formulation
+from synth.search.settings import TUNING
 from synth.testing import Case
-from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer, front_of
+from tests.referees.ipopt import Task
 from tests.regimes import best_in_any_regime, referee
 
 pytestmark = pytest.mark.slow

@@ -4,12 +4,12 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.nlp.ipopt import Task
 from synth.order.feasibility import TOLERANCE
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
 from tests.conformance.cases import CASES, front_of
+from tests.referees.ipopt import Task
 from tests.regimes import refereed
 
 pytestmark = pytest.mark.slow

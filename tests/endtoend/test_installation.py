@@ -160,7 +160,7 @@ def test_families_of_somebody_else_change_no_test(beside: dict[str, str]) -> Non
         "tests/analysis/test_describe.py",
         "tests/catalogs/test_friction_pairs.py",
         "tests/docs/test_docs.py::test_every_family_has_a_picture_of_its_drawing",
-        "tests/jobs/kinds/test_small.py",
+        "tests/kinds/test_small.py",
         "tests/terminal/test_new.py",
         "tests/test_architecture.py::test_the_engine_names_no_family",
     ]

@@ -15,7 +15,7 @@ from synth.bounds.instructions import OP_NAMES, WIDTH, labels
 from synth.bounds.intervals import CANCELLATION
 from synth.model.program import TEMPLATES
 from synth.nlp import interior_point, kernel_solver
-from synth.tuning import InteriorPointSettings
+from synth.nlp.settings import InteriorPointSettings
 
 FOLDER = Path(__file__).parents[2] / "synth" / "kernels" / "c"
 ENDS = ("CONVERGED", "INFEASIBLE", "STUCK", "STOPPED")

@@ -17,11 +17,12 @@ from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp import kernel_solver
 from synth.nlp.batch import BatchNlp, Solutions, Tasks
-from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.nlp.settings import InteriorPointSettings, NlpSettings
 from synth.question.catalogs import as_catalogs
-from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
+from synth.search.settings import TUNING
 from tests.asking import instance_of
+from tests.referees.ipopt import ParametricNlp, Task
 
 BUILT = pytest.mark.skipif(best_variant("solver") is None, reason="no kernel was built")
 Code = Literal["arrays", "kernel"]

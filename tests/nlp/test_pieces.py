@@ -16,12 +16,12 @@ from synth.kernels.loading import best_variant
 from synth.model.constraint import Goal, NodeConstraint, void_limits
 from synth.model.program import Program
 from synth.nlp.batch import BatchNlp, Solutions, Tasks
-from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
 from synth.order.feasibility import residual
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import pose
+from tests.referees.ipopt import ParametricNlp, Task
 from tests.regimes import best_in_any_regime, referee
 from tests.repetitions import repetitions
 

@@ -17,8 +17,8 @@ from synth.reports.batch_workbook import batch_workbook
 from synth.reports.files import batch_files
 from synth.reports.sheet.html import AT_A_TIME, html
 
+from synth.batches.batch_report import chosen_row
 from synth.errors import InputError
-from synth.jobs.batch_report import chosen_row
 from synth.results.batch_record import BatchRecord, BatchRow
 from tests.reports.browser import chromium, needs_chromium, opened, serious
 from tests.terminal.test_report_commands import Page

@@ -142,7 +142,7 @@ def test_the_figures_of_a_design_can_be_read(motor: str | None) -> None:
 @pytest.mark.parametrize("vary", [{"load": "20, 40, 120 kN"}, {"load": "20, 40 kN", "share": "1, 2.5, 3"}])
 def test_the_figures_of_a_study_can_be_read(vary: dict[str, str]) -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
-    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min", "bulk": "min"}, 6, table)
+    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min", "bulk": "min"}, 6, catalogs=table)
     frames = study.curves()
     assert list(frames) == ["whatif", "fronts"]
     for frame in frames.values():
@@ -190,7 +190,7 @@ def test_words_stand_along_the_axis(labels: list[str], rotation: int, first: str
 def test_a_study_of_words_names_them_and_joins_nothing() -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
     vary = {"parts.rope": "rope a, rope b", "options.thick": "given, makeable"}
-    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min"}, 1, table)
+    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min"}, 1, catalogs=table)
     (frame,) = study.curves().values()
     assert_readable(frame)
     assert [tick["label"] for tick in frame.attrs["ticks"]] == ["rope a", "rope b"]
@@ -362,7 +362,7 @@ def test_a_study_says_what_it_does_not_draw() -> None:
         {"share": "1, 2", "load": loads},
         {"cost": "min", "bulk": "min"},
         3,
-        table,
+        catalogs=table,
         breaks=False,
     )
     frames = study.curves()

@@ -10,7 +10,7 @@ import synth.robust.robust_front
 from synth.question.catalogs import as_catalogs
 from synth.question.uncertainty import read_block
 from synth.robust.counterpart import RobustProblem, robust_counterpart
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import rater_of
 from tests.sample_problems.shaft_brake import CATALOGS, FACE, NEEDED, PAIRS, ShaftBrake
 from tests.tuned import synthesize, tuned

@@ -7,7 +7,7 @@ import synth
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Candidate
 from synth.search.formulation import Formulation
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import instance_of
 
 RODS = pd.DataFrame(

@@ -16,8 +16,8 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.proven_gap import Bound, least_gap
 from synth.search.pruning import EpsilonCover
+from synth.search.settings import TUNING, SearchEffort
 from synth.system.deadline import Stopped
-from synth.tuning import TUNING, SearchEffort
 from tests.asking import instance_of
 from tests.sample_problems.spring import OPTIMUM, TensionSpring
 from tests.sample_problems.strut import NEEDED, RODS, Strut

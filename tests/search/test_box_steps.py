@@ -11,8 +11,8 @@ from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover
+from synth.search.settings import TUNING
 from synth.system.deadline import Stopped
-from synth.tuning import TUNING
 from tests.sample_problems.strut import designs_of, lost, strut_form
 from tests.tuned import tuned
 

@@ -16,8 +16,8 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import spread_choice
 from synth.search.pruning import EpsilonCover, NonImprovement
+from synth.search.settings import TUNING
 from synth.system.deadline import Stopped
-from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut, feasible_candidates
 

@@ -18,7 +18,7 @@ from synth.search.archive import Archive, Candidate, distinct
 from synth.search.dominance import CornerTable, CoverSets, sorted_points
 from synth.search.dominance_code import dominance_code
 from synth.search.pruning import NonImprovement
-from synth.tuning import TUNING, DominanceSettings, Tuning
+from synth.search.settings import TUNING, DominanceSettings, Tuning
 from tests.tuned import synthesize, tuned
 
 BUILT = pytest.mark.skipif(best_variant("dominance") is None, reason="no kernel was built")

@@ -13,9 +13,9 @@ import synth
 from synth.order.pareto import NEAR, rank, signs_of
 from synth.question.spec import read_spec
 from synth.search.front_state import FrontState
+from synth.search.settings import TUNING
 from synth.search.stages.first_by_rank import find_first
 from synth.search.synthesize import find_front
-from synth.tuning import TUNING
 from tests.asking import pose
 from tests.repetitions import repetitions
 

@@ -10,7 +10,7 @@ import pytest
 
 from synth.search.front_state import FrontProof, FrontState, FrontTask
 from synth.search.given_front import GivenFront
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import tuned

@@ -11,7 +11,7 @@ import synth
 from synth.question.catalogs import catalogs_for
 from synth.results.loading import load_front
 from synth.search.improvement import go_on
-from synth.tuning import TUNING, PartSampling, SearchEffort
+from synth.search.settings import TUNING, PartSampling, SearchEffort
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import synthesize, tuned

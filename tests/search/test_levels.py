@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from synth.search.front_state import FrontState
 from synth.search.joint.levels import Cutoffs, LevelProof, levels_told
 from synth.search.proven_gap import Level, LevelBound
+from synth.search.settings import SearchEffort
 from synth.search.stages import levels as stage
 from synth.search.stages.proving import proven_at_gap
 from synth.search.turns import TurnBudget, by_turns
-from synth.tuning import SearchEffort
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 

@@ -15,9 +15,9 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
 from synth.search.pruning import EpsilonCover
+from synth.search.settings import PartSampling, SearchEffort
 from synth.system.deadline import Stopped
 from synth.system.file_locks import alone
-from synth.tuning import PartSampling, SearchEffort
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import synthesize, tuned

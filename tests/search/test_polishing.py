@@ -7,11 +7,11 @@ import pytest
 
 import synth
 from synth import DesignProblem
-from synth.parametric.joint_search import JointSearch
 from synth.search.archive import Candidate
 from synth.search.box_operations import BoxOperations
+from synth.search.joint.joint_search import JointSearch
 from synth.search.polishing import polish_discrete
-from synth.tuning import TUNING, PolishingLimits
+from synth.search.settings import TUNING, PolishingLimits
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut, feasible_candidates
 from tests.tuned import synthesize, tuned

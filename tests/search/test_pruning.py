@@ -5,7 +5,7 @@ import pytest
 
 from synth.search.archive import Archive
 from synth.search.pruning import EpsilonCover, rows_of_use
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.sample_problems.strut import designs_of, strut_form
 
 

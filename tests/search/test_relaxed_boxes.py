@@ -11,7 +11,7 @@ import synth
 from synth.search.branch_and_bound import branch_and_bound, cover_of_one
 from synth.search.budget import Clock
 from synth.search.relaxed_boxes import RelaxedBoxes
-from synth.tuning import TUNING
+from synth.search.settings import TUNING
 from tests.asking import pose
 from tests.benchmarks.families import example
 from tests.sample_problems.spring import OPTIMUM, TensionSpring

@@ -5,8 +5,8 @@ import math
 import pytest
 
 import synth
-from synth.parametric.joint_search import JointSearch
 from synth.search.front_search import Report
+from synth.search.joint.joint_search import JointSearch
 from synth.search.sensitivity import elasticities
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from synth.search.front_state import FrontState
+from synth.search.settings import ProgressLimits
 from synth.search.shown_designs import ShownDesigns
 from synth.search.stage_progress import StageProgress
-from synth.tuning import ProgressLimits
 from synth.units import parse_quantity
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut

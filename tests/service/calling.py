@@ -11,14 +11,14 @@ from typing import Any, Self
 import httpx
 from fastapi import FastAPI
 
-from synth.jobs.accounts import Accounts
-from synth.jobs.database import file_url
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.accounts import Accounts
+from synth.queue.database import file_url
 from synth.service.app import create_app
 from synth.service.context import ServiceContext
 from synth.service.settings import ServiceSettings
 from synth.service.small_work import EngineCalls
-from tests.jobs.databases import empty_file
+from tests.queue.databases import empty_file
 
 HOME = "http://127.0.0.1:8350"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.jobs.conftest import database, emptied  # noqa: F401  (fixtures)
+from tests.queue.conftest import database, emptied  # noqa: F401  (fixtures)
 from tests.service.calling import Service
 
 

@@ -11,9 +11,9 @@ import pytest
 import sqlalchemy as sa
 from fastapi import Depends
 
-from synth.jobs.accounts import Principal
-from synth.jobs.job_table import Ending, NewJob
-from synth.jobs.models import BrowserSession, Tenant, Token, moment
+from synth.queue.accounts import Principal
+from synth.queue.job_table import Ending, NewJob
+from synth.queue.models import BrowserSession, Tenant, Token, moment
 from synth.service.attempts import FailedTokens
 from synth.service.auth import needs
 from synth.service.recording import LOG

@@ -14,9 +14,9 @@ import pytest
 import sqlalchemy as sa
 from prometheus_client.parser import text_string_to_metric_families
 
-from synth.jobs.job_table import DONE, Ending, NewJob
-from synth.jobs.models import Job, WorkerSign, moment
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.job_table import DONE, Ending, NewJob
+from synth.queue.models import Job, WorkerSign, moment
 from tests.service.calling import Service, bearer, code_of
 
 

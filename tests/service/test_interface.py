@@ -16,8 +16,8 @@ import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
 from schemathesis import GenerationMode
 
-from synth.jobs.job_settings import StoreSettings
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.settings import StoreSettings
 from synth.service.app import create_app
 from synth.service.settings import ServiceSettings
 from tests.repetitions import repetitions

@@ -14,11 +14,18 @@ import httpx
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EXAMPLES_TASK, FAMILIES_TASK, READ_TASK, TABLES_TASK
-from synth.jobs.job_table import Ending, NewJob
-from synth.jobs.kinds.contract import Record
-from synth.jobs.models import Job
 from synth.plugins import family_names
+from synth.queue.job_table import Ending, NewJob
+from synth.queue.models import Job
+from synth.queue.records import Record
+from synth.workers.engine_tasks import (
+    CHECK_TASK,
+    DECLARATION_TASK,
+    EXAMPLES_TASK,
+    FAMILIES_TASK,
+    READ_TASK,
+    TABLES_TASK,
+)
 from tests.service.calling import HOME, Service, bearer, code_of
 from tests.service.gated import Gated, settled, until
 
@@ -169,7 +176,7 @@ def test_what_depends_on_the_code_is_found_by_the_start_and_waits_for_no_request
 
 
 def test_what_could_not_be_found_at_the_start_is_tried_again(tmp_path: Path) -> None:
-    from synth.jobs.engine_process import EngineCrashedError
+    from synth.workers.engine_process import EngineCrashedError
 
     engines = Gated()
     engines.gate.set()

@@ -17,13 +17,13 @@ from hypothesis import strategies as st
 from pydantic import Field, TypeAdapter, ValidationError
 
 from synth.errors import InputError
-from synth.jobs.accounts import NAME_PATTERN
-from synth.jobs.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError, Failure
+from synth.queue.accounts import NAME_PATTERN
 from synth.service.errors import ServiceError
 from synth.service.recording import LOG
 from synth.service.security import SESSION_COOKIES, check_json
 from synth.service.wording import LINE, TITLE
 from synth.text.plain_text import UNSAFE
+from synth.workers.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError, Failure
 from tests.repetitions import repetitions
 from tests.service.calling import HOME, Service, bearer, code_of
 

@@ -18,9 +18,9 @@ from typing import Any
 import httpx
 import pytest
 
+from synth.batches.store import Store
 from synth.errors import InputError
-from synth.jobs.accounts import Accounts
-from synth.jobs.store import Store
+from synth.queue.accounts import Accounts
 from synth.service.serve import address_of, file_of, listening, only_server, serve
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor

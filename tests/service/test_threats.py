@@ -16,9 +16,9 @@ import httpx
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.accounts import Accounts
-from synth.jobs.models import Base
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.accounts import Accounts
+from synth.queue.models import Base
 from tests.service.calling import bearer
 from tests.service.served import served, watched
 from tests.service.test_interface import imports_of

@@ -13,11 +13,11 @@ from typing import Any
 
 import httpx
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.job_settings import JOBS
-from synth.jobs.store import Store
-from synth.jobs.worker import Worker
+from synth.batches.store import Store
 from synth.service.serve import ServiceServer, listening, server_config
+from synth.workers.engine_process import Engines
+from synth.workers.settings import WORK
+from synth.workers.worker import Worker
 from tests.service.calling import Service, bearer
 from tests.waiting import until
 
@@ -50,7 +50,7 @@ BATCH = {
 LIVE = ("open", "running")
 # On a machine that is busy with other things real processes are late; what tests look at is what they answer.
 PATIENT: dict[str, float] = {"small_deadline": 60.0, "file_deadline": 600.0, "queue_wait": 60.0}
-LOOKS_OFTEN = replace(JOBS, worker=replace(JOBS.worker, poll=0.1))
+LOOKS_OFTEN = replace(WORK, worker=replace(WORK.worker, poll=0.1))
 
 
 class Client:

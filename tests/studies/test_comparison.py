@@ -16,13 +16,13 @@ import synth.studies.families.competitor
 from synth import DesignProblem
 from synth.order.feasibility import Status
 from synth.question.settings import SearchSettings
+from synth.search.settings import TUNING
 from synth.search.stages.challenge import Challenge
 from synth.studies.families.compare import compare
 from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
 from synth.studies.settings import COMPARING
 from synth.tables.catalogs import Catalogs
 from synth.terminal.choice_console import how_long, print_comparison
-from synth.tuning import TUNING
 from synth.units import typed_quantity
 from tests.sample_problems.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 from tests.shipped import FAMILIES

@@ -128,11 +128,11 @@ def test_one_objective_and_one_to_be_large(front):
     catalogs = {"metals": METALS}
     lightest = synth.synthesize(Bracket, {"load": LOAD}, ["mass"], catalogs=catalogs)
     least = lightest.designs[0].values["mass"]
-    found = near_equals(lightest, 1, "20 %", 1000)
+    found = near_equals(lightest, 1, "20 %", count=1000)
     members = {k for k, v in everything().items() if len(v) and v[:, 0].min() <= 1.2 * least * (1 + 1e-9)}
     assert found.found == len(members) - 1
     stiff = synth.synthesize(Bracket, {"load": LOAD}, ["mass", "stiffness"], catalogs=catalogs, points=5)
-    found = near_equals(stiff, 2, "5 %", 100)
+    found = near_equals(stiff, 2, "5 %", count=100)
     chosen = stiff.designs[1].values
     caps = np.array([chosen["mass"] * 1.05, LOAD / (chosen["stiffness"] * 0.95)]) * (1 + 1e-9)
     members = {k for k, v in everything().items() if np.any(np.all(v <= caps, axis=1))}
@@ -157,7 +157,7 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
         points=5,
     )
     chosen = front.designs[2]
-    found = near_equals(front, 3, "20 %", 100)
+    found = near_equals(front, 3, "20 %", count=100)
     assert found.complete
     instance = front.question
     rings = np.array([(o, i) for o in range(290, 361) for i in range(150, o) if 0.0999 <= (o - i) / (o + i) <= 0.2501])
@@ -182,7 +182,7 @@ def test_an_enumeration_that_is_cut_short_says_at_least(front):
     few = NearLimits(most=3, batch=4)
     found = near._Enumeration(front.question, chosen, front, 0.3, SearchSettings(), None, few).run(2)
     assert not found.complete
-    assert found.found < near_equals(front, 8, "30 %", 2).found
+    assert found.found < near_equals(front, 8, "30 %", count=2).found
     assert found.undecided is None
     assert "at least" in found.sentence()
 
@@ -192,16 +192,16 @@ def test_an_interruption_keeps_what_was_found(front):
         if state["incumbents"] > 2:
             raise KeyboardInterrupt
 
-    found = near_equals(front, 8, "30 %", 2, progress=stop)
+    found = near_equals(front, 8, "30 %", count=2, progress=stop)
     assert found.interrupted == "interrupted"
     assert not found.complete
     assert len(found.designs) == 2
     assert not any(d.violated for d in found.designs)
-    assert near_equals(front, 8, "30 %", 2, time_limit=1e-9).interrupted == "time limit"
+    assert near_equals(front, 8, "30 %", count=2, time_limit=1e-9).interrupted == "time limit"
 
 
 def test_what_is_saved_is_read_back_and_checks(front, tmp_path):
-    found = near_equals(front, 1, "10 %", 3)
+    found = near_equals(front, 1, "10 %", count=3)
     folder = found.save(tmp_path / "near")
     table = pd.read_csv(folder / "near_equals.csv")
     assert table["number"].tolist() == list(range(len(found.designs) + 1))
@@ -217,7 +217,7 @@ def test_a_saved_front_answers_as_the_one_in_memory(tmp_path):
     parts = {"inner_plate": ["core 1.5", "core 2"], "outer_plate": ["core 2"]}
     front = synth.synthesize(synth.load("multi_plate_clutch", practice="off"), spec, parts=parts, fix=fix, points=3)
     loaded = synth.load_front(front.save(tmp_path / "front"))
-    first, second = near_equals(front, 2, "20 %", 3), near_equals(loaded, 2, "20 %", 3)
+    first, second = near_equals(front, 2, "20 %", count=3), near_equals(loaded, 2, "20 %", count=3)
     assert first.found > 1
     assert (first.found, first.complete) == (second.found, second.complete)
     assert [d.values for d in first.designs] == [d.values for d in second.designs]

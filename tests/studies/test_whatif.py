@@ -449,7 +449,7 @@ def test_steps_that_were_not_reached_do_not_count_as_without_design() -> None:
 
 @pytest.mark.parametrize(("sense", "stairs"), [({"cost": "min"}, "post"), ({"gain": "max"}, "pre")])
 def test_fronts_are_drawn_as_what_their_designs_reach(sense: dict[str, str], stairs: str) -> None:
-    found = synth.whatif(GIVEN, {"load": "10 kN"}, {"load": "4, 19 kN"}, {**sense, "bulk": "min"}, 6, FOUR)
+    found = synth.whatif(GIVEN, {"load": "10 kN"}, {"load": "4, 19 kN"}, {**sense, "bulk": "min"}, 6, catalogs=FOUR)
     frame = found.curves()["fronts"]
     assert [panel["stairs"] for panel in frame.attrs["panels"]] == [stairs]
     assert "what the designs reach" in frame.attrs["source"]

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from synth.batches.row_table import read_table
 from synth.errors import InputError
-from synth.jobs.row_table import read_table
 from synth.tables.delimited_text import delimited_text
 from synth.tables.reading import load_table
 from tests.terminal.entry import in_process

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from synth.batches.row_table import read_table
 from synth.errors import InputError
-from synth.jobs.row_table import read_table
 from synth.tables.encodings import ALPHABETS, decoded, known_encoding
 from synth.tables.reading import load_table
 from tests.terminal.entry import in_process

@@ -15,8 +15,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from synth.batches.row_table import read_table
 from synth.errors import InputError
-from synth.jobs.row_table import read_table
 from synth.tables.catalogs import Catalogs, read_as_stated
 from synth.tables.reading import csv_of_file, load_table
 from synth.tables.table_text import TableText

@@ -151,7 +151,7 @@ def test_an_empty_folder_has_no_jobs(tmp_path: Path) -> None:
 
 
 def test_a_job_that_is_cancelled_is_resumed_without_its_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from synth.jobs import batch as run
+    from synth.batches import batch as run
 
     write(tmp_path, GOOD)
     with monkeypatch.context() as patch:

@@ -80,7 +80,17 @@ def test_help_and_version_import_nothing_heavy(flag: str) -> None:
 
 
 UNASKED = ["pandas", "scipy", "optuna", "cvxpy", "matplotlib", "sqlalchemy", "http.server"]
-UNASKED += ["synth.jobs", "synth.variants", "synth.studies", "synth.verification", "synth.proof", "synth.robust.rating"]
+UNASKED += [
+    "synth.batches",
+    "synth.kinds",
+    "synth.queue",
+    "synth.workers",
+    "synth.variants",
+    "synth.studies",
+    "synth.verification",
+    "synth.proof",
+    "synth.robust.rating",
+]
 
 
 @pytest.mark.slow

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from synth.batches.batch import BatchResult
+from synth.batches.row_table import read_table
 from synth.folders.csv_style import GERMAN, unstyled
-from synth.jobs.batch import BatchResult
-from synth.jobs.row_table import read_table
 from tests.terminal.entry import at_once, in_process
 
 SPEC = """

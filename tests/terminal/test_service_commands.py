@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.accounts import Accounts, TenantLimits
-from synth.jobs.database import file_url
-from synth.jobs.job_table import DONE, Ending, NewJob
-from synth.jobs.models import Job, moment
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.accounts import Accounts, TenantLimits
+from synth.queue.database import file_url
+from synth.queue.job_table import DONE, Ending, NewJob
+from synth.queue.models import Job, moment
 from synth.terminal import service_commands
 from tests.terminal.entry import at_once
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from synth.jobs.database import file_url
-from synth.jobs.job_table import CANCELLED, OPEN, NewJob
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.database import file_url
+from synth.queue.job_table import CANCELLED, OPEN, NewJob
 from synth.terminal.cli import app
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.jobs.batch import batch
+from synth.batches.batch import batch
 from synth.text.plain_text import as_list, listed
 
 names = st.text('ab,"/ 3').map(str.strip).filter(bool)

@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import synth
+from synth.batches.row_table import read_table
 from synth.folders.files import csv_text, frame_csv, yaml_text
 from synth.folders.output_folder import save_files
-from synth.jobs.row_table import read_table
 from synth.terminal.console import console_on, plain_table
 from synth.text.plain_text import FORMULA, NUMBER, UNSAFE, PlainStream, as_meant, defused, escaped, printable
 from tests.sample_problems.rod import Rod

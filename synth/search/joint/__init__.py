@@ -1,1 +1,1 @@
-"""Questions that are alike, searched as one tree."""
+"""Joint search: questions that differ in numbers alone, searched as one tree (multi-parametric branch and bound)."""

@@ -12,7 +12,7 @@ from synth.search.joint.joint_question import BestPerScenario, JointInstance
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import rows_of_use
 from synth.search.refused_cells import not_refused
-from synth.tuning import JointHeuristicLimits
+from synth.search.settings import JointHeuristicLimits
 
 
 class JointHeuristics:

@@ -23,7 +23,7 @@ from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
 from synth.search.log_objectives import LogObjectives
 from synth.search.resolution import gap_tolerance
-from synth.tuning import SearchEffort, Tuning
+from synth.search.settings import SearchEffort, Tuning
 
 
 class PosedQuestion(Protocol):

@@ -24,7 +24,7 @@ from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive, Candidate
 from synth.search.formulation import Formulation
 from synth.search.pruning import reaches_beyond
-from synth.tuning import TUNING, Tuning
+from synth.search.settings import TUNING, Tuning
 
 
 class JointInstance(SearchSpace):

@@ -17,8 +17,8 @@ from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
 from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, PosedQuestion, SharedBounds
 from synth.search.proven_gap import Level, lowest
+from synth.search.settings import SearchEffort
 from synth.search.turns import TurnBudget, by_turns
-from synth.tuning import SearchEffort
 
 CAPPED, SOUGHT = 0, 1
 

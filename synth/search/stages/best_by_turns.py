@@ -13,8 +13,8 @@ from synth.search.branch_and_bound import TreeOutcome, branch_and_bound, cover_o
 from synth.search.formulation import Formulation
 from synth.search.front_state import FrontState
 from synth.search.proven_gap import Level, lowest
+from synth.search.settings import SearchEffort
 from synth.search.turns import TurnBudget, by_turns
-from synth.tuning import SearchEffort
 
 
 class BestTree:

@@ -17,8 +17,8 @@ from fastapi.dependencies.utils import get_flat_params
 from sqlalchemy.exc import DBAPIError
 
 from synth.errors import InputError
-from synth.jobs.job_table import LIVE
-from synth.jobs.models import Job
+from synth.queue.job_table import LIVE
+from synth.queue.models import Job
 from synth.service.auth import Anybody, principal_of
 from synth.service.context import Context, ServiceContext, in_thread
 from synth.service.errors import JSON, ServiceError, not_found

@@ -6,11 +6,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, File, Query, Request, Response, UploadFile
 
+from synth.batches.views import uploads_kept
 from synth.errors import InputError
-from synth.jobs.engine_tasks import CHECK_ROWS_TASK, UPLOAD_TASK
-from synth.jobs.job_table import BATCH
-from synth.jobs.shelf import Shelf
-from synth.jobs.views import uploads_kept
+from synth.queue.job_table import BATCH
+from synth.queue.shelf import Shelf
 from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted
 from synth.service.api.schemas import EXAMPLES, BatchCheck, FirstRow, JobAnswer, UploadAnswer
 from synth.service.api.submission import Wish
@@ -20,6 +19,7 @@ from synth.service.context import API, Context, in_thread
 from synth.service.errors import ServiceError, again, not_found
 from synth.service.security import FILE_BODY
 from synth.service.small_work import asker_of
+from synth.workers.engine_tasks import CHECK_ROWS_TASK, UPLOAD_TASK
 
 router = APIRouter(prefix=API, tags=["batches"])
 HOUR = 3600.0  # s

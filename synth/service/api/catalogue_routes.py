@@ -7,10 +7,9 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.errors import InputError
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_tasks import PART_TABLE_TASK, TABLE_TEXT_TASK
-from synth.jobs.models import Catalogue
-from synth.jobs.shelf import NAME, Shelf, text_of
+from synth.queue.accounts import Principal
+from synth.queue.models import Catalogue
+from synth.queue.shelf import NAME, Shelf, text_of
 from synth.service.api.schemas import (
     BroughtCatalogue,
     CatalogueAnswer,
@@ -25,6 +24,7 @@ from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import ServiceError, not_found
 from synth.service.small_work import asker_of
 from synth.tables.delimited_text import delimited_text
+from synth.workers.engine_tasks import PART_TABLE_TASK, TABLE_TEXT_TASK
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 LARGEST_VERSION = 999_999_999  # as references have it

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from synth.jobs.kinds.request_schemas import DESIGN, REQUESTS
+from synth.kinds.request_schemas import DESIGN, REQUESTS
 from synth.service.context import API
 from synth.service.errors import JSON
 

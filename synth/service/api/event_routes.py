@@ -14,11 +14,11 @@ from fastapi.sse import format_sse_event
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.types import Receive, Scope, Send
 
+from synth.batches.views import Standing
 from synth.errors import InputError
-from synth.jobs.accounts import Principal
-from synth.jobs.job_table import LIVE
-from synth.jobs.models import Job
-from synth.jobs.views import Standing
+from synth.queue.accounts import Principal
+from synth.queue.job_table import LIVE
+from synth.queue.models import Job
 from synth.service.api.asking import LARGEST, LONGEST, OwnJob, own_job
 from synth.service.api.presenting import job_answer
 from synth.service.auth import Reader

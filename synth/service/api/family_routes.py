@@ -7,10 +7,9 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Path, Query, Request, Response
 
 from synth.errors import InputError
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
-from synth.jobs.shelf import Shelf
 from synth.plugins import family_names
+from synth.queue.accounts import Principal
+from synth.queue.shelf import Shelf
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.schemas import (
     EXAMPLES,
@@ -25,6 +24,7 @@ from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import not_found
 from synth.service.small_work import asker_of
 from synth.service.wording import WORD
+from synth.workers.engine_tasks import CHECK_TASK, DECLARATION_TASK, EVALUATE_TASK, EXAMPLES_TASK, FAMILIES_TASK
 
 router = APIRouter(prefix=API, tags=["families"])
 OPTIONS = "such as lubrication:dry,guide_model:cz"

@@ -13,12 +13,11 @@ from urllib.parse import quote
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from synth.folders.csv_style import csv_style
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_tasks import FILES_TASK, RENDER_TASK
-from synth.jobs.job_table import BATCH, LIVE
-from synth.jobs.kinds.contract import MEDIA, Record
-from synth.jobs.models import Job
-from synth.jobs.shelf import Shelf
+from synth.queue.accounts import Principal
+from synth.queue.job_table import BATCH, LIVE
+from synth.queue.models import Job
+from synth.queue.records import MEDIA, Record
+from synth.queue.shelf import Shelf
 from synth.service.api.asking import ENDED, NOT_MODIFIED, OwnJob, knows, refuse_live
 from synth.service.api.presenting import job_place
 from synth.service.api.schemas import FileAnswer, FileList
@@ -27,6 +26,7 @@ from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import not_found
 from synth.service.small_work import asker_of
 from synth.text.plain_text import as_meant
+from synth.workers.engine_tasks import FILES_TASK, RENDER_TASK
 
 router = APIRouter(prefix=API, tags=["results"])
 CSV = ".csv"

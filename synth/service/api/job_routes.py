@@ -8,11 +8,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request, Response
 
 from synth.folders.files import yaml_text
-from synth.jobs.engine_tasks import CHANGED_TASK
-from synth.jobs.job_table import LIVE
-from synth.jobs.kinds import KINDS
-from synth.jobs.kinds import kind as kind_named
-from synth.jobs.shelf import Shelf
+from synth.kinds import KINDS
+from synth.kinds import kind as kind_named
+from synth.queue.job_table import LIVE
+from synth.queue.shelf import Shelf
 from synth.service.api.asking import (
     ENDED,
     LONGEST,
@@ -39,6 +38,7 @@ from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
 from synth.service.small_work import asker_of
 from synth.service.wording import PRINTED, WORD
+from synth.workers.engine_tasks import CHANGED_TASK
 
 router = APIRouter(prefix=API, tags=["jobs"])
 YAML = "application/yaml"

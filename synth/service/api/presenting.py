@@ -6,8 +6,8 @@ from typing import Any
 
 from fastapi import Request
 
-from synth.jobs.job_table import BATCH
-from synth.jobs.models import Job
+from synth.queue.job_table import BATCH
+from synth.queue.models import Job
 from synth.service.api.schemas import JobAnswer, JobFault, JobLinks
 
 FAMILIES = "families"  # what is kept with a job of those that it asks

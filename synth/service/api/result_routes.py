@@ -7,15 +7,14 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_tasks import DESIGNS_TASK, RENDER_TASK
-from synth.jobs.job_table import BATCH
-from synth.jobs.kinds import kind
-from synth.jobs.kinds.contract import Record, Sources
-from synth.jobs.models import Job
-from synth.jobs.outputs import GROUPS, RANKING, best_design, explanation_of, status_of
-from synth.jobs.store import Answered
-from synth.jobs.views import layouts_of, packed_record, row_at, rows_after
+from synth.batches.outputs import GROUPS, RANKING, best_design, explanation_of, status_of
+from synth.batches.store import Answered
+from synth.batches.views import layouts_of, packed_record, row_at, rows_after
+from synth.kinds import kind
+from synth.queue.accounts import Principal
+from synth.queue.job_table import BATCH
+from synth.queue.models import Job
+from synth.queue.records import Record, Sources
 from synth.service.api.asking import (
     ENDED,
     LONGEST,
@@ -36,6 +35,7 @@ from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, not_found
 from synth.service.small_work import asker_of
 from synth.service.wording import WORD
+from synth.workers.engine_tasks import DESIGNS_TASK, RENDER_TASK
 
 router = APIRouter(prefix=API, tags=["results"])
 LARGEST_LINE = 2**53

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from synth.jobs.kinds import KINDS
+from synth.kinds import KINDS
 from synth.service.api.asking import LONGEST
 from synth.service.errors import Problem
 from synth.service.wording import LINE, TITLE, WORD

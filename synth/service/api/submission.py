@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth.errors import InputError
-from synth.jobs.accounts import Principal
-from synth.jobs.engine_tasks import READ_TASK
-from synth.jobs.job_table import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
-from synth.jobs.kinds import Kind, kind
-from synth.jobs.shelf import Shelf
+from synth.kinds import Kind, kind
+from synth.queue.accounts import Principal
+from synth.queue.job_table import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
+from synth.queue.shelf import Shelf
 from synth.service.api.presenting import FAMILIES, STATED_ROWS
 from synth.service.context import ServiceContext, in_thread
 from synth.service.settings import ServiceSettings
 from synth.service.small_work import asker_of
 from synth.text.numbers import typed_number
+from synth.workers.engine_tasks import READ_TASK
 
 TIME_LIMIT, POINTS = "time_limit", "points"
 

@@ -7,7 +7,6 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel
 
-from synth.jobs.engine_tasks import TABLES_TASK
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.family_routes import listed
 from synth.service.auth import Reader
@@ -15,6 +14,7 @@ from synth.service.context import API, Context
 from synth.service.errors import not_found
 from synth.service.small_work import asker_of
 from synth.service.wording import WORD
+from synth.workers.engine_tasks import TABLES_TASK
 
 router = APIRouter(prefix=API, tags=["catalogues"])
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from synth.jobs.views import traces
+from synth.batches.views import traces
 from synth.service.api.asking import Cursor, Limit, State, Word, cursor_of, entries, place_of
 from synth.service.api.schemas import TraceAnswer, TraceList
 from synth.service.auth import Administrator

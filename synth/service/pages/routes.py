@@ -16,8 +16,8 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from fastapi.routing import APIRoute
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from synth.jobs.accounts import ADMIN, READ, SUBMIT, Principal
-from synth.jobs.job_table import BATCH
+from synth.queue.accounts import ADMIN, READ, SUBMIT, Principal
+from synth.queue.job_table import BATCH
 from synth.service.api.asking import OwnJob
 from synth.service.api.result_routes import LARGEST_LINE
 from synth.service.auth import Administrator, Reader

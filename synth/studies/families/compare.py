@@ -26,6 +26,7 @@ from synth.robust.robust_front import robust_front
 from synth.search.front_report import further_designs
 from synth.search.question import pose
 from synth.search.resolution import rounded_up
+from synth.search.settings import TUNING, Tuning
 from synth.search.stages.challenge import challenge
 from synth.studies.families.common_front import CommonFront
 from synth.studies.families.comparison import Comparison
@@ -42,7 +43,6 @@ from synth.studies.families.requirement_sheet import (
 from synth.studies.settings import COMPARING, ComparisonLimits
 from synth.system.deadline import Stopped, until
 from synth.tables.catalogs import Catalogs
-from synth.tuning import TUNING, Tuning
 
 KINDS = ("heuristic", "exhaustive", "global")
 LOOKS = 2  # at a family: the first, and the one to the end
@@ -53,6 +53,7 @@ def compare(
     requirements: Mapping[str, Any],
     objectives: Any = None,
     points: int = 30,
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,

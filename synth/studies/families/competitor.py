@@ -14,10 +14,10 @@ from synth.results import Design, ParetoFront
 from synth.robust.rating import Rater
 from synth.search.front_state import FrontState
 from synth.search.question import Question
+from synth.search.settings import Tuning
 from synth.search.warm_start import WarmStart
 from synth.studies.families.requirement_sheet import Applicant
 from synth.system.deadline import Stopped
-from synth.tuning import Tuning
 
 
 @dataclass

@@ -26,6 +26,7 @@ from synth.system.deadline import Stopped, until
 def explain(
     p: str | type[DesignProblem] | DesignProblem,
     requirements: Mapping[str, Any],
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,

@@ -14,11 +14,11 @@ from itertools import pairwise
 from typing import Any, Protocol
 
 from synth.errors import InputError
-from synth.parametric.joint_groups import groups_of, joint_key
-from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
+from synth.search.joint.joint_groups import groups_of, joint_key
 from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.joint_question import different
+from synth.search.joint.joint_search import JointSearch
 from synth.search.question import Question
 from synth.studies.settings import BREAKS, BreakLimits
 from synth.studies.whatif.steps import Steps

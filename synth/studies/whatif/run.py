@@ -13,7 +13,6 @@ from typing import Any
 
 from synth.folders.output_folder import claimed
 from synth.model.problem import DesignProblem
-from synth.parametric.joint_fronts import joint_answers, joint_groups
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import read_block
@@ -24,7 +23,9 @@ from synth.results.loading import front_of_record
 from synth.results.provenance import hash_of, joined
 from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
+from synth.search.joint.joint_fronts import joint_answers, joint_groups
 from synth.search.question import Question
+from synth.search.settings import TUNING, Tuning
 from synth.studies.study_store import RECORD, STUDY_FORMAT, StudyStore
 from synth.studies.whatif.break_points import find_breaks
 from synth.studies.whatif.steps import Steps
@@ -32,7 +33,6 @@ from synth.studies.whatif.study import Study
 from synth.studies.whatif.study_answers import Break, StudyStep
 from synth.studies.whatif.weight_breaks import weight_breaks
 from synth.system.deadline import Stopped, until
-from synth.tuning import TUNING, Tuning
 
 INTERRUPTED = "interrupted"
 POINTS = 3  # of every step: the best in each objective and, of two, one between
@@ -44,6 +44,7 @@ def whatif(
     vary: Mapping[str, Any],
     objectives: Any = None,
     points: int = POINTS,
+    *,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,

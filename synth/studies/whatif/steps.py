@@ -23,8 +23,8 @@ from synth.robust.counterpart import robust_counterpart
 from synth.robust.rating import Rater
 from synth.robust.uncertainty import check_rows
 from synth.search.question import Question, pose
+from synth.search.settings import TUNING, Tuning
 from synth.studies.whatif.vary import Value, Varied, read_vary
-from synth.tuning import TUNING, Tuning
 
 
 def at_value(request: Request, varied: Varied, value: Value) -> Request:

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.engine_tasks import FAMILIES_TASK
+from synth.workers.engine_process import Engines
+from synth.workers.engine_tasks import FAMILIES_TASK
 from tests.service.calling import Service
 from tests.service.working import BATCH, FRONT, Client, working
 

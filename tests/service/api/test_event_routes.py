@@ -15,14 +15,14 @@ import httpx
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.job_table import Happening
-from synth.jobs.models import Token, moment
-from synth.jobs.store import Store
-from synth.jobs.views import Standing
+from synth.batches.store import Store
+from synth.batches.views import Standing
+from synth.queue.job_table import Happening
+from synth.queue.models import Token, moment
 from synth.service.event_hub import EventHub
 from synth.service.security import SESSION_COOKIES
 from synth.service.settings import ServiceSettings
+from synth.workers.engine_process import Engines
 from tests.service.calling import Service, bearer, code_of
 from tests.service.working import API, FRONT, LIVE, LONG, QUICK, Client, listened, working
 from tests.waiting import PATIENCE
@@ -285,7 +285,7 @@ def test_streams_are_counted_by_who_has_them(tmp_path: Path) -> None:
 
 
 def test_the_store_tells_how_jobs_stand(database: str) -> None:
-    from synth.jobs.views import standings
+    from synth.batches.views import standings
 
     with Store(database) as store:
         assert standings(store, ["nothing"]) == {}

@@ -9,9 +9,9 @@ import pytest
 import sqlalchemy as sa
 import yaml
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.models import Job, Tenant
-from tests.jobs.kinds.jobs import DISC
+from synth.queue.models import Job, Tenant
+from synth.workers.engine_process import Engines
+from tests.kinds.jobs import DISC
 from tests.service.calling import Service, code_of
 from tests.service.working import BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, Client, working
 

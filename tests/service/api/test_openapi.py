@@ -14,8 +14,8 @@ import sqlalchemy as sa
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from synth.jobs.engine_process import Engines, EngineTimeoutError
-from synth.jobs.models import Tenant, Token
+from synth.queue.models import Tenant, Token
+from synth.workers.engine_process import Engines, EngineTimeoutError
 from tests.repetitions import repetitions
 from tests.service.calling import Answering, Service, code_of
 from tests.service.working import API, BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, Client, working

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.jobs.engine_process import Engines
+from synth.workers.engine_process import Engines
 from tests.service.working import listened, working
 from tests.waiting import PATIENCE
 

@@ -14,8 +14,8 @@ import pytest
 
 from synth.errors import ExtraNeededError
 from synth.folders.csv_style import GERMAN, unstyled
-from synth.jobs.engine_process import Engines
-from synth.jobs.engine_tasks import RENDER_TASK
+from synth.workers.engine_process import Engines
+from synth.workers.engine_tasks import RENDER_TASK
 from tests.service.calling import Service, code_of
 from tests.service.working import FRONT, Client
 from tests.terminal.entry import in_process

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.job_table import NewJob
-from synth.jobs.models import Job, moment
+from synth.queue.job_table import NewJob
+from synth.queue.models import Job, moment
 from tests.service.calling import Service, code_of
 
 DAY = 86_400.0

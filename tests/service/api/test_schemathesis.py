@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis.errors import Unsatisfiable
 from schemathesis import GenerationMode
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.models import Token
+from synth.queue.models import Token
+from synth.workers.engine_process import Engines
 from tests.repetitions import repetitions
 from tests.service.calling import bearer
 from tests.service.working import API, BATCH, FRONT, Client, listened, working

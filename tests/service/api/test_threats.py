@@ -12,10 +12,10 @@ import openpyxl
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.engine_process import Engines
-from synth.jobs.models import Tenant
-from synth.jobs.owners import new_owner
-from synth.jobs.store import Outcome
+from synth.batches.store import Outcome
+from synth.queue.models import Tenant
+from synth.queue.owners import new_owner
+from synth.workers.engine_process import Engines
 from tests.service.api.test_batch_routes import BOOK, LAUGHS, bring, changed
 from tests.service.calling import Service, code_of
 from tests.service.served import most_memory, processor_time

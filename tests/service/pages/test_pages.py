@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.jobs.job_table import NewJob
+from synth.queue.job_table import NewJob
 from synth.service.pages.assets import assets, static_place
 from synth.service.security import POLICY
 from tests.service.calling import Service, bearer, code_of

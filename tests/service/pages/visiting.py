@@ -9,9 +9,9 @@ from typing import Any
 
 import httpx
 
-from synth.jobs.accounts import Accounts
-from synth.jobs.database import file_url
-from synth.jobs.store import Store
+from synth.batches.store import Store
+from synth.queue.accounts import Accounts
+from synth.queue.database import file_url
 from synth.service.settings import ServiceSettings
 from tests.reports.browser import DESKTOP, FORMS, PHONE, Opened, serious
 from tests.service.calling import bearer

@@ -1,0 +1,1 @@
+"""Batches: a table of requirements as one job that can be interrupted and resumed."""

@@ -1,0 +1,386 @@
+"""The report of a batch: what became of its rows is read from the database, and reports make files of it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.analysis.calculation import calculation_of
+from synth.analysis.drawing import drawings_of
+from synth.analysis.evaluate import evaluate_in_si
+from synth.analysis.reporting import NO_REPORTS, WrittenReport, write_report
+from synth.batches.batch_folder import job_of_folder, job_written, opened_batch
+from synth.batches.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, missed_limits, status_of
+from synth.batches.solve import GROUP, LIKE
+from synth.batches.store import Answered, Store
+from synth.batches.views import row_at
+from synth.errors import ExtraNeededError, InputError
+from synth.folders.csv_style import unstyled
+from synth.folders.files import read_bytes, read_json
+from synth.folders.output_folder import BATCH, check_kind
+from synth.model.registry import load
+from synth.order.feasibility import Status
+from synth.order.margins import MARGINS
+from synth.question.catalogs import as_catalogs
+from synth.question.instance import Instance
+from synth.question.request import Request
+from synth.results import Design, ParetoFront
+from synth.results.batch_record import BatchRecord, BatchRow, RowInFull
+from synth.results.certificate import Certificate
+from synth.results.drawings import report as report_named
+from synth.results.provenance import installed_versions
+from synth.results.search_record import SettingsRecord
+from synth.results.statistics import SearchStatistics
+from synth.text.numbers import typed_number
+from synth.text.plain_text import as_meant
+
+if TYPE_CHECKING:
+    from synth.queue.models import Job
+
+FORMATS = ("html", "pdf", "xlsx")
+RANGE, VARIANTS, ASSIGNED = "size_range.json", "variants.csv", "assignment.csv"
+TOLD_LINES = 6  # of rows that a name fits
+
+
+@dataclass(frozen=True, kw_only=True)
+class BatchReportOptions:
+    """How a batch is reported; fields as for ``BatchResult.report``."""
+
+    row: str = ""
+    formats: tuple[str, ...] = ("html",)
+    about: Any = None
+    about_folder: Path | None = None
+    fonts: tuple[Path, ...] = ()
+
+    @staticmethod
+    def read(
+        *,
+        row: str | int | None = None,
+        formats: str | Sequence[str] = ("html",),
+        about: Any = None,
+        about_folder: Path | None = None,
+        fonts: Sequence[str | Path] = (),
+    ) -> BatchReportOptions:
+        """Requested options.
+
+        Raises
+        ------
+        InputError
+            A format is none of a batch.
+        """
+        words = (formats,) if isinstance(formats, str) else tuple(formats)
+        for word in words or ("",):
+            if word not in FORMATS:
+                raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
+        named = "" if row is None else str(row).strip()
+        return BatchReportOptions(
+            row=named, formats=words, about=about, about_folder=about_folder, fonts=tuple(Path(x) for x in fonts)
+        )
+
+    def asked(self) -> dict[str, Any]:
+        """Return it as reports take it."""
+        return {
+            "formats": list(self.formats),
+            "about": self.about,
+            "about_folder": self.about_folder,
+            "fonts": list(self.fonts),
+        }
+
+
+def report_batch(source: Path, folder: Path, how: BatchReportOptions, database: str | None = None) -> WrittenReport:
+    """Write the report of the batch that stands in a folder.
+
+    Raises
+    ------
+    InputError
+        There is no such batch or row, or something asked is wrong; then nothing is written.
+    """
+    written = job_written(source)
+    with opened_batch(source, database) as store:
+        job = job_of_folder(store, source, written)
+        return _written(store, job, source, folder, how, _tables_of(job, None), None)
+
+
+def report_result(
+    source: Path, folder: Path, how: BatchReportOptions, database: Any, job: str, tables: Any = None, own: Any = None
+) -> WrittenReport:
+    """Write the report of a batch that was asked from Python; ``tables`` and ``own`` are those that it was given.
+
+    Else, returns and raises as :func:`report_batch`.
+    """
+    with opened_batch(source, database) as store:
+        found = job_of_folder(store, source, job)
+        return _written(store, found, source, folder, how, _tables_of(found, tables), own)
+
+
+def batch_report_files(
+    store: Store, job: Job, how: BatchReportOptions, tables: Any = None, own: Any = None, beside: Path | None = None
+) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
+    """Return the files of the report of a batch, what else is to be told, whether some row has designs, what lacks.
+
+    Parameters
+    ----------
+    store, job
+        Where the batch is kept.
+    how : BatchReportOptions
+    tables : catalogs, InputError or None
+        Own part tables; why they cannot be had.
+    own : DesignProblem subclass, optional
+        A problem that is not registered.
+    beside : Path, optional
+        A folder in which a size range may stand.
+    """
+    make = report_named("batch_files")
+    if make is None:
+        raise InputError("report", None, NO_REPORTS)
+    record, notes = _BatchReader(store, job, tables, own).record(how.row, beside)
+    files, told, lacking = make({"batch": record, **how.asked()})
+    return dict(files), [*notes, *told], any(row.designs for row in record.rows), tuple(lacking)
+
+
+def _written(
+    store: Store, job: Job, source: Path, folder: Path, how: BatchReportOptions, tables: Any, own: Any
+) -> WrittenReport:
+    check_kind(folder, BATCH)
+    there = job_written(folder)
+    if there not in (None, job.id):
+        raise InputError("output", str(folder), "another folder: this one holds another batch")
+    files, notes, found, lacking = batch_report_files(store, job, how, tables, own, source)
+    return write_report(folder, files, notes, found, lacking)
+
+
+def _tables_of(job: Job, given: Any) -> Any:
+    """Return own tables of a batch, or why they cannot be had."""
+    stated = job.content.get("catalogs") if given is None else given
+    if stated == "memory":
+        return InputError("tables", job.source, "the BatchResult itself: its tables were in memory")
+    try:
+        return as_catalogs(stated)
+    except InputError as error:
+        return error
+
+
+class _BatchReader:
+    """Reads a batch, row by row.
+
+    Parameters
+    ----------
+    store, job, tables, own
+        As for :func:`batch_report_files`.
+    """
+
+    def __init__(self, store: Store, job: Job, tables: Any, own: Any) -> None:
+        self.store, self.job, self.tables, self.own = store, job, tables, own
+        content = job.content
+        self.headings = tuple(str(column["title"]) for column in content["columns"])
+        positions = [int(column["position"]) for column in content["columns"]]
+        self.order = positions  # of the cells of a row
+        self.carried = tuple(k for k, column in enumerate(content["columns"]) if column["carried"])
+        self.layouts = store.layouts(job.id)
+        families = sorted(self.layouts.values(), key=lambda layout: str(layout["family"]))
+        self.objectives = tuple(dict.fromkeys(name for layout in families for name in layout["objectives"]))
+        self.places = {
+            key: {name: len(RANKING) + k for k, name in enumerate(n for group in GROUPS for n in layout[group])}
+            for key, layout in self.layouts.items()
+        }
+
+    def record(self, named: str, beside: Path | None) -> tuple[BatchRecord, list[str]]:
+        """Return the batch with one row in full, and what else is to be told."""
+        rows = [self._row(answered) for answered in self.store.rows(self.job.id, canonical=False)]
+        content = self.job.content
+        record = BatchRecord(
+            source=str(content["source"]),
+            state=self.job.state,
+            rows=rows,
+            headings=self.headings,
+            carried=self.carried,
+            objectives=self.objectives,
+            settings=content["settings"],
+            hashes={name: str(value) for name, value in content["hashes"].items()},
+            versions=installed_versions(),
+            size_range=None if beside is None else _size_range(beside, {row.key for row in rows}),
+        )
+        row = chosen_row(record, named)
+        if row is None:
+            return record, []
+        told = self._in_full(row)
+        return replace(record, chosen=told), [f"row of line {row.line}: {told.note}"] if told.note else []
+
+    def _row(self, answered: Answered) -> BatchRow:
+        content = answered.content or {}
+        designs = content.get("rows") or []
+        layout = answered.layout if designs else None
+        reason = explanation_of(answered)
+        cells = answered.cells
+        return BatchRow(
+            line=answered.line,
+            key=(answered.key or "")[:SHORT],
+            family=answered.family,
+            status=status_of(answered),
+            designs=len(designs),
+            objectives=self._objectives(layout, designs[0]) if layout else (None,) * len(self.objectives),
+            best=best_design(self.layouts[layout], designs[0], SAID[1:]) if layout else "",
+            reason=reason,
+            causes=_causes(answered, reason),
+            remarks=answered.remarks,
+            cells=tuple(str(cells[k]) if k < len(cells) else "" for k in self.order),
+        )
+
+    def _objectives(self, layout: str, cells: Sequence[str]) -> tuple[float | None, ...]:
+        places = self.places[layout]
+        found = [cells[places[name]] if name in places else "" for name in self.objectives]
+        return tuple(float(cell) if cell else None for cell in found)
+
+    # -- one row ---------------------------------------------------------------------------------------------------
+
+    def _in_full(self, row: BatchRow) -> RowInFull:
+        """Return a row with its front; where it cannot be computed again, why."""
+        there = row_at(self.store, self.job.id, row.line)
+        assert there is not None
+        answered, question = there
+        if question is None or answered.content is None or not answered.content.get("rows"):
+            return RowInFull(row)
+        try:
+            if isinstance(self.tables, InputError):
+                raise self.tables
+            return self._computed(row, answered, question)
+        except InputError as error:
+            return RowInFull(row, note=f"its designs cannot be computed again: {error}")
+
+    def _computed(self, row: BatchRow, answered: Answered, question: Mapping[str, Any]) -> RowInFull:
+        """Return a row with its front.
+
+        Raises
+        ------
+        InputError
+            Family or tables cannot be had, or are others than those that the batch was computed with.
+        """
+        content: Mapping[str, Any] = answered.content or {}
+        settings = self.job.content["settings"]
+        asked = {key: value for key, value in question.items() if key not in (LIKE, GROUP)}
+        own = self.own is not None and self.own.name == question["family"]
+        problem = load(self.own if own else question["family"], **question["options"])
+        request = Request.from_json(
+            {**asked, "objectives": settings["objectives"], "grid": settings["grid"]},
+            problem=problem,
+            catalogs=as_catalogs(self.tables),
+        )
+        instance = Instance(request)
+        designs = [
+            self._design(instance, request, kept, cells, row)
+            for kept, cells in zip(content["designs"], content["rows"], strict=True)
+        ]
+        front = ParetoFront(
+            frame=designs[0].frame,
+            designs=designs,
+            status=Status(row.status),
+            complete=bool(content.get("complete")),
+            statistics=SearchStatistics(),
+            certificate=Certificate(
+                str(content.get("certificate", "")), content.get("gap"), int(content.get("combinations") or 0), 0, 0
+            ),
+            explanation=None,
+            settings=SettingsRecord(),
+            interrupted=str(content.get("interrupted") or ""),
+            question=instance,
+        )
+        drawings, _ = drawings_of(problem, designs[:1])
+        return RowInFull(row, front, calculation_of(instance), next(iter(drawings.values()), None))
+
+    def _design(
+        self, instance: Instance, request: Request, kept: Mapping[str, Any], cells: Sequence[str], row: BatchRow
+    ) -> Design:
+        design = evaluate_in_si(
+            instance.problem,
+            request.requirements,
+            {**kept["values"], **kept["choices"]},
+            kept["parts"],
+            catalogs=instance.catalogs,
+            limits=request.limits,
+            objectives=request.objectives,
+        )
+        for name, value in kept["objectives"].items():
+            if abs(design.objectives[name] - value) > MARGINS.same * max(abs(value), 1e-300):
+                where = f"line {row.line}: {name}"
+                raise InputError(
+                    where, design.objectives[name], f"{typed_number(value)}, as the batch has found with its program"
+                )
+        known = dict(zip(RANKING, cells, strict=False))
+        return replace(
+            design,
+            rank=int(known["rank"]),
+            score=float(known["score"]) if known["score"] else None,
+            gap=float(known["gap"]) if known["gap"] else None,
+            note=known["note"],
+            status=Status(known["status"]),
+            alternatives=tuple(x for x in known["alternatives"].split("; ") if x),
+        )
+
+
+def chosen_row(record: BatchRecord, named: str) -> BatchRow | None:
+    """Return the row that is told in full: the first with designs, or the one that is named.
+
+    Parameters
+    ----------
+    record : BatchRecord
+    named : str
+        Its line, what stands in one of the columns that are carried along, ``column=cell``, or the beginning of its
+        key; empty for the first row with designs.
+
+    Raises
+    ------
+    InputError
+        There is no such row, or there are several.
+    """
+    if not named:
+        return next((row for row in record.rows if row.designs), None)
+    heading, equals, cell = named.partition("=")
+    column = next((k for k, title in enumerate(record.headings) if equals and title == heading.strip()), None)
+    fitting = [row for row in record.rows if named.isdecimal() and row.line == int(named)]
+    fitting = fitting or [row for row in record.rows if any(row.cells[k].strip() == named for k in record.carried)]
+    if not fitting and column is not None:
+        fitting = [row for row in record.rows if row.cells[column].strip() == cell.strip()]
+    fitting = fitting or [row for row in record.rows if len(named) >= 6 and row.key.startswith(named)]
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        lines = ", ".join(str(row.line) for row in fitting[:TOLD_LINES])
+        more = ", ..." if len(fitting) > TOLD_LINES else ""
+        raise InputError("row", named, f"a line of the table: this fits lines {lines}{more}", ("row",))
+    names = " or ".join(record.headings[k] for k in record.carried[:2])
+    lines = f"a line from {record.rows[0].line} to {record.rows[-1].line}" if record.rows else "a batch with rows"
+    raise InputError("row", named, lines + (f", or a cell of {names}" if names else ""), ("row",))
+
+
+def _causes(answered: Answered, reason: str) -> tuple[str, ...]:
+    """Reason why a row has no design, in a few words that many rows share."""
+    if answered.faults:
+        return tuple(dict.fromkeys(str(fault["column"]) or "the row as a whole" for fault in answered.faults))
+    # A limit that a row adds has its number in its name.
+    names = (name.split(" ", 1) for name in missed_limits(reason) if name[:1].isalpha())
+    return tuple(dict.fromkeys(name[0] + (" (own limit)" if len(name) > 1 else "") for name in names))
+
+
+def _size_range(folder: Path, keys: set[str]) -> dict[str, Any] | None:
+    """Return the size range that was chosen for these rows, in the folder of the batch or in one below."""
+    for path in (folder / RANGE, *sorted(folder.glob(f"*/{RANGE}"))):
+        if not path.is_file() or not (path.parent / VARIANTS).is_file():
+            continue
+        served = {row.get("row", "") for row in _table(path.parent / ASSIGNED)}
+        told = read_json(path, "size range", "a size_range.json as clutchsynth has written it")
+        if isinstance(told, Mapping) and served and served <= keys:
+            rows = _table(path.parent / VARIANTS)
+            return {"told": dict(told), "columns": list(rows[0]) if rows else [], "rows": rows}
+    return None
+
+
+def _table(path: Path) -> list[dict[str, str]]:
+    if not path.is_file():
+        return []
+    text = read_bytes(path, "size range", "a table as clutchsynth has written it").decode("utf-8", "replace")
+    rows = csv.DictReader(io.StringIO(unstyled(text), newline=""))
+    return [{as_meant(str(k)): as_meant(v or "") for k, v in row.items() if k is not None} for row in rows]

@@ -1,1 +1,0 @@
-"""Batches: many requirement rows as one job that survives whatever stops it."""

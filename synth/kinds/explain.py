@@ -1,0 +1,93 @@
+"""The kind ``explain``: the keys of a spec and ``physics``, or ``of`` an earlier job with the entries that change."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from synth.analysis.settings import WAYS_OUT
+from synth.errors import InputError
+from synth.kinds.asked import (
+    by_name,
+    digests,
+    flag,
+    of_files,
+    question_of,
+    question_record,
+    read_json,
+    settings_of,
+    spec_of,
+    stated_spec,
+    titled,
+    told,
+)
+from synth.order.feasibility import Status
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
+from synth.studies.infeasibility.explain import explanation_of
+from synth.studies.infeasibility.explained_question import ExplainedQuestion
+
+MAIN = "explanation.json"
+PHYSICS = "physics"
+
+
+def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+    """Check a request; what a search alone goes by (points, gap, weights) is left out.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with it.
+    """
+    spec, own = spec_of(request, sources, (PHYSICS,))
+    asked, settings = _asked(spec, sources)
+    ExplainedQuestion(asked)
+    stated = stated_spec(asked, settings, ("seed", "time_limit"))
+    stated = {key: value for key, value in stated.items() if key not in ("objectives", "weights")}
+    return Posed(
+        request={**stated, PHYSICS: flag(PHYSICS, own.get(PHYSICS, False))},
+        title=f"Ways out: {titled(asked)}",
+        families=(asked.problem.name,),
+        tables=digests(stated.get("catalogs"), sources),
+    )
+
+
+def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
+    """Return the spec in a request, and what is wrong beside it."""
+    spec = {key: value for key, value in request.items() if key != PHYSICS}
+    try:
+        flag(PHYSICS, False if request.get(PHYSICS) is None else request[PHYSICS])
+    except InputError as fault:
+        return spec, [fault]
+    return spec, []
+
+
+def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+    """Find what excludes each other and what would help."""
+    spec, own = spec_of(request, sources, (PHYSICS,))
+    found = explanation_of(*_asked(spec, sources), told(tell), bool(own.get(PHYSICS)))
+    return {**of_files(found.files()), **by_name(question_record("explain", request, sources))}
+
+
+def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the facts of an explanation."""
+    content = read_json(records, MAIN)
+    settled = not content["interrupted"]
+    outcome = Status.FEASIBLE if content["feasible"] else Status.INFEASIBLE if settled else Status.NOT_SOLVED
+    return {
+        "outcome": outcome.value,
+        "family": read_json(records, QUESTION)["request"]["family"],
+        "message": content["message"],
+        "conflict": content["conflict"],
+        "ways": len(content["ways"]),
+        "proven": bool(content["minimal"]),
+        "interrupted": content["interrupted"],
+    }
+
+
+def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSettings]:
+    asked = replace(question_of(spec, sources), objectives=None, weights={})
+    settings = settings_of(spec)
+    return asked, SearchSettings(points=1, gap=WAYS_OUT.gap, seed=settings.seed, time_limit=settings.time_limit)

@@ -1,0 +1,74 @@
+"""The kind ``synthesis``: the keys of a spec, or ``of`` an earlier job with the entries that change."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from synth.kinds.asked import (
+    by_name,
+    digests,
+    front_summary,
+    of_files,
+    question_of,
+    question_record,
+    read_json,
+    settings_of,
+    spec_of,
+    stated_spec,
+    titled,
+    told,
+)
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.queue.records import Posed, Record, Sources, Tell
+from synth.results.calculation import CALCULATION
+from synth.results.front_record import FRONT_FILE
+from synth.robust.rating import Rater
+from synth.search.question import pose
+from synth.search.synthesize import find_front
+
+
+def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+    """Check a request.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with it.
+    """
+    spec, _ = spec_of(request, sources)
+    asked, settings = question_of(spec, sources), settings_of(spec)
+    checked(asked, settings)
+    stated = stated_spec(asked, settings)
+    return Posed(
+        request=stated,
+        title=titled(asked),
+        families=(asked.problem.name,),
+        tables=digests(stated.get("catalogs"), sources),
+    )
+
+
+def checked(asked: Request, settings: SearchSettings) -> None:
+    """Refuse what a search would refuse before it begins.
+
+    Raises
+    ------
+    InputError
+    """
+    pose(asked, settings)
+    if asked.robust is not None:
+        Rater(asked, asked.robust)
+
+
+def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+    """Search the designs; every other file of a front is rendered from these records."""
+    asked, settings = question_of(request, sources), settings_of(request)
+    front = find_front(asked, settings, told(tell))
+    kept = of_files(front.files(), (FRONT_FILE, CALCULATION))
+    return {**kept, **by_name(question_record("synthesis", request, sources))}
+
+
+def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the facts of a front."""
+    return front_summary(read_json(records, FRONT_FILE))

@@ -1,0 +1,120 @@
+"""The kind ``verify``: ``of`` a job with a front or a comparison, and the seconds for the proof."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from synth.errors import at
+from synth.kinds.asked import (
+    FAMILY,
+    OF,
+    by_name,
+    catalogs_of,
+    checked_keys,
+    front_in,
+    fronts_in,
+    is_comparison,
+    json_record,
+    question_record,
+    read_json,
+    records_of,
+    seconds,
+)
+from synth.kinds.request_schemas import keys_of
+from synth.kinds.settings import KIND_SETTINGS
+from synth.queue.records import Posed, Record, Sources, Tell
+from synth.results.calculation import CALCULATION, Calculation
+from synth.results.front_record import FRONT_FILE
+from synth.results.verification import Verification
+from synth.verification.verify import verify
+from synth.verification.verify_comparison import verify_comparison
+
+MAIN = "verification.json"
+KEYS = keys_of("verify")
+WHOLE = "all of the comparison"
+
+
+def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+    """Check a request; without ``family`` a comparison is checked as a whole.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with it.
+    """
+    given = checked_keys(request, KEYS)
+    limit = seconds(given.get("time_limit"))
+    with at(OF):
+        records = records_of(sources, given.get(OF))
+    stated = {key: given[key] for key in (OF, FAMILY) if key in given}
+    if is_comparison(records) and FAMILY not in given:
+        families, title = tuple(fronts_in(records)), WHOLE
+    else:
+        front = front_in(records, given.get(FAMILY), check=False)
+        families, title = (front.frame.family,), front.frame.title
+    return Posed(
+        request={**stated, "time_limit": KIND_SETTINGS.verify_seconds if limit is None else limit},
+        title=f"Verification: {title}",
+        families=families,
+    )
+
+
+def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+    """Check what was saved; how far the proof is cannot be told before it ends."""
+    tell({"stage": "verify", "done": 0.0, "message": ""})
+    records, limit = records_of(sources, request[OF]), float(request["time_limit"])
+    if is_comparison(records) and FAMILY not in request:
+        found = _comparison(records, sources, limit)
+    else:
+        front = front_in(records, request.get(FAMILY), check=False)
+        found = verify(front, catalogs=catalogs_of(front.frame.restated.get("catalogs"), sources), time_limit=limit)
+        found = _with_calculation(found, records, request.get(FAMILY))
+    content = {**asdict(found), "verdict": found.verdict.value, "holds": found.holds, "sentence": found.sentence()}
+    return by_name(json_record(MAIN, content), question_record("verify", request, sources))
+
+
+def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
+    """Return the facts of a verification."""
+    content = read_json(records, MAIN)
+    kept = ("sentence", "certificate", "designs", "claimed_gap", "proven_gap")
+    return {"outcome": content["verdict"], "findings": len(content["findings"]), **{k: content[k] for k in kept}}
+
+
+def _with_calculation(found: Verification, records: Mapping[str, bytes], family: Any) -> Verification:
+    """Return a verification that looks at the record of the calculation as well."""
+    folder = "" if family is None else f"{family}/"
+    wanted = read_json(records, f"{folder}{FRONT_FILE}").get("calculation", "")
+    try:
+        fits = not wanted or Calculation.from_json(read_json(records, f"{folder}{CALCULATION}")).digest == wanted
+    except (KeyError, ValueError):  # there is none, or it cannot be read
+        fits = False
+    if fits:
+        return found
+    finding = f"{CALCULATION} is missing, or is not what was saved with {FRONT_FILE}"
+    return replace(found, findings=(*found.findings, finding))
+
+
+def _comparison(records: Mapping[str, bytes], sources: Sources, limit: float) -> Verification:
+    """Check a comparison, which is read from a folder."""
+    first = next(iter(fronts_in(records)))
+    tables = catalogs_of(front_in(records, first, check=False).frame.restated.get("catalogs"), sources)
+    with tempfile.TemporaryDirectory(prefix="clutchsynth-") as place:
+        unpack(records, Path(place))
+        for family in fronts_in(records):
+            front = front_in(records, family, check=False)
+            derived = front.record_files(str((front.record or {}).get("calculation", "")))
+            kept = {f"{family}/{name}": text.encode() for name, text in derived.items()}
+            unpack({name: text for name, text in kept.items() if name not in records}, Path(place))
+        return verify_comparison(place, limit, tables)
+
+
+def unpack(records: Mapping[str, bytes], place: Path) -> None:
+    """Write records into a folder of our own; their names are ours as well."""
+    for name, content in records.items():
+        target = place / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)

@@ -1,0 +1,146 @@
+"""Questions that are answered together, each with one objective: their fronts, or their best designs."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from synth.results import Design, ParetoFront
+from synth.results.least_infeasible import LeastInfeasible
+from synth.search.budget import Clock
+from synth.search.joint.joint_optima import JointOptima, SharedBounds
+from synth.search.joint.joint_report import JointReport
+from synth.search.question import Question
+
+
+class JointSearch:
+    """A joint (multi-parametric) search: several questions as one tree.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike, each with one objective; threads as the first asks.
+    progress : callable, optional
+    time_limit : float, optional
+        Seconds; then ``Stopped`` is raised.
+    starts : list of Design
+        Designs of similar questions, where to look first. They prove nothing.
+    shared : SharedBounds, optional
+        Of questions that these are among.
+    """
+
+    def __init__(
+        self,
+        questions: Sequence[Question],
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+        starts: Sequence[Design] = (),
+        shared: SharedBounds | None = None,
+    ) -> None:
+        started = time.monotonic()
+        self.questions, self.progress = list(questions), progress
+        clock = Clock(math.inf if time_limit is None else started + time_limit, self._working)
+        self.search = search = JointOptima(questions, clock, shared)
+        self.report = JointReport(self.questions, search.instance, search.form, search.goals, started)
+        search.heuristics.starts = self._starts(starts)
+
+    def answers(self) -> list[ParetoFront | None]:
+        """Return the front of each question; None where it is not proven or has no design: better asked alone."""
+        search = self.search
+        chosen = search.optima(search.told_apart())
+        return self.report.fronts(search.pool, chosen, 1, search.form.counters.nlp_solves)
+
+    def settled(self) -> list[ParetoFront | None]:
+        """Return the front of each question, also where it is proven that there is no design; None: better asked alone.
+
+        Questions that are the same in all that counts have the same answer.
+        """
+        search, every = self.search, np.arange(len(self.questions))
+        first = search.representatives()
+        proven = search.prove(first == every, True)[first]
+        same = {q: int(first[q]) for q in every[first != every].tolist()}
+        solves, without = search.form.counters.nlp_solves, proven & ~np.isfinite(search.known.best()[first])
+        chosen, reasons = search.ties_settled(proven), dict[int, LeastInfeasible]()
+        for number in np.flatnonzero(without).tolist():
+            search.clock.check()
+            reasons[number] = self.report.explanation(number)
+        fronts = self.report.fronts(search.pool, chosen, 1, solves, same)
+        for number, reason in reasons.items():
+            fronts[number] = self.report.front_without_design(number, same.get(number, number), solves, reason)
+        return fronts
+
+    def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs of some questions, None where there is none, and whether that is proven.
+
+        Parameters
+        ----------
+        wanted : list of int
+            Positions of the questions.
+        """
+        search = self.search
+        asked = search.told_apart() & np.isin(np.arange(len(self.questions)), wanted)
+        proven = search.prove(asked, True)
+        designs = self.report.designs([(c, ()) for c in search.known], 0)
+        return [(designs.get(q, [None])[0], bool(proven[q])) for q in wanted]
+
+    def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs with given parts, counts and choices, and whether each is proven.
+
+        Parameters
+        ----------
+        wanted : list of (int, Design)
+            The position of a question, and a design that has the parts.
+        """
+        found: list[tuple[Design | None, bool]] = [(None, False)] * len(wanted)
+        waiting = list(range(len(wanted)))
+        while waiting:
+            # A question has one best design at a time.
+            now = {wanted[k][0]: k for k in reversed(waiting)}
+            waiting = [k for k in waiting if now[wanted[k][0]] != k]
+            for k, answer in self._best_with([wanted[k] for k in now.values()]).items():
+                found[now[k]] = answer
+        return found
+
+    def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
+        search, codec = self.search, self.search.instance.combinations
+        like = [(q, codec.each[q].find(design), design) for q, design in wanted]
+        result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
+        rows = [(q, codec.joined(q, c), design) for q, c, design in like if c is not None]
+        combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
+        known, proven = search.best_among(combinations, self._points([design for _, _, design in rows]))
+        designs = self.report.designs([(c, ()) for c in known], 0)
+        return {**result, **{q: (designs.get(q, [None])[0], bool(proven[q])) for q, _, _ in rows}}
+
+    def _working(self, open_boxes: int) -> None:
+        told(self.progress, self.search, open_boxes)
+
+    def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
+        """First boxes to look into, from designs of similar questions."""
+        first = self.search.instance.each[0].combinations
+        like = [first.find(d) for d in designs]
+        return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}
+
+    def _points(self, designs: Sequence[Design]) -> np.ndarray:
+        """Return the variables of designs, moved into their ranges."""
+        names = [v.name for v in self.search.form.model.variables]
+        points = np.array([[d.values[n] for n in names] for d in designs]).reshape(len(designs), self.search.form.n)
+        inside: np.ndarray = np.clip(points, self.search.form.lower, self.search.form.upper)
+        return inside
+
+
+def told(progress: Callable[[Mapping[str, Any]], None] | None, search: JointOptima, open_boxes: int) -> None:
+    """Tell how far a search is, if anybody wants to know."""
+    if progress is not None:
+        progress(
+            {
+                "stage": "search",
+                "done": 0.0,
+                "combinations": search.instance.combinations.size,
+                "incumbents": len(search.known),
+                "message": f"{open_boxes} boxes open",
+            }
+        )

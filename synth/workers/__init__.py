@@ -1,0 +1,1 @@
+"""Workers: take jobs from the queue and have engine processes compute them."""

@@ -1,0 +1,86 @@
+"""What engine processes do, imported there only: everything costly comes with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from synth.batches.solve import solve_unit
+from synth.errors import InputError
+from synth.kinds import kind
+from synth.kinds.asked import catalogs_of
+from synth.model.registry import every_family
+from synth.queue.records import Sources
+from synth.results.provenance import computing_digest, hash_of, problem_digest
+from synth.workers.engine_tasks import Tell
+
+
+def warm_up() -> str:
+    """Import what every question needs; return the fingerprint of the programs of this process."""
+    import synth.search.question
+    import synth.search.synthesize  # noqa: F401  (it brings the solvers)
+
+    return program_fingerprint()
+
+
+def program_fingerprint() -> str:
+    """One hash of everything that decides the digits of an answer: code, with kernels or without, processor, families.
+
+    Units of one job are only worked at by programs that have the same.
+    """
+    registered = [type(problem) for problem in every_family().values()]
+    return hash_of([computing_digest(), problem_digest(registered)])
+
+
+def rows(payload: Mapping[str, Any], tell: Tell) -> dict[str, dict[str, Any]]:
+    """Answer some rows of a batch: as :func:`synth.batches.solve.solve_unit`."""
+    asked = payload["request"]  # none, of a batch that the command line has made: its tables are files
+    catalogs = catalogs_of(asked.get("catalogs"), _sources(payload)) if asked else payload["catalogs"]
+    return solve_unit({**payload, "catalogs": catalogs, "code": computing_digest(), "tell": tell})
+
+
+def work(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Do what a job of one unit asks for: its records, and the facts of them."""
+    module = kind(payload["kind"]).load()
+    records = module.work(payload["request"], _sources(payload), tell)
+    facts = module.summary({name: record.content for name, record in records.items()})
+    return {"records": list(records.values()), "summary": facts}
+
+
+def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Check a request; return it as it is stored, and what is told of it.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong, as far as one fault does not hide another.
+    """
+    chosen, sources = kind(payload["kind"]), _sources(payload)
+    module, request = chosen.load(), payload["request"]
+    try:
+        posed = module.read(request, sources)
+    except InputError as fault:
+        if not chosen.checked or not isinstance(request, Mapping):
+            raise
+        from synth.kinds.small import all_faults
+
+        spec, more = module.beside(request, sources) if chosen.keys else (request, [])
+        raise all_faults(spec, sources, fault, chosen.keys, more) from fault
+    return {
+        "request": dict(posed.request),
+        "title": posed.title,
+        "families": list(posed.families),
+        "bulk": posed.bulk,
+        "tables": dict(posed.tables),
+        "text": posed.text,
+        "code": program_fingerprint(),
+        "fingerprint": posed.fingerprint or hash_of([payload["kind"], posed.text, dict(posed.tables)]),
+        "kept": list(posed.kept),
+        "steps": posed.steps,
+        "rows": posed.rows,
+    }
+
+
+def _sources(payload: Mapping[str, Any]) -> Sources:
+    found: Sources = payload["sources"]
+    return found
