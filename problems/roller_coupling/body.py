@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from synth.declaration import Block, Declaration, Part, Requirement
+from synth.declaration import Block, Choice, Declaration, Part, Requirement
 from synth.errors import InputError
 
 from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
@@ -15,6 +16,20 @@ from . import formulas
 SHAFT_FACTOR = 1.5  # torque for which the shaft is sized over the torque to transmit: shocks of the drive
 RIM_PRACTICE = 5.0  # mm
 ROLLERS = "guide_rolling_bearings"
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """What the search decides."""
+
+    arm_radius: Any
+    guide_half_length: Any
+    contact_length: Any
+    rim: Any
+    offset_capacity: Any
+    balance: Choice
+    roller: Part
+    material: Part
 
 
 class CouplingBodyRequirements(ShaftRequirements):
@@ -158,57 +173,20 @@ def declare_body(d: Declaration, *, wants: CouplingBodyRequirements, part_mass: 
     )
 
 
-def declare_rules(
-    d: Declaration,
-    *,
-    rules: CouplingRules,
-    roller: Part,
-    material: Part,
-    contact_length: Any,
-    rim: Any,
-    float_width: Any,
-    float_radius: Any,
-) -> None:
-    """Declare the limits that an engineer adds to a coupling.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : CouplingRules
-        What the limits go by.
-    roller, material : Part
-        Slots of the rolling bearing and of the float.
-    contact_length, rim, float_width, float_radius : symbol
-        l, t, b_f, R_f [m].
-    """
-    d.at_least(
-        "rim_practice",
-        rim,
-        rules.rim_ratio * roller.outer_diameter,
-        "mm",
-        text="The bridges at the guide ends stand the bending over the width of a guide",
-        source=UNSOURCED,
-    )
-    d.at_least(
-        "contact_length_min",
-        contact_length,
-        rules.contact_share_min * roller.contact_width,
-        "mm",
-        text="The rollers bear on enough of their width",
-        source=UNSOURCED,
-    )
-    d.at_least(
-        "float_slenderness",
-        float_width,
-        rules.float_slenderness_min * 2 * float_radius,
-        "mm",
-        text="The float is no sheet",
-        source=UNSOURCED,
-    )
+def declare_rules(d: Declaration, rules: CouplingRules, unknowns: Unknowns, float_radius: Any) -> None:
+    """Declare the limits that an engineer adds to a coupling, with a float of a radius R_f [m]."""
+    roller, width = unknowns.roller, d.derived["float_width"].sx
+    bridges = "The bridges at the guide ends stand the bending over the width of a guide"
+    bear, slender = "The rollers bear on enough of their width", rules.float_slenderness_min * 2 * float_radius
+    for name, value, least, text in (
+        ("rim_practice", unknowns.rim, rules.rim_ratio * roller.outer_diameter, bridges),
+        ("contact_length_min", unknowns.contact_length, rules.contact_share_min * roller.contact_width, bear),
+        ("float_slenderness", width, slender, "The float is no sheet"),
+    ):
+        d.at_least(name, value, least, "mm", text=text, source=UNSOURCED)
     d.at_most(
         "material_cost",
-        material.optional("relative_cost_per_kg"),
+        unknowns.material.optional("relative_cost_per_kg"),
         rules.material_cost_max,
         "-",
         text="The float is of a material that one pays for",

@@ -13,16 +13,17 @@ import numpy as np
 from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
-from .. import cost, practice
+from .. import practice
 from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
 from . import curves, formulas
+from .body import Unknowns
+from .layers import LAYERS, Built, Sources
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth.declaration import Choice, Part
     from synth.drawing import Drawing
 
 # Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
@@ -315,20 +316,6 @@ class Wants(Block):
 
 
 @dataclass(frozen=True)
-class Unknowns:
-    """What the search decides."""
-
-    arm_radius: Any
-    guide_half_length: Any
-    contact_length: Any
-    rim: Any
-    offset_capacity: Any
-    balance: Choice
-    roller: Part
-    material: Part
-
-
-@dataclass(frozen=True)
 class Loads:
     """Forces of a design, and the radius of the float."""
 
@@ -368,8 +355,8 @@ class RollerCoupling(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
-        kind = coupling_body.declare_roller_kind(d) if scope.rules else ""
+        layer_of = LAYERS[practice.declare_scope(d)]
+        kind = layer_of.roller_kind(d)
         track = kind == "track"
         guide = d.option(
             "guide",
@@ -400,27 +387,14 @@ class RollerCoupling(DesignProblem):
             source=f"{S3}, XIV.3",
             group="model",
         )
-        wants = d.block(Wants, rim_min=coupling_body.RIM_PRACTICE) if scope.rules else d.block(Wants)
-        body_wants = None
-        if scope.rules or scope.complete:
-            body_wants = coupling_body.declare_body_requirements(d, torque=wants.required_torque)
-        rules = d.block(coupling_body.CouplingRules) if scope.rules else None
+        wants = d.block(Wants, **layer_of.defaults)
+        layer = layer_of(d, wants)
         unknowns = self._declare_unknowns(d, contact=contact, track=track)
         self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)
-        loads = self._declare_loads(d, wants=wants, unknowns=unknowns, body_wants=body_wants, scope=scope)
+        loads = self._declare_loads(d, wants=wants, unknowns=unknowns, layer=layer)
         self._declare_clearances(d, wants=wants, unknowns=unknowns, removable=removable)
         self._declare_strength(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
-        if rules is not None:
-            coupling_body.declare_rules(
-                d,
-                rules=rules,
-                roller=unknowns.roller,
-                material=unknowns.material,
-                contact_length=unknowns.contact_length,
-                rim=unknowns.rim,
-                float_width=d.derived["float_width"].sx,
-                float_radius=loads.float_radius,
-            )
+        layer.declare_rules(d, unknowns, loads.float_radius)
         self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
         d.headline("outer_diameter", "mass", "length", "hertz_pressure", "pin_stress", "efficiency")
         for name in ("outer_diameter", "mass"):
@@ -428,7 +402,7 @@ class RollerCoupling(DesignProblem):
         d.objective("pin_force", default=False)
         d.objective("offset_capacity", "max", default=False)
         d.objective("vibration_force", default=False)
-        if body_wants is not None:
+        if "length" in d.derived:
             d.objective("length", default=False)
 
     def _declare_unknowns(self, d: Declaration, *, contact: str, track: bool) -> Unknowns:
@@ -592,8 +566,7 @@ class RollerCoupling(DesignProblem):
         *,
         wants: Wants,
         unknowns: Unknowns,
-        body_wants: coupling_body.CouplingBodyRequirements | None,
-        scope: practice.Scope,
+        layer: Sources,
     ) -> Loads:
         roller, offset = unknowns.roller, wants.effective_offset
         diameter, radius = roller.outer_diameter, unknowns.arm_radius
@@ -731,39 +704,14 @@ class RollerCoupling(DesignProblem):
         ):
             d.step(name, "mm", value, symbol=symbol, text=text, source="usual proportions")
         part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
-        bosses = 0.0
-        if body_wants is not None:
-            coupling_body.declare_body(d, wants=body_wants, part_mass=part_mass, arm_radius=radius)
-            d.derive(
-                "length",
-                "mm",
-                formulas.coupling_length(
-                    width, roller.width, wants.pin_gap, roller.bore, body_wants.shaft_diameter, counter
-                ),
-                symbol="L",
-                text="Over the bosses of both arms, with a counter float beside the float",
-                source="geometry",
-            )
-            bosses = 2 * body_wants.boss_mass(wants.steel_density)
-            practice.name_boss(d, body_wants)
-            d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Bosses of both arms", source="geometry")
-            self._declare_cost(
-                d,
-                unknowns=unknowns,
-                mass=part_mass + bosses,
-                float_mass=float_mass * (1 + counter),
-                floats=1 + counter,
-                roller_mass=4 * roller_mass,
-            )
-            if not scope.complete:
-                bosses = 0.0
+        built = Built(wants, unknowns, width, counter, float_mass, roller_mass, part_mass)
+        bosses = layer.extend(d, built)
         mass = d.derive(
             "mass",
             "kg",
             part_mass + bosses,
             symbol="m",
-            text="Float, counter float, rollers with pins, and arms; "
-            + ("with their bosses" if scope.complete else "without hubs"),
+            text=f"Float, counter float, rollers with pins, and arms; {layer.mass_of}",
             source="geometry",
         )
         if wants.outer_diameter_limit is not None:
@@ -787,22 +735,6 @@ class RollerCoupling(DesignProblem):
                 source=DRIVE,
             )
         return Loads(tangential, centrifugal, normal, pin, vibration, float_radius)
-
-    def _declare_cost(
-        self, d: Declaration, *, unknowns: Unknowns, mass: Any, float_mass: Any, floats: Any, roller_mass: Any
-    ) -> None:
-        parts = 2 + 4 + floats  # arms, rollers with their pins, float and counter float
-        special = [
-            cost.Special(
-                "floats",
-                unknowns.material,
-                amount=float_mass,
-                mass=float_mass,
-                factor=unknowns.material.filled("relative_cost_per_kg", 1.0),
-            ),
-            cost.Special("rollers", unknowns.roller, amount=4, mass=roller_mass, pieces=4, piece_factor=cost.ROLLER),
-        ]
-        cost.declare_cost(d, mass=mass, parts=parts, special=special)
 
     def _declare_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, removable: str) -> None:
         radius, capacity = unknowns.arm_radius, unknowns.offset_capacity

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from typing import Any
 
 import pandas as pd
@@ -13,6 +14,7 @@ from synth.problems.practice import SHAFT_STEEL
 import synth
 from synth.tables.catalogs import Catalogs
 from synth.testing import KnownDesign
+from tests.asking import instance_of
 from tests.conformance.cases import CASES
 
 KNOWN = [
@@ -154,6 +156,26 @@ def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
     requirements = {**CASES[family].requirements, RULED[family]: 5}
     with pytest.raises(synth.InputError, match="is a rule of practice and counts only with practice: on"):
         synth.synthesize(synth.load(family, practice="off"), requirements)
+
+
+LAYERED = [f for f in CASES if hasattr(import_module(type(synth.load(f)).__module__), "LAYERS")]
+
+
+@pytest.mark.parametrize("family", LAYERED)
+def test_practice_is_asked_by_the_layer_alone(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def traced(practice: str) -> list[Any]:
+        problem = type(synth.load(family))(practice=practice)
+        program = instance_of(problem, CASES[family].requirements, Catalogs()).model.program
+        return [(node.op, tuple(node.args), node.constant) for node in program.nodes]
+
+    before = traced("on")
+    module = import_module(type(synth.load(family)).__module__)
+    monkeypatch.setattr(module, "LAYERS", dict.fromkeys(module.LAYERS, module.LAYERS[False, False]))
+    assert traced("on") == traced("off") != before
+
+
+def test_families_with_a_layer_get_no_fewer() -> None:
+    assert {*LAYERED} >= {"cone_clutch", "disc_clutch", "roller_coupling"}
 
 
 # -- tables of linings of one's own ------------------------------------------------------------------
