@@ -14,17 +14,7 @@ from synth.drawing import Box2, Detail, Drawing, LineKind, View
 from synth.results.report_request import About
 
 from .paper import PaperSheet, PlacedView, Stroke
-from .sheet_blocks import (
-    BLOCK,
-    NOTE,
-    WIDE,
-    Written,
-    list_height,
-    note_lines,
-    notes,
-    parts_list,
-    title_block,
-)
+from .sheet_blocks import BLOCK, NOTE, WIDE, Written, list_height, note_lines, notes, parts_list, title_block
 from .view_places import placed_detail, placed_view
 
 SHEETS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0)}

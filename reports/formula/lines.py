@@ -5,22 +5,7 @@ from __future__ import annotations
 from synth.text.numbers import shown
 
 from ..numbers import ShownQuantity, printed
-from .layout import (
-    BESIDE,
-    TIMES,
-    Amount,
-    Call,
-    Cases,
-    Fence,
-    Fraction,
-    Layout,
-    Letter,
-    Power,
-    Root,
-    Row,
-    Sign,
-    Word,
-)
+from .layout import BESIDE, TIMES, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
 WIDEST = 74.0  # digits side by side that a line of a page holds

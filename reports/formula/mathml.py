@@ -7,21 +7,7 @@ from html import escape
 from synth.text.numbers import THIN, grouped
 from synth.units import unit_text
 
-from .layout import (
-    BESIDE,
-    Amount,
-    Call,
-    Cases,
-    Fence,
-    Fraction,
-    Layout,
-    Letter,
-    Power,
-    Root,
-    Row,
-    Sign,
-    Word,
-)
+from .layout import BESIDE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
 

@@ -2,21 +2,7 @@
 
 from __future__ import annotations
 
-from .layout import (
-    BESIDE,
-    Amount,
-    Call,
-    Cases,
-    Fence,
-    Fraction,
-    Layout,
-    Letter,
-    Power,
-    Root,
-    Row,
-    Sign,
-    Word,
-)
+from .layout import BESIDE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 
 SIGNS = {"−": "-", "·": "*", "≤": "<=", "≥": ">=", "≠": "!="}
 

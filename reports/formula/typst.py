@@ -8,22 +8,7 @@ from collections.abc import Sequence
 from synth.text.numbers import THIN, grouped
 from synth.units import unit_text
 
-from .layout import (
-    BESIDE,
-    MINUS,
-    Amount,
-    Call,
-    Cases,
-    Fence,
-    Fraction,
-    Layout,
-    Letter,
-    Power,
-    Root,
-    Row,
-    Sign,
-    Word,
-)
+from .layout import BESIDE, MINUS, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
 SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}

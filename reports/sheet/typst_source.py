@@ -8,21 +8,7 @@ from dataclasses import dataclass, field
 from datetime import date
 from itertools import pairwise
 
-from ..formula.layout import (
-    MINUS,
-    Amount,
-    Call,
-    Cases,
-    Fence,
-    Fraction,
-    Layout,
-    Letter,
-    Power,
-    Root,
-    Row,
-    Sign,
-    Word,
-)
+from ..formula.layout import MINUS, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from ..formula.lines import broken, width
 from ..formula.plain import plain
 from ..formula.typst import string, typst_math

@@ -117,7 +117,7 @@ def calculation(
 
 
 def _of_front(front: ParetoFront, problem: Any, catalogs: Any) -> Calculation:
-    saved = front.record.get("calculation") if front.record else None
+    saved = front.kept.get("calculation")
     if saved and front.folder is not None and problem is None and catalogs is None:
         return load_calculation(front.folder, saved)
     return calculation_of(question_of(front, problem, catalogs, kept=True))

@@ -16,6 +16,7 @@ from synth.question.count_domain import stated
 from synth.question.inputs import fixed_designation
 from synth.question.instance import Instance
 from synth.question.search_space import SearchSpace
+from synth.question.selection import part_row
 from synth.results import Design, Frame, PartRow
 from synth.results.next_row import NextRow
 from synth.results.provenance import joined
@@ -208,11 +209,3 @@ def rows_beside(model: Model, next_rows: Mapping[str, NextRow]) -> tuple[PartRow
     for name, found in next_rows.items():
         named += rows_read(d.next_rows[name], found, catalogs)
     return tuple(part_row(catalogs.table(table), k) for table, k in dict.fromkeys(named) if table in catalogs.own)
-
-
-def part_row(table: Any, index: int) -> PartRow:
-    """Return the row of a table as results show it."""
-    units = {}
-    if table.user_rows[index]:
-        units = {name: x.unit for name, x in table.columns.items() if not x.description and x.heading != name}
-    return PartRow(table.name, table.hashes[index], table.row(index), units)

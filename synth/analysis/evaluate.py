@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.designs import make_design, make_frame, part_row, rows_beside
+from synth.analysis.designs import make_design, make_frame, rows_beside
 from synth.analysis.settings import DERIVED
 from synth.errors import InputError, RefusedError, at
 from synth.model.model import DataInput, Model
@@ -20,6 +20,7 @@ from synth.question.objectives import chosen_objectives
 from synth.question.offers import offers
 from synth.question.request import Request
 from synth.question.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
+from synth.question.selection import part_row
 from synth.results import Design
 from synth.results.design import DesignSteps
 from synth.special import expanded

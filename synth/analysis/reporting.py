@@ -10,30 +10,36 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from synth.analysis.calculation import calculation, calculation_of
-from synth.analysis.designs import part_row
 from synth.analysis.drawing import drawings_of
-from synth.analysis.restate import problem_of, question_of, table_differences
+from synth.analysis.restate import kept_tables, question_of, table_differences
 from synth.drawing import Drawing
 from synth.errors import ExtraNeededError, InputError, first_with_others
 from synth.folders.csv_style import unstyled
 from synth.folders.files import read_bytes, read_json
 from synth.folders.output_folder import save_files
+from synth.model.problem import DesignProblem
+from synth.model.registry import load
 from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, knee_of
+from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
-from synth.results import Design, ParetoFront, PartRow, design_columns, design_row, foremost, named_designs
+from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
+from synth.results.calculation import Calculation
 from synth.results.drawings import report as report_named
 from synth.results.front_record import FRONT_FILE, result_digest
 from synth.results.hookspecs import Made
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
+from synth.results.offered import Offered
 from synth.results.report_request import ComparisonRequest, ReportOptions, ReportRequest
+from synth.robust.counterpart import nominal
 from synth.text.plain_text import csv_cell
 
 CURVES = ("*.svg",)
 PLAIN = ReportOptions()
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank
 Hook = TypeVar("Hook")
+FamilyLike = str | type[DesignProblem] | DesignProblem | None  # for a loaded front of a problem of one's own
 
 
 @dataclass(frozen=True)
@@ -112,7 +118,7 @@ def report(
     *,
     design: Any = 1,
     full: int = 5,
-    problem: Any = None,
+    problem: FamilyLike = None,
     catalogs: Any = None,
 ) -> WrittenReport:
     """Write the report of a front, and calculation sheets of some of its designs.
@@ -147,7 +153,7 @@ def report(
 
 
 def explore(
-    front: ParetoFront, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None
+    front: ParetoFront, height: int = 760, *, about: Any = None, problem: FamilyLike = None, catalogs: Any = None
 ) -> NotebookFrame:
     """Return the explorer of a front as a frame for a notebook; arguments as for :func:`report`.
 
@@ -161,7 +167,7 @@ def explore(
 
 
 def explored(
-    front: ParetoFront, *, about: Any = None, problem: Any = None, catalogs: Any = None, drawn: int = DRAWN
+    front: ParetoFront, *, about: Any = None, problem: FamilyLike = None, catalogs: Any = None, drawn: int = DRAWN
 ) -> dict[str, Any]:
     """Explorer record of a front, as JSON holds it; arguments as for :func:`report`.
 
@@ -173,8 +179,8 @@ def explored(
         The formulas of a loaded front cannot be read, or reports are not installed.
     """
     record = installed(report_named("explorer_record"), "explore")
-    read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
-    pictures, _ = _drawings(front, front.designs[:drawn], problem, catalogs)
+    read = _calculation(front, problem, catalogs)
+    pictures, _ = _drawings(front, read, front.designs[:drawn], problem)
     how = ReportOptions.read(about=about)
     asked = ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_beside(front))
     return record(asked)
@@ -194,21 +200,15 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     return record(_explored(asked))
 
 
-def _drawings_of_all(listed: Sequence[Mapping[str, Any]], fronts: Mapping[str, ParetoFront]) -> dict[int, Drawing]:
-    """Return drawings of the first designs of a common front, by their rank there."""
-    first = listed[:DRAWN]
-    found: dict[int, Drawing] = {}
-    for family, front in fronts.items():
-        ranks = {x["own_rank"]: int(x["rank"]) for x in first if x["family"] == family}
-        drawn, _ = _drawings(front, [d for d in front.designs if d.rank in ranks])
-        found |= {ranks[own]: drawing for own, drawing in drawn.items()}
-    return found
-
-
 def _explored(asked: ComparisonRequest) -> ComparisonRequest:
-    """Request with what the explorer needs."""
-    drawings = _drawings_of_all(asked.content["designs"], asked.fronts)
-    return replace(asked, calculations={name: calculation(x) for name, x in asked.fronts.items()}, drawings=drawings)
+    """Request with what the explorer needs: calculations, and drawings of the first designs by rank."""
+    calculations = {family: calculation(front) for family, front in asked.fronts.items()}
+    drawings: dict[int, Drawing] = {}
+    for family, front in asked.fronts.items():
+        ranks = {x["own_rank"]: int(x["rank"]) for x in asked.content["designs"][:DRAWN] if x["family"] == family}
+        drawn, _ = _drawings(front, calculations[family], [d for d in front.designs if d.rank in ranks])
+        drawings |= {ranks[own]: drawing for own, drawing in drawn.items()}
+    return replace(asked, calculations=calculations, drawings=drawings)
 
 
 def _of_front(
@@ -217,14 +217,14 @@ def _of_front(
     full: int,
     how: ReportOptions,
     place: Path,
-    problem: Any = None,
+    problem: FamilyLike = None,
     catalogs: Any = None,
 ) -> Made:
     """Return the files of the report of a front, which will stand in a place."""
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
-    read = calculation(front, problem=problem, catalogs=catalogs if problem else None)
-    drawings, untold = _drawings(front, named_designs(front, chosen), problem, catalogs, asked=_draws(how))
+    read = _calculation(front, problem, catalogs)
+    drawings, untold = _drawings(front, read, named_designs(front, chosen), problem, asked=_draws(how))
     shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
     shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
     more = {d.rank: d for d in shown if d.rank not in drawings}
@@ -235,11 +235,11 @@ def _of_front(
         full=int(full),
         how=how,
         rows=_offered(front, problem, catalogs) if "xlsx" in how.formats else {},
-        drawings=drawings | _drawings(front, list(more.values()), problem, catalogs)[0],
+        drawings=drawings | _drawings(front, read, list(more.values()), problem)[0],
         **_beside(front),
     )
     files, notes, lacking = installed(report_named("files"), "report")(asked)
-    return files, [*notes, *untold, *_differences(front, problem, catalogs)], lacking
+    return files, [*notes, *untold, *_differences(front, read, problem, catalogs)], lacking
 
 
 def _draws(how: ReportOptions) -> bool:
@@ -247,22 +247,48 @@ def _draws(how: ReportOptions) -> bool:
     return bool({"svg", "dxf", "step", "glb"} & set(how.formats))
 
 
-def _differences(front: ParetoFront, problem: Any, catalogs: Any) -> list[str]:
+def _calculation(front: ParetoFront, problem: FamilyLike, catalogs: Any) -> Calculation:
+    """Calculation of a front: the one that was saved with it, whatever is given, where there is one."""
+    saved = "calculation" in front.kept
+    return calculation(front) if saved else calculation(front, problem=problem, catalogs=catalogs if problem else None)
+
+
+def _family(front: ParetoFront, read: Calculation, problem: FamilyLike) -> DesignProblem:
+    """Family of a front, whose hooks need no trace: all options are stated, as its calculation has them.
+
+    Raises
+    ------
+    InputError
+        It is not installed.
+    """
+    if problem is None and front.question is not None:
+        return nominal(front.question.problem)
+    return load(front.frame.family, **read.options) if problem is None else load(problem)
+
+
+def _differences(front: ParetoFront, read: Calculation, problem: FamilyLike, catalogs: Any) -> list[str]:
     """Remarks on tables that have changed; none without the family."""
     if front.question is not None:
         return []
     with suppress(InputError):
-        away, changed = table_differences(front, problem_of(front, problem, catalogs, kept=True)[1])
+        _family(front, read, problem)
+        tables = kept_tables(front) if catalogs is None else as_catalogs(catalogs)
+        away, changed = table_differences(front, tables)
         return [*away, *changed]
     return []
 
 
 def _drawings(
-    front: ParetoFront, designs: Sequence[Design], problem: Any = None, catalogs: Any = None, *, asked: bool = False
+    front: ParetoFront,
+    read: Calculation,
+    designs: Sequence[Design],
+    problem: FamilyLike = None,
+    *,
+    asked: bool = False,
 ) -> tuple[dict[int, Drawing], list[str]]:
     """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
     try:
-        own, _ = problem_of(front, problem, catalogs, kept=True)
+        own = _family(front, read, problem)
     except InputError as error:
         return {}, [f"no drawing: {error}"] if asked else []
     return drawings_of(own, designs, asked=asked)
@@ -290,7 +316,7 @@ def report_design(
         design=design.placed(place),
         name=name,
         how=how,
-        rows=_rows(instance) if "xlsx" in how.formats else {},
+        rows=instance.offered() if "xlsx" in how.formats else {},
         drawings=drawings,
     )
     files, notes, lacking = installed(report_named("files"), "report")(asked)
@@ -400,23 +426,9 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     return {}
 
 
-def _offered(front: ParetoFront, problem: Any, catalogs: Any) -> dict[str, list[PartRow]]:
-    """Return the rows that slots offer; where the question cannot be posed again those that the designs use."""
-    try:
-        return _rows(question_of(front, problem, catalogs, kept=True))
-    except InputError:
-        used: dict[str, dict[str, PartRow]] = {}
-        for design in front.designs:
-            for slot, row in design.parts.items():
-                used.setdefault(slot, {})[str(row)] = row
-        return {slot: list(rows.values()) for slot, rows in used.items()}
-
-
-def _rows(instance: Instance) -> dict[str, list[PartRow]]:
-    found: dict[str, list[PartRow]] = {}
-    chosen = {s.slot: (s.table, s.rows) for s in instance.selection.slots}
-    for slot, part in instance.model.declaration.slots.items():
-        whole = instance.catalogs.table(part.table)
-        table, rows = chosen.get(slot) or (whole, range(len(whole)))
-        found[slot] = [part_row(table, int(k)) for k in rows]
-    return found
+def _offered(front: ParetoFront, problem: FamilyLike, catalogs: Any) -> Offered:
+    """Rows that slots offer; of a front that was saved without them the question is posed again where it can be."""
+    if front.question is None and not front.kept.get("offered"):
+        with suppress(InputError):
+            return question_of(front, problem, catalogs, kept=True).offered()
+    return front.offered()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
-from synth.question.catalogs import catalogs_for
+from synth.question.catalogs import as_catalogs, catalogs_for, refuse_unused
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.results.provenance import joined
@@ -50,12 +50,20 @@ def problem_of(
     own = robust_counterpart(own, restated.get("robust"), restated.get("limits"))
     if catalogs is not None or not kept:
         return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
+    tables = kept_tables(front)
+    refuse_unused(own, tables)
+    return own, tables
+
+
+def kept_tables(front: ParetoFront) -> Catalogs:
+    """Tables of a front, where rows of its designs stand in for tables that are away."""
     rows: dict[str, dict[str, Mapping[str, Any]]] = {}
     for design in front.designs:
         for row in (*design.parts.values(), *design.rows):
             rows.setdefault(row["table"], {})[str(row)] = row.record()
-    named = {**dict.fromkeys(front.frame.tables, IN_MEMORY), **restated.get("catalogs", {})}
-    return own, catalogs_for(own, named or None, kept={name: list(used.values()) for name, used in rows.items()})
+    named = {**dict.fromkeys(front.frame.tables, IN_MEMORY), **front.frame.restated.get("catalogs", {})}
+    kept = {name: list(used.values()) for name, used in rows.items()}
+    return Catalogs(named, kept=kept) if named else as_catalogs(None)
 
 
 def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:

@@ -73,6 +73,7 @@ FRONT = ResultKind(
         "designs.csv",
         "front.json",
         "calculation.json",
+        "offered.json",
         "design_*.yaml",
         "robust.csv",
         EXPLANATION_TEXT,

@@ -29,6 +29,7 @@ from synth.queue.records import Posed, Record, Sources, Tell
 from synth.results.calculation import CALCULATION
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON
+from synth.results.offered import OFFERED
 from synth.results.plain import plain
 from synth.search.question import pose
 from synth.studies.families.compare import compare
@@ -41,7 +42,7 @@ from synth.studies.families.requirement_sheet import (
     sheet_of,
 )
 
-KEPT = (FRONT_FILE, CALCULATION)  # of the front of each family; the rest is rendered from these
+KEPT = (FRONT_FILE, CALCULATION, OFFERED)  # of the front of each family; the rest is rendered from these
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:

@@ -133,7 +133,7 @@ def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, Any], s
 
 def _derived(front: ParetoFront) -> dict[str, str]:
     """Files that follow from the record of a front alone, as its folder holds it."""
-    return front.record_files(str((front.record or {}).get("calculation", "")))
+    return front.record_files()
 
 
 def _explored(records: Mapping[str, bytes]) -> str:

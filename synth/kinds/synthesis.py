@@ -24,6 +24,7 @@ from synth.question.settings import SearchSettings
 from synth.queue.records import Posed, Record, Sources, Tell
 from synth.results.calculation import CALCULATION
 from synth.results.front_record import FRONT_FILE
+from synth.results.offered import OFFERED
 from synth.robust.rating import Rater
 from synth.search.question import pose
 from synth.search.synthesize import find_front
@@ -65,7 +66,7 @@ def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, 
     """Search the designs; every other file of a front is rendered from these records."""
     asked, settings = question_of(request, sources), settings_of(request)
     front = find_front(asked, settings, told(tell))
-    kept = of_files(front.files(), (FRONT_FILE, CALCULATION))
+    kept = of_files(front.files(), (FRONT_FILE, CALCULATION, OFFERED))
     return {**kept, **by_name(question_record("synthesis", request, sources))}
 
 

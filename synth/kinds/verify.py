@@ -27,8 +27,7 @@ from synth.kinds.asked import (
 from synth.kinds.request_schemas import keys_of
 from synth.kinds.settings import KIND_SETTINGS
 from synth.queue.records import Posed, Record, Sources, Tell
-from synth.results.calculation import CALCULATION, Calculation
-from synth.results.front_record import FRONT_FILE
+from synth.results.front_record import FRONT_FILE, KEPT, fits
 from synth.results.verification import Verification
 from synth.verification.verify import verify
 from synth.verification.verify_comparison import verify_comparison
@@ -72,7 +71,7 @@ def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, 
     else:
         front = front_in(records, request.get(FAMILY), check=False)
         found = verify(front, catalogs=catalogs_of(front.frame.restated.get("catalogs"), sources), time_limit=limit)
-        found = _with_calculation(found, records, request.get(FAMILY))
+        found = _with_kept(found, records, request.get(FAMILY))
     content = {**asdict(found), "verdict": found.verdict.value, "holds": found.holds, "sentence": found.sentence()}
     return by_name(json_record(MAIN, content), question_record("verify", request, sources))
 
@@ -84,18 +83,19 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     return {"outcome": content["verdict"], "findings": len(content["findings"]), **{k: content[k] for k in kept}}
 
 
-def _with_calculation(found: Verification, records: Mapping[str, bytes], family: Any) -> Verification:
-    """Return a verification that looks at the record of the calculation as well."""
+def _with_kept(found: Verification, records: Mapping[str, bytes], family: Any) -> Verification:
+    """Return a verification that looks at the records beside that of the front as well."""
     folder = "" if family is None else f"{family}/"
-    wanted = read_json(records, f"{folder}{FRONT_FILE}").get("calculation", "")
-    try:
-        fits = not wanted or Calculation.from_json(read_json(records, f"{folder}{CALCULATION}")).digest == wanted
-    except (KeyError, ValueError):  # there is none, or it cannot be read
-        fits = False
-    if fits:
-        return found
-    finding = f"{CALCULATION} is missing, or is not what was saved with {FRONT_FILE}"
-    return replace(found, findings=(*found.findings, finding))
+    front = read_json(records, f"{folder}{FRONT_FILE}")
+    findings = list(found.findings)
+    for key in KEPT:
+        try:
+            same = key not in front or fits(read_json(records, f"{folder}{key}.json"), front[key])
+        except (KeyError, ValueError, TypeError):  # there is none, or it cannot be read
+            same = False
+        if not same:
+            findings.append(f"{key}.json is missing, or is not what was saved with {FRONT_FILE}")
+    return replace(found, findings=tuple(findings))
 
 
 def _comparison(records: Mapping[str, bytes], sources: Sources, limit: float) -> Verification:
@@ -106,8 +106,7 @@ def _comparison(records: Mapping[str, bytes], sources: Sources, limit: float) ->
         unpack(records, Path(place))
         for family in fronts_in(records):
             front = front_in(records, family, check=False)
-            derived = front.record_files(str((front.record or {}).get("calculation", "")))
-            kept = {f"{family}/{name}": text.encode() for name, text in derived.items()}
+            kept = {f"{family}/{name}": text.encode() for name, text in front.record_files().items()}
             unpack({name: text for name, text in kept.items() if name not in records}, Path(place))
         return verify_comparison(place, limit, tables)
 

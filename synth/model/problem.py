@@ -67,9 +67,11 @@ class DesignProblem(FamilyHooks):
 
     def option(self, name: str) -> str:
         """Return an option that is in force: the one given, or the default."""
-        model = next(iter(self._models.values()))[0] if self._models else self.model(frozenset(), Catalogs())
-        chosen: str = model.declaration.options[name].chosen
-        return chosen
+        if name in self.options:
+            return self.options[name]
+        traced = next(iter(self._models.values()), None)
+        declared = self.declaration(frozenset(), Catalogs()) if traced is None else traced[0].declaration
+        return declared.options[name].chosen
 
     @property
     def declared_by(self) -> type[DesignProblem]:

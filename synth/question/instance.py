@@ -20,13 +20,14 @@ from synth.question.refusals import leave_out_refused, leave_out_without_partner
 from synth.question.requirement_values import RequirementValues
 from synth.question.rows_without_value import leave_out_without_value
 from synth.question.search_space import SearchSpace
-from synth.question.selection import Selection
+from synth.question.selection import Selection, part_row
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
 from synth.results.provenance import Fingerprint, code_digest, hash_of, joined, problem_digest, processor
 
 if TYPE_CHECKING:
     from synth.question.request import Request
+    from synth.results import PartRow
 
 
 class Instance(SearchSpace):
@@ -95,6 +96,16 @@ class Instance(SearchSpace):
         """
         own, numbers = self.values if values is None else values, np.asarray(combinations, dtype=np.int64)
         return inputs_of_combination(self.model, own.requirements, own.rows, self.combinations, numbers)
+
+    def offered(self) -> dict[str, list[PartRow]]:
+        """Rows that slots offer; of a given design all of their tables."""
+        chosen = {s.slot: (s.table, s.rows) for s in self.selection.slots}
+        found: dict[str, list[PartRow]] = {}
+        for slot, part in self.model.declaration.slots.items():
+            table = self.catalogs.table(part.table)
+            table, rows = chosen.get(slot) or (table, range(len(table)))
+            found[slot] = [part_row(table, int(k)) for k in rows]
+        return found
 
     def values_of(self, combination: int) -> RequirementValues:
         """Return the requirement values, which are the same for all combinations."""

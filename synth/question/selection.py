@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from synth.declaration import Refusal
+from synth.results import PartRow
 from synth.tables.table import Table
 
 
@@ -74,3 +75,11 @@ class Selection:
             self.choices[name] = self.choices[name][keep]
         else:
             self.slots = [s.take(keep) if s.slot == name else s for s in self.slots]
+
+
+def part_row(table: Table, index: int) -> PartRow:
+    """Row of a table as results show it."""
+    units = {}
+    if table.user_rows[index]:
+        units = {n: x.unit or "" for n, x in table.columns.items() if not x.description and x.heading != n}
+    return PartRow(table.name, table.hashes[index], table.row(index), units)

@@ -6,7 +6,6 @@ front. It belongs to a question, not to a design: inputs come from the record of
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from synth.folders.files import read_json
 from synth.order.feasibility import holds, residual, utilisation
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
-from synth.results.plain import digest_of, finite
+from synth.results.plain import compact_json, digest_of, finite
 from synth.text.numbers import percent
 from synth.text.row_cells import CODE_OF, cell_value, named_column, text_code
 
@@ -319,7 +318,7 @@ class Calculation:
 
     def to_json(self) -> str:
         """Return the text of a calculation.json."""
-        return json.dumps(self.content, separators=(",", ":"), allow_nan=False, ensure_ascii=False) + "\n"
+        return compact_json(self.content)
 
     @staticmethod
     def from_json(content: Any, field: str = "calculation") -> Calculation:

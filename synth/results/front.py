@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError, derived
@@ -15,13 +16,14 @@ from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, design_columns, design_row
+from synth.results.design import Design, Frame, PartRow, design_columns, design_row
 from synth.results.door import door
 from synth.results.drawings import front_picture, report
-from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text, result_digest
+from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, KEPT, design_record, record_text, result_digest
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.notebook import NotebookFrame, notebook_html
-from synth.results.plain import digest_of, finite, plain
+from synth.results.offered import OFFERED, Offered, load_offered, offered_content
+from synth.results.plain import compact_json, digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
 from synth.results.report_request import ReportOptions
@@ -69,9 +71,9 @@ class ParetoFront:
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
-        """Write designs.csv, front.json and one design_NN.yaml per design, then calculation.json; return the folder.
+        """Write designs.csv, front.json, design_NN.yaml, then calculation.json and offered.json; return the folder.
 
-        The first are written all or none, before anything is derived from them: where the calculation cannot be made
+        The first are written all or none, before anything is derived from them: where the others cannot be made
         the front is kept, and a warning says so.
 
         A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
@@ -100,40 +102,68 @@ class ParetoFront:
             The calculation of a front that was loaded cannot be read.
         """
         files = self.record_files(folder=folder) | self.derived_files(folder)
-        first = {name: files.pop(name) for name in ("designs.csv", FRONT_FILE, CALCULATION) if name in files}
+        first = {name: files.pop(name) for name in ("designs.csv", FRONT_FILE, CALCULATION, OFFERED) if name in files}
         return {**first, **files}
 
     def derived_files(self, folder: Path | None = None) -> dict[str, str]:
-        """Return the calculation and the record that names it; nothing, with a warning, where it cannot be made.
+        """Calculation, rows offered, and the record that names both; without those that cannot be made, with a warning.
 
         Raises
         ------
         InputError
-            The calculation of a front that was loaded cannot be read.
+            A file of a front that was loaded cannot be read.
+        """
+        makers: dict[str, Callable[[], dict[str, Any]]] = {
+            CALCULATION: lambda: door().calculation(self).content,
+            OFFERED: lambda: offered_content(self.offered()),
+        }
+        if self.question is not None:
+            made = {name: derived(name, make) for name, make in makers.items()}
+        else:  # those that were saved before there were such files have none
+            made = {name: make() for name, make in makers.items() if name.removesuffix(".json") in self.kept}
+        found = {name: content for name, content in made.items() if content}
+        digests = {name.removesuffix(".json"): str(content["digest"]) for name, content in found.items()}
+        record = {FRONT_FILE: self.record_files(digests, folder)[FRONT_FILE]} if found else {}
+        return {**record, **{name: compact_json(content) for name, content in found.items()}}
+
+    @property
+    def kept(self) -> dict[str, str]:
+        """Digests of the files that were saved beside front.json, by their names without ending."""
+        return {name: str(self.record[name]) for name in KEPT if self.record.get(name)} if self.record else {}
+
+    def offered(self) -> Offered:
+        """Rows that slots offer; of a front that was saved before they were kept, those of its designs.
+
+        Raises
+        ------
+        InputError
+            The file beside a front that was loaded is not the one that was saved with it.
         """
         if self.question is not None:
-            calculation = derived(CALCULATION, lambda: door().calculation(self))
-        else:  # one that was saved before there were calculations has none
-            calculation = door().calculation(self) if (self.record or {}).get("calculation") else None
-        if calculation is None:
-            return {}
-        record = self.record_files(calculation.digest, folder)[FRONT_FILE]
-        return {FRONT_FILE: record, CALCULATION: calculation.to_json()}
+            rows: Offered = self.question.offered()
+            return rows
+        if self.folder is not None and "offered" in self.kept:
+            return load_offered(self.folder, self.kept["offered"])
+        used: dict[str, dict[str, PartRow]] = {}
+        for design in self.designs:
+            for slot, row in design.parts.items():
+                used.setdefault(slot, {})[row.key] = row
+        return {slot: list(rows.values()) for slot, rows in used.items()}
 
-    def record_files(self, calculation: str = "", folder: Path | None = None) -> dict[str, str]:
+    def record_files(self, digests: Mapping[str, str] | None = None, folder: Path | None = None) -> dict[str, str]:
         """Return the files that follow from the record alone.
 
-        ``calculation`` is the digest of what belongs to it, ``folder`` where they will stand: by default where the
-        front was read from.
+        ``digests`` are those of files beside it, by default as :attr:`kept`; ``folder`` is where they will stand, by
+        default where the front was read from.
         """
         place = self.folder if folder is None else folder
         own = self if place is None else self.placed(place)
-        return own._record_files(calculation)
+        return own._record_files(self.kept if digests is None else digests)
 
-    def _record_files(self, calculation: str) -> dict[str, str]:
+    def _record_files(self, digests: Mapping[str, str]) -> dict[str, str]:
         """Return the files with tables as they are named here."""
         width = max(2, len(str(len(self.designs))))
-        found = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, calculation))}
+        found = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, digests))}
         if any(design.robust for design in self.designs):
             found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
@@ -325,8 +355,8 @@ class ParetoFront:
         return digest_of(content)
 
 
-def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
-    """Return the content of the front.json of a front; ``calculation`` is the digest of its calculation."""
+def front_record(front: ParetoFront, digests: Mapping[str, str] = MappingProxyType({})) -> dict[str, Any]:
+    """Return the content of the front.json of a front; ``digests`` are those of files beside it."""
     rows: dict[str, dict[str, Any]] = {}
     for design in front.designs:
         for row in (*design.parts.values(), *design.rows):
@@ -359,7 +389,7 @@ def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
         "explanation": plain(front.explanation),
         "parts": rows,
         **({"scale": front.scale.told(frame.objectives)} if front.scale is not None else {}),
-        **({"calculation": calculation} if calculation else {}),
+        **digests,
         "designs": [design_record(d) for d in front.designs],
     }
     content["result"] = result_digest(content)

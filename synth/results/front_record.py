@@ -31,8 +31,14 @@ def changed(content: Mapping[str, Any]) -> str:
     return "" if fits else "front.json was changed after it was saved: its checksum does not fit"
 
 
+def fits(content: Any, digest: str) -> bool:
+    """True if a file beside front.json is the one with this checksum."""
+    return bool(digest == content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"}))
+
+
 # Of a record: what the search took, what follows from the rest, and where tables lie.
-NOT_THE_RESULT = ("digest", "result", "statistics", "calculation")
+KEPT = ("calculation", "offered")  # digests of files beside it
+NOT_THE_RESULT = ("digest", "result", "statistics", *KEPT)
 
 
 def result_digest(content: Mapping[str, Any]) -> str:

@@ -29,3 +29,8 @@ def digest_of(content: Mapping[str, Any]) -> str:
     """Return the SHA-256 of the content of a record, without regard to the order of its keys."""
     text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def compact_json(content: Mapping[str, Any]) -> str:
+    """Text of a file that programs read."""
+    return json.dumps(content, separators=(",", ":"), allow_nan=False, ensure_ascii=False) + "\n"

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.analysis.designs import design_of, part_row, rows_beside, told_by
+from synth.analysis.designs import design_of, rows_beside, told_by
 from synth.model.model import Evaluation
+from synth.question.selection import part_row
 from synth.results import Design, Frame, PartRow
 from synth.results.design import DesignSteps
 

@@ -112,9 +112,4 @@ async def context_of(request: Request) -> ServiceContext:
     return found
 
 
-async def store_of(request: Request) -> Store:
-    """Return the job database."""
-    return (await context_of(request)).store
-
-
 Context = Annotated[ServiceContext, Depends(context_of)]

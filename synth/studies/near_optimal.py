@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.analysis.designs import make_design, part_row
+from synth.analysis.designs import make_design
 from synth.analysis.restate import question_of
 from synth.analysis.written_digits import written_digits
 from synth.bounds.boxes import Boxes
@@ -28,6 +28,7 @@ from synth.nlp.batch import Tasks
 from synth.order.feasibility import Status
 from synth.order.margins import MARGINS
 from synth.question.instance import Instance
+from synth.question.selection import part_row
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.results.front_record import design_record, record_text

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,8 +41,9 @@ from synth.proof.settings import PROOF, ProofLimits
 from synth.proof.tree import ProofTree, moved_limits, void_without
 from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
-from synth.results.calculation import CALCULATION, load_calculation
+from synth.results.calculation import load_calculation
 from synth.results.front_record import changed
+from synth.results.offered import load_offered
 from synth.results.verification import Verification
 from synth.special import expanded
 from synth.text.numbers import gap_text, percent, typed_number
@@ -54,6 +55,9 @@ from synth.verification.ranking import ranking_faults
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
+
+# Files beside front.json, by the name of their digest there.
+LOADERS: Mapping[str, Callable[[Path, str], object]] = {"calculation": load_calculation, "offered": load_offered}
 
 
 def verify(
@@ -194,13 +198,12 @@ class VerificationRun:
         self._away = bool(away)
 
     def _files(self, folder: Path) -> None:
-        calculation = str((self.front.record or {}).get("calculation", ""))
-        if calculation:
+        for name, digest in self.front.kept.items():
             try:
-                load_calculation(folder, calculation)
+                LOADERS[name](folder, digest)
             except InputError:
-                self.find(f"{CALCULATION} is missing, or is not what was saved with front.json")
-        for name, text in self.front.record_files(calculation).items():
+                self.find(f"{name}.json is missing, or is not what was saved with front.json")
+        for name, text in self.front.record_files().items():
             path = folder / name
             try:
                 same = name == "front.json" or _is_text(read_bytes(path, name).decode("utf-8"), name, text)

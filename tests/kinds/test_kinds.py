@@ -270,7 +270,7 @@ def test_a_synthesis_finds_a_front() -> None:
     )
     assert set(facts["best"]) == set(facts["objectives"]) == {"mass", "actuation_force"}
     assert facts["best"]["mass"].endswith(" kg")
-    assert set(disc()) == {"front.json", "calculation.json", "question.json"}
+    assert set(disc()) == {"front.json", "calculation.json", "offered.json", "question.json"}
 
 
 @pytest.mark.slow

@@ -47,7 +47,12 @@ def test_a_front_is_kept_where_its_calculation_cannot_be_made(failing, tmp_path)
     (one,) = told
     assert str(one.message).startswith(f"calculation.json could not be made ({type(failing).__name__}: ")
     assert "the result it is made from is complete" in str(one.message)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["design_01.yaml", "designs.csv", "front.json"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "design_01.yaml",
+        "designs.csv",
+        "front.json",
+        "offered.json",
+    ]
     assert synth.load_front(tmp_path).verify(Side).holds
 
 
@@ -98,7 +103,7 @@ def test_an_earlier_calculation_does_not_stay_beside_a_new_front(tmp_path, monke
 def test_files_are_those_that_are_saved(tmp_path):
     front = synth.synthesize(Side, {})
     files = front.files()
-    assert list(files)[:3] == ["designs.csv", "front.json", "calculation.json"]
+    assert list(files)[:4] == ["designs.csv", "front.json", "calculation.json", "offered.json"]
     front.save(tmp_path)
     for name, text in files.items():
         assert (tmp_path / name).read_text() == text, name

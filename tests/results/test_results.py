@@ -79,6 +79,7 @@ def test_every_design_has_its_file(front, folder):
         "designs.csv",
         "calculation.json",
         "front.json",
+        "offered.json",
         *(f"design_{k:02d}.yaml" for k in range(1, 6)),
     }
 

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from synth.analysis.designs import make_design, make_frame, part_row
+from synth.analysis.designs import make_design, make_frame
 from synth.analysis.evaluate import evaluate
 from synth.declaration import Origin
 from synth.errors import InputError
 from synth.model.constraint import SIGNS
 from synth.question.instance import Instance
 from synth.question.request import Request
+from synth.question.selection import part_row
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.robust.counterpart import nominal, robust_counterpart
