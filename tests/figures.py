@@ -54,7 +54,13 @@ def sources() -> dict[str, str]:
 @cache
 def trees() -> dict[str, ast.Module]:
     """Syntax trees of the package by path from the top."""
-    return {path: ast.parse(text) for path, text in sources().items()}
+    return {path: parsed(text) for path, text in sources().items()}
+
+
+@cache
+def parsed(text: str) -> ast.Module:
+    """Syntax tree of a source, made once."""
+    return ast.parse(text)
 
 
 def nodes(*tops: str) -> Iterator[tuple[str, ast.AST]]:

@@ -13,6 +13,7 @@ import pytest
 import synth
 from synth.plugins import AROUND_THE_ENGINE
 from tests.conftest import LONGEST
+from tests.figures import parsed
 from tests.shipped import FAMILIES
 
 ROOT = Path(__file__).parents[1]
@@ -44,7 +45,7 @@ def module_name(path: Path) -> str:
 def imported(text: str, package: str) -> set[str]:
     """Full dotted names that a source text of a package imports, wherever the import stands."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(parsed(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -202,7 +203,7 @@ def test_the_engine_names_no_family() -> None:
     # Messages may show a line of a spec that can be typed; nothing else may know a name.
     example = re.compile(r"'family: \w+'")
     for path in (path for package in ENGINE for path in sources(package)):
-        words = {example.sub("", word) for word in spoken(ast.parse(path.read_text()))}
+        words = {example.sub("", word) for word in spoken(parsed(path.read_text()))}
         named = {word for word in words for family in families if family in word}
         assert not named, f"{path.name} names {named}"
 
@@ -269,14 +270,12 @@ def numbers_of(tree: ast.Module) -> set[str]:
 
 
 def test_no_test_patches_a_number_of_the_engine() -> None:
-    assert numbers_of(ast.parse("A = 1\nB = -2 * 3.0\nC = 'x'\nD = f(1)\nE, F = 1, 2\nf = 1")) == {"A", "B"}
-    numbers = {
-        name for package in ENGINE for path in sources(package) for name in numbers_of(ast.parse(path.read_text()))
-    }
+    assert numbers_of(parsed("A = 1\nB = -2 * 3.0\nC = 'x'\nD = f(1)\nE, F = 1, 2\nf = 1")) == {"A", "B"}
+    numbers = {name for package in ENGINE for path in sources(package) for name in numbers_of(parsed(path.read_text()))}
     assert len(numbers) > 20
     patched = set()
     for path in (ROOT / "tests").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(parsed(path.read_text())):
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "setattr":
                 told = [x.value for x in node.args if isinstance(x, ast.Constant) and isinstance(x.value, str)]
                 patched |= {(path.name, word) for word in told if word.rsplit(".", 1)[-1] in numbers}

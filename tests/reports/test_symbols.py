@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import pytest
 from synth.reports.formula.symbols import symbol_parts
 
 from synth.analysis.calculation import calculation_of
@@ -29,6 +30,7 @@ def shown(symbol):
     return ("Δ" if parts.difference else "") + parts.base, ",".join(parts.subscripts), style
 
 
+@pytest.mark.slow
 def test_every_symbol_is_typeset_as_it_was_looked_at():
     with LIST.open(encoding="utf-8") as file:
         known = {row["symbol"]: (row["base"], row["below"], row["style"]) for row in csv.DictReader(file)}

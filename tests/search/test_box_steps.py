@@ -54,6 +54,7 @@ def tree(form, rule, clock=None, **more):
     return branch_and_bound(form, form.boxes.root(), rule, clock or Clock(), np.random.default_rng(3), **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("node_limit", [0, 50, 300, 1000, 2000])
 def test_a_tree_that_ends_early_leaves_open_what_may_be_of_use(workers, node_limit, monkeypatch):
@@ -123,10 +124,12 @@ def outcome_of(workers):
     return outcome.looked, len(outcome.open), outcome.open.low.tobytes(), form.archive.phi.tobytes()
 
 
+@pytest.mark.slow
 def test_threads_change_nothing():
     assert outcome_of(1) == outcome_of(2) == outcome_of(3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("native", ["1", "0"])
 def test_arrays_cover_as_much(native, monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", native)

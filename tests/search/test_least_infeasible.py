@@ -30,6 +30,7 @@ def nearest(torque: str) -> tuple[dict[str, float], dict[str, Any]]:
     return {c["limit"]: c["missed_by"] for c in explanation["conflicts"]}, explanation
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("torque", ["60 kN*m", "900 kN*m"])
 def test_far_from_everything_feasible_the_nearest_design_is_still_a_clutch(torque: str) -> None:
     missed, explanation = nearest(torque)

@@ -67,6 +67,7 @@ def test_levels_side_by_side_search_what_no_other_tells_of() -> None:
     np.testing.assert_allclose(cutoffs.side_by_side(np.full(4, -np.inf), 0.5).above, [-np.inf, 1.0, -np.inf, 2.1])
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=400)
 def test_levels_side_by_side_say_of_everything_within_their_cutoffs_what_is_true(seed: int) -> None:
@@ -282,6 +283,7 @@ def test_what_is_open_is_told_only_where_it_is_asked_for() -> None:
     assert [len(level.corners) for level in levels.levels(proven_alone=True)] == [0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", ["mass flexibility", "flexibility mass", "-width mass", "mass -width"])
 def test_levels_prove_the_same_side_by_side_and_each_alone(objectives: str) -> None:
     asked = {name.strip("-"): "max" if name[0] == "-" else "min" for name in objectives.split()}

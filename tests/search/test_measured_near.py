@@ -49,6 +49,7 @@ def test_a_gear_train_is_as_good_as_can_be():
     assert honest(front, "miss", best)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [10.0, 1e3, 1e5])
 @pytest.mark.parametrize("seed", range(3))
 def test_sums_of_squares_over_wide_boxes_are_polished_and_proven_to_what_is_told(width, seed):

@@ -114,6 +114,7 @@ def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, home):
     assert journals(home) == []
 
 
+@pytest.mark.slow
 def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, home):
     inner, others = outer._inner, []
 

@@ -58,6 +58,7 @@ def better_than(front, amounts):
     return every[np.any(np.all(every[:, None, :] < (listed - room)[None, :, :] - 1e-18, axis=2), axis=1)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("problem", "most"), [(Fit, 1e-12), (Coarse, 0.01e-6), (Fine, 1e-16)])
 def test_a_mismatch_is_proven_to_the_amount_that_is_told(problem, most):
     front = synth.synthesize(problem, {}, points=1)
@@ -85,6 +86,7 @@ def test_the_amount_is_told_in_the_unit_of_the_objective(tmp_path):
     assert again.certificate == front.certificate
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", [["mismatch", "lift"], ["mismatch", "lift", "length"], ["lift"], ["length"]])
 @pytest.mark.parametrize("points", [1, 4])
 def test_what_may_be_zero_or_is_made_large_has_an_amount(objectives, points):

@@ -39,6 +39,7 @@ def test_a_combination_is_found_by_its_parts_counts_and_choices(designs: list[De
         assert choices == dict(design.choices)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more",
     [{"parts": {"material": ["odd"]}}, {"limits": {"plates": ">= 4"}}, {"fix": {"end": "hook"}}],
@@ -70,6 +71,7 @@ def test_ideas_are_solved_again_for_the_new_question(designs: list[Design]) -> N
     ).feasible.all()
 
 
+@pytest.mark.slow
 def test_a_search_that_begins_with_ideas_proves_the_same(designs: list[Design]) -> None:
     fresh, helped = question("30 kN").answer(), question("30 kN").answer(known=designs)
     assert helped.certificate.kind == fresh.certificate.kind == "global"

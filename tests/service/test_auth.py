@@ -37,6 +37,7 @@ def test_at_this_machine_everybody_is_the_local_tenant_until_there_is_a_token(se
     assert service("GET", SESSION, headers=bearer(made.json()["value"])).json()["scopes"] == ["admin", "read"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("asked", [{}, {"scopes": ["read"]}, {"scopes": ["read", "submit"], "tenant": "acme"}])
 def test_the_first_token_may_make_others(service: Service, asked: dict[str, object]) -> None:
     refused = service("POST", TOKENS, json={"name": "office", **asked})
@@ -49,6 +50,7 @@ def test_the_first_token_may_make_others(service: Service, asked: dict[str, obje
     assert service("POST", TOKENS, headers=bearer(admin), json={"name": "robot", **asked}).status_code == 201
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["../x", "a/b", "a b", ".", "-x", "_x", "a\\b", "x" * 61, "", "a\n", "<b>", "a,b"])
 def test_a_new_tenant_has_a_name_that_can_be_repeated_anywhere(service: Service, name: str) -> None:
     admin = bearer(service.token("admin"))
@@ -80,6 +82,7 @@ def test_where_others_can_reach_it_nobody_is_anybody_without_a_token(tmp_path: P
 # ---- tokens ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -148,6 +151,7 @@ def test_the_last_use_is_noted_but_not_every_use(service: Service) -> None:
     assert (service.accounts.tokens()[0].used or 0.0) >= first
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", ["read", "submit", "admin"])
 def test_a_scope_is_needed_by_name(service: Service, scope: str) -> None:
     async def found(principal: Annotated[Principal, Depends(needs("submit"))]) -> int:

@@ -302,6 +302,7 @@ def test_a_value_that_one_family_refuses_leaves_the_others():
     assert set(found.families) == {"solid"}
 
 
+@pytest.mark.slow
 def test_one_family_finds_what_beats_the_others_when_it_is_asked_again(monkeypatch):
     """A front of few points says little between them: the challenge must find what lies there."""
     found = compare([Solid, Tube, Padded], {"load": LOAD}, catalogs=OWN, points=2)
@@ -483,6 +484,7 @@ def brakes(limits=None, tuning=TUNING):
     )
 
 
+@pytest.mark.slow
 def test_limits_that_fail_between_corners_are_posed_for_every_family():
     found = brakes()
     assert found.certificate.kind == "global"
@@ -491,6 +493,7 @@ def test_limits_that_fail_between_corners_are_posed_for_every_family():
     assert min(d.values["size"] for d in found.designs) == pytest.approx(2 * 0.11 / 0.7, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_nothing_is_proven_of_all_where_designs_were_taken_off():
     one_search = tuned(robust={"searches": 1})
     found = brakes(tuning=one_search)
@@ -524,6 +527,7 @@ def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
 # ---- the families that there are ------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_family_understands_only_what_it_uses(family):
     problem = synth.load(family)
@@ -538,6 +542,7 @@ def test_a_family_understands_only_what_it_uses(family):
         assert any(marked[node] for node in used), name
 
 
+@pytest.mark.slow
 def test_families_that_understand_the_same_measure_it_alike():
     units = {}
     for family in FAMILIES:
@@ -564,6 +569,7 @@ def looked(families, progress=None, finished=None, told=None):
     return comparing.run(finished, told)
 
 
+@pytest.mark.slow
 def test_what_is_listed_does_not_depend_on_the_first_look():
     kept, asked = [], [Solid, Tube, Padded]
     late = looked(asked, finished=lambda label, front: kept.append((label, front.interrupted)))

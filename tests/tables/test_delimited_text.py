@@ -117,6 +117,7 @@ def test_a_catalogue_in_german_is_read(tmp_path: Path) -> None:
     assert table.number("mu").tolist() == [0.12, 0.3]
 
 
+@pytest.mark.slow
 def test_a_batch_in_german_runs_and_says_how_it_was_read(tmp_path: Path) -> None:
     rows = tmp_path / "Antriebe.csv"
     rows.write_bytes(

@@ -165,6 +165,7 @@ def test_an_empty_sheet_is_none(tmp_path: Path) -> None:
         load_table(written(tmp_path / "two.xlsx", Own=[["designation"]]), shipped=False)
 
 
+@pytest.mark.slow
 def test_how_own_tables_were_read_is_told_once(tmp_path: Path) -> None:
     """With every command that takes a spec or a design, once for each file."""
     heads = "designation;mu_dynamic;p_allow;v_allow;q_hourly_allow;power_density_allow;lining_thickness;wearable_depth"
@@ -248,6 +249,7 @@ def test_numbers_of_hidden_rows_say_nothing_where_they_are_left_out(tmp_path: Pa
         load_table(own, shipped=False)
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True, max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(hidden=st.sets(st.integers(2, 8)), empty=st.sets(st.integers(2, 8)))
 def test_all_rows_are_read_or_told(tmp_path: Path, hidden: set[int], empty: set[int]) -> None:

@@ -86,6 +86,7 @@ def test_limits_of_a_tenant_are_shown_and_changed(tmp_path: Path) -> None:
     assert (entry.name, entry.limits) == ("acme", TenantLimits(open_jobs=20, running=4, seconds_limit=600.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -24,6 +24,7 @@ def job_of(service: Service, tenant: int, title: str) -> str:
     return service.store.submit(new)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("address", [*ADDRESSES, "/sign-in"])
 def test_every_page_is_there_with_a_strict_policy_and_nothing_inline(service: Service, address: str) -> None:
     answer = service("GET", address)
@@ -86,6 +87,7 @@ def test_a_title_is_text_whatever_stands_in_it(service: Service) -> None:
     assert "&lt;img src=x onerror=alert(1)&gt;&lt;/script&gt;" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("address", ["/families/..%2f..%2fetc", "/families/A-B", "/jobs/%00", "/static/x/../app.py"])
 def test_what_is_no_page_is_not_found(service: Service, address: str) -> None:
     assert service("GET", address).status_code == 404
@@ -94,6 +96,7 @@ def test_what_is_no_page_is_not_found(service: Service, address: str) -> None:
 BROWSER = {"accept": "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("address", ["/nothing", "/jobs", "/a/<b>/c", "/api"])
 def test_a_browser_is_shown_a_page_where_none_is(service: Service, address: str) -> None:
     for headers in ({}, bearer(service.token())):

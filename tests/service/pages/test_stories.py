@@ -12,6 +12,7 @@ from synth.service.api.schemas import EXAMPLES
 from tests.reports.browser import DESKTOP, PHONE, needs_chromium
 from tests.service.pages.visiting import Site, Visit, in_all_forms
 from tests.service.working import BATCH, DUTY, FRONT, LONG, QUICK
+from tests.waiting import until
 
 pytestmark = [pytest.mark.slow, needs_chromium]
 EVIL = "<img src=x onerror=alert(1)>"
@@ -201,7 +202,7 @@ def test_a_table_is_understood_checked_asked_and_led_from_a_row_to_its_designs(s
         page.get_by_role("button", name="It means load torque").click()
         speed = page.get_by_label("What Speed means")
         found.sees("[role=status]", "none can be asked")
-        assert found.sees("tr", "driver_speed").inner_text().startswith("2, 4")
+        until(lambda: found.sees("tr", "driver_speed").inner_text().startswith("2, 4"))
         speed.select_option("driver_speed")
         page.get_by_label("Unit of Speed").fill("furlong")
         found.sees(".meanings .fault", "furlong")
