@@ -11,6 +11,8 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 
+from synth.operations.record import Trait
+from synth.operations.records import BY_TEXT
 from synth.results.expression import Expression, parts_of, with_parts
 from synth.units import parse_unit
 
@@ -21,16 +23,12 @@ WIDTH = 5  # decimals of a number from which on it is looked for among fractions
 
 # How firmly what stands there must hold together: a term, a factor, what is divided by, what is raised.
 ANY, TERM, FACTOR, DIVISOR, BASE = range(5)
+FIRMNESS = {"": ANY, "term": TERM, "factor": FACTOR, "divisor": DIVISOR, "base": BASE}  # as templates name it
 
 Helper = Callable[[Expression], str]
 
-SAME_NAME = frozenset(
-    "exp ln sqrt sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh erf abs sign min max".split()
-)
 SIGN_OF = {"<": "<", "<=": "<=", "==": "=", "!=": "<>"}
 CONDITIONS = frozenset((*SIGN_OF, "and", "or", "not"))
-# What a spreadsheet refuses for some arguments, and so may be an error instead of a number.
-MAY_FAIL = frozenset(("exp", "ln", "sqrt", "asin", "acos", "sinh", "cosh", "acosh", "atanh", "log1p", "expm1", "fmod"))
 
 PI = parse_unit("deg").ratio * 180
 DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 24, 30, 32, 60, 64, 180)
@@ -280,40 +278,14 @@ class _Writer:
         return text + ("/(" + "*".join(self.number(x, FACTOR) for x in under) + ")" if under else "")
 
     def _function(self, name: str, arguments: list[Expression], firm: int) -> str:
-        if name in ("log1p", "expm1"):
-            return self._near_one(name, arguments[0])
-        if name == "atan2":  # mathematics has the height first, spreadsheets the length
-            return f"ATAN2({self.number(arguments[1])},{self.number(arguments[0])})"
-        if name == "hypot":
-            return f"SQRT({'+'.join(f'{self.number(x, BASE)}^2' for x in arguments)})"
-        if name == "floor":
-            return f"INT({self.number(arguments[0])})"
-        if name == "ceil":
-            return _bracketed(f"-INT({self.number(['neg', arguments[0]])})", firm >= TERM)
-        if name == "fmod":  # MOD has the sign of the divisor
-            a, b = (self.number(x, DIVISOR) for x in arguments)
-            return _bracketed(f"{a}-{b}*TRUNC({a}/{b})", firm >= FACTOR)
-        if name == "copysign":
-            size = self.number(arguments[0])
-            return f"IF({self.number(arguments[1], TERM)}<0,-ABS({size}),ABS({size}))"
-        assert name in SAME_NAME, name
-        return f"{name.upper()}({','.join(map(self.number, arguments))})"
+        sheet = BY_TEXT[name].sheet
+        if sheet is None:
+            return f"{name.upper()}({','.join(map(self.number, arguments))})"
+        power, negative = _Argument(self, ["f", "exp", arguments]), _Argument(self, ["neg", arguments[0]])
+        text = sheet.text.format(*(_Argument(self, x) for x in arguments), power=power, negative=negative)
+        return _bracketed(text, sheet.falls_apart_in is not None and firm >= FIRMNESS[sheet.falls_apart_in])
 
-    def _near_one(self, name: str, argument: Expression) -> str:
-        """Return ln(1 + x) or e^x - 1 so that small x keep all their digits.
-
-        Notes
-        -----
-        W. Kahan: what is lost in 1 + x is lost in (1 + x) - 1 as well, so that their quotient mends it.
-        """
-        x = self._cell(argument)
-        if name == "log1p":
-            return f"IF(1+{x}=1,{x},LN(1+{x})*{x}/((1+{x})-1))"
-        u = self._cell(["f", "exp", [argument]])
-        # Far from 1 nothing is lost, and the logarithm of nothing does not exist.
-        return f"IF({u}=1,{x},IF(OR({u}<0.5,{u}>2),{u}-1,({u}-1)*{x}/LN({u})))"
-
-    def _cell(self, tree: Expression) -> str:
+    def referred(self, tree: Expression) -> str:
         """Reference that can occur several times."""
         if tree[0] == "q" or self.helper is None:
             return self.number(tree, BASE)
@@ -330,7 +302,23 @@ class _Writer:
             return any(x[0] != "n" or x[1] == 0 for x in tree[2])
         if kind == "^":
             return not (tree[2][0] == "n" and tree[2][1] > 0 and float(tree[2][1]).is_integer())
-        return kind == "f" and tree[1] in MAY_FAIL
+        if kind != "f":
+            return False
+        function = BY_TEXT[tree[1]]  # a spreadsheet refuses what is not defined or not finite
+        return function.domain is not None or function.finite is not None or Trait.DIVIDES in function.traits
+
+
+class _Argument:
+    """Argument of a function, which a template names with how firmly it must hold together, or ``cell``."""
+
+    def __init__(self, writer: _Writer, tree: Expression) -> None:
+        self.writer, self.tree, self.known = writer, tree, dict[str, str]()
+
+    def __format__(self, how: str) -> str:
+        if how not in self.known:  # written once: parts of it may take cells
+            writer, tree = self.writer, self.tree
+            self.known[how] = writer.referred(tree) if how == "cell" else writer.number(tree, FIRMNESS[how])
+        return self.known[how]
 
 
 def may_fail(expression: Expression, doubtful: Collection[str]) -> bool:

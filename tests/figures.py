@@ -154,7 +154,7 @@ def number_writers() -> int:
 def homes_of_an_operation() -> int:
     """Modules that name one elementary operation by its number or in a table, of the worst."""
     named = (
-        sum(re.search(rf"\bOP_{op}\b|\"{op.lower()}\"", text) is not None for text in sources().values())
+        sum(re.search(rf"\bOP_{op}\b|\"({op}|{op.lower()})\"", text) is not None for text in sources().values())
         for op in OPERATIONS
     )
     return max(named)

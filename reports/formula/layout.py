@@ -10,8 +10,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from synth.operations.record import Trait
+from synth.operations.records import BY_TEXT
 from synth.results.calculation import NamedQuantity
-from synth.results.dimensions import EXACT, SAME, Fold, constant_in, dimension_of, fraction_of, unit_for
+from synth.results.dimensions import EXACT, Fold, constant_in, dimension_of, fraction_of, unit_for
 from synth.results.expression import Expression, parts_of, with_parts
 from synth.text.numbers import FULL_DIGITS, STEP_DIGITS, shown
 
@@ -129,11 +131,10 @@ def textbook(tree: Expression) -> Expression:
         return _sign_taken_in(tree)
     if tree[0] != "f":
         return tree
-    if tree[1] == "log1p":
-        return ["f", "ln", [["+", [["n", 1.0], *_terms(tree[2][0])]]]]
-    if tree[1] == "expm1":
-        return ["+", [_exponential(tree[2][0]), ["n", -1.0]]]
-    return _exponential(tree[2][0]) if tree[1] == "exp" else tree
+    name, inner, outer = BY_TEXT[tree[1]].plain or (tree[1], 0.0, 0.0)
+    arguments = [["+", [["n", inner], *_terms(tree[2][0])]]] if inner else tree[2]
+    result = _exponential(arguments[0]) if name == "exp" else ["f", name, arguments]
+    return ["+", [result, ["n", outer]]] if outer else result
 
 
 def negligible_in(tree: Expression) -> bool:
@@ -319,8 +320,8 @@ class Typesetter:
         return [self._number(float(t[1]), SUM, unit) if t[0] == "n" else self.lay(t) for t in trees]
 
     def _function(self, name: str, arguments: Sequence[Expression]) -> Layout:
-        laid = tuple(self._alike(arguments) if name in SAME else map(self.lay, arguments))
-        if name == "sqrt":
+        laid = tuple(self._alike(arguments) if Trait.KEEPS_UNIT in BY_TEXT[name].traits else map(self.lay, arguments))
+        if BY_TEXT[name].exponent == 0.5:
             return Root(laid[0])
         if name == "abs":
             return Fence(laid[0], bars=True)

@@ -12,7 +12,6 @@ from .layout import BESIDE, MINUS, Amount, Call, Cases, Fence, Fraction, Layout,
 from .symbols import symbol_parts
 
 SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
-NAMED = {"ln", "sin", "cos", "tan", "sinh", "cosh", "tanh", "min", "max"}
 
 
 # Characters that no font has or that turn the direction of writing, and halves of characters.
@@ -74,9 +73,8 @@ def typst_math(layout: Layout) -> str:
         inside = typst_math(layout.inner)
         return f" abs({inside}) " if layout.bars else f" lr(({inside})) "
     if isinstance(layout, Call):
-        name = layout.name if layout.name in NAMED else f"op({string(layout.name)})"
         inside = '#"; "'.join(typst_math(x).strip() for x in layout.arguments)
-        return f" {name} lr(({inside})) "
+        return f" op({string(layout.name)}) lr(({inside})) "
     assert isinstance(layout, Cases)
     rows = [
         f'inline({typst_math(value)}) quad & inline("otherwise")'

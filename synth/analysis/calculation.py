@@ -20,7 +20,7 @@ from synth.declaration import Declaration, Origin
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
-from synth.model.program import OP_SELECT, Node, Program
+from synth.model.program import COMPARISONS, OP_SELECT, OPERATIONS, Node, Program
 from synth.question.inputs import fixed_row_values
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -38,45 +38,6 @@ SHORTEST = 5  # in a part of a formula that is told alone
 DEEPEST = 50  # operations inside each other in one formula: what readers of JSON and spreadsheets take
 
 ONE: Expression = ["n", 1.0]
-FUNCTION_OF = {
-    ca.OP_EXP: "exp",
-    ca.OP_LOG: "ln",
-    ca.OP_SQRT: "sqrt",
-    ca.OP_SIN: "sin",
-    ca.OP_COS: "cos",
-    ca.OP_TAN: "tan",
-    ca.OP_ASIN: "asin",
-    ca.OP_ACOS: "acos",
-    ca.OP_ATAN: "atan",
-    ca.OP_ATAN2: "atan2",
-    ca.OP_HYPOT: "hypot",
-    ca.OP_SINH: "sinh",
-    ca.OP_COSH: "cosh",
-    ca.OP_TANH: "tanh",
-    ca.OP_ASINH: "asinh",
-    ca.OP_ACOSH: "acosh",
-    ca.OP_ATANH: "atanh",
-    ca.OP_LOG1P: "log1p",
-    ca.OP_EXPM1: "expm1",
-    ca.OP_ERF: "erf",
-    ca.OP_FLOOR: "floor",
-    ca.OP_CEIL: "ceil",
-    ca.OP_FABS: "abs",
-    ca.OP_SIGN: "sign",
-    ca.OP_FMOD: "fmod",
-    ca.OP_COPYSIGN: "copysign",
-    ca.OP_FMIN: "min",
-    ca.OP_FMAX: "max",
-}
-COMPARISON_OF = {
-    ca.OP_LT: "<",
-    ca.OP_LE: "<=",
-    ca.OP_EQ: "==",
-    ca.OP_NE: "!=",
-    ca.OP_AND: "and",
-    ca.OP_OR: "or",
-    ca.OP_NOT: "not",
-}
 
 
 def calculation(
@@ -489,7 +450,7 @@ class _Parts:
         return max(small or offered, key=lambda k: (sizes[k] if small else -sizes[k], -k))
 
     def _is_condition(self, node: int) -> bool:
-        return self.nodes[node].op in COMPARISON_OF
+        return self.nodes[node].op in COMPARISONS
 
 
 @dataclass(frozen=True)
@@ -570,14 +531,14 @@ class _Reader:
             return ["if", *a]
         if op == ca.OP_IF_ELSE_ZERO:
             return ["if", a[0], a[1], ["n", 0.0]]
-        if op in COMPARISON_OF:
-            return [COMPARISON_OF[op], *a]
+        if op in COMPARISONS:
+            return [OPERATIONS[op].text, *a]
         if op in (ca.OP_FMIN, ca.OP_FMAX):
-            name, several = FUNCTION_OF[op], list[Expression]()
+            name, several = OPERATIONS[op].text, list[Expression]()
             for x in a:
                 several += x[2] if x[0] == "f" and x[1] == name else [x]
             return ["f", name, several]
-        return ["f", FUNCTION_OF[op], a]
+        return ["f", OPERATIONS[op].text, a]
 
 
 _PRODUCTS = {

@@ -19,11 +19,12 @@ from synth.bounds.instructions import (
     Regions,
     Row,
 )
-from synth.bounds.intervals import BACKWARD, CANCELLATION, FORWARD, ROUNDING
+from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING
 from synth.bounds.propagated_nodes import CONSTANT, INNER, VARIABLE, PropagatedNodes
 from synth.bounds.root_propagation import Root
 from synth.model.constraint import NodeConstraint
-from synth.model.program import OP_SELECT, OP_SPECIAL, Program
+from synth.model.program import EXPONENTS, OP_SELECT, OP_SPECIAL, Program
+from synth.operations.enclosures import CANCELLATION
 from synth.special import SpecialFunction
 
 # Instructions that do two things at once.
@@ -271,7 +272,7 @@ class BoxEmitter:
         if op == ca.OP_INV and self._positive(a):
             one = self._literal(1.0)
             return Op.DIV, (one, high), (one, low)
-        return (Op.SQRT, (low,), (high,)) if op == ca.OP_SQRT else None
+        return (Op.SQRT, (low,), (high,)) if EXPONENTS.get(op) == 0.5 else None
 
     def _forward_rule(self, op: int, args: Operands) -> str:
         if op in POWERS:
@@ -486,7 +487,7 @@ class BoxEmitter:
             self._narrow(a, (Op.MUL, (half, low), (half, high)))
         elif op == ca.OP_SQ and known(a) and known(k):
             self._narrow(a, (Op.SQRT, (low,), (high,)))
-        elif op == ca.OP_SQRT and known(k):
+        elif EXPONENTS.get(op) == 0.5 and known(k):
             self._narrow(a, (Op.MUL, (low, low), (high, high)))
         elif op == ca.OP_INV and self._positive(k) and self._positive(a):
             one = self._literal(1.0)

@@ -8,7 +8,6 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.curvature import BOTH, CONCAVE, CONVEX, INF, NEITHER, UNKNOWN, Curvature, Ends
-from synth.bounds.elementary import LOG_BELOW_ONE, MIRRORED, OUTER, OuterFunction
 from synth.bounds.feasible_intervals import FeasibleIntervals, natural
 from synth.bounds.log_terms import (
     Atom,
@@ -23,7 +22,9 @@ from synth.bounds.log_terms import (
 )
 from synth.bounds.shapes import FLAT, Shape
 from synth.model.model import Model
-from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
+from synth.model.program import EXPONENTS, OP_SELECT, OP_SPECIAL, OPERATIONS, TRAITS, Node, Program
+from synth.operations.record import Elasticity, Trait
+from synth.operations.records import LOG_BELOW_ONE
 
 
 class TermComposition:
@@ -141,14 +142,8 @@ class TermComposition:
             return Term(-a.sign, a.factor, a.powers)
         if op == ca.OP_TWICE:
             return Term(a.sign, 2 * a.factor, a.powers)
-        if op == ca.OP_SQ:
-            return raised(a, 2.0)
-        if op == ca.OP_INV:
-            return raised(a, -1.0, a.sign)
-        if op == ca.OP_FABS:
-            return raised(a, 1.0)
-        if op == ca.OP_SQRT and a.sign > 0:
-            return raised(a, 0.5)
+        if op in EXPONENTS and (a.sign > 0 or OPERATIONS[op].domain is None):
+            return raised(a, EXPONENTS[op], a.sign if op == ca.OP_INV else 1)
         if op in (ca.OP_POW, ca.OP_CONSTPOW) and self.nodes[node.args[1]].op == ca.OP_CONST:
             exponent = self.nodes[node.args[1]].constant
             if a.sign > 0:
@@ -160,7 +155,7 @@ class TermComposition:
     def _function(self, k: int, node: Node, terms: Sequence[Term]) -> Term | None:
         """Return functions whose elasticity is known."""
         op, a = node.op, terms[0]
-        if op == ca.OP_HYPOT:
+        if Trait.ADDS in TRAITS[op]:
             rule = Curvature(all(self.atoms.curvature(t).convex for t in terms), False)
             elasticity = hull(*(self.atoms.elasticity(t) for t in terms))
             return self._atom(k, 1, rule, elasticity, any(self.atoms.nonzero(t) for t in terms))
@@ -171,12 +166,12 @@ class TermComposition:
             steps = scaled(self.atoms.elasticity(a), (0.0, INF))
             return self._atom(k, sign, NEITHER, steps, True) if sign == a.sign else None
         if op == ca.OP_LOG and high < 1:
-            outer: OuterFunction | None = LOG_BELOW_ONE if a.sign > 0 else None
+            outer: Elasticity | None = LOG_BELOW_ONE if a.sign > 0 else None
         else:
-            outer = (OUTER if a.sign > 0 else MIRRORED).get(op)
+            outer = OPERATIONS[op].elasticity if a.sign > 0 else OPERATIONS[op].mirrored
         if outer is None or low < outer.domain[0] or high > outer.domain[1]:
             return None
-        curvature = self._composed(outer.curvature, [(outer.rising, outer.falling, self.atoms.curvature(a))])
+        curvature = self._composed(curvature_of(outer), [(outer.rising, outer.falling, self.atoms.curvature(a))])
         elasticity = scaled(self.atoms.elasticity(a), outer.ends((low, high)))
         at_first = low <= outer.domain[0] and (outer.domain[0] > 0 or not self.atoms.nonzero(a))
         at_last = high >= outer.domain[1] and outer.domain[1] < INF
@@ -303,3 +298,8 @@ class TermComposition:
         smooth = hull(self.atoms.elasticity(yes), self.atoms.elasticity(no))
         elasticity = np.where(jumping[:, None], self._jumps(jumping), smooth)
         return self._atom(k, yes.sign, curvature, elasticity, self.atoms.nonzero(yes) and self.atoms.nonzero(no))
+
+
+def curvature_of(outer: Elasticity) -> Curvature:
+    """Curvature of the logarithm of a function in that of its argument: that of an elasticity that rises or falls."""
+    return Curvature(outer.last > outer.first, outer.last < outer.first)

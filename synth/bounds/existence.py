@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import casadi as ca
 import numpy as np
 
 from synth.bounds.curvature import INF, Ends
 from synth.bounds.feasible_intervals import FeasibleIntervals, natural
-from synth.model.program import OP_SELECT, Node, Program
+from synth.model.program import OP_SELECT, OPERATIONS, Node, Program
+from synth.operations.record import Trait
 from synth.question.search_space import SearchSpace
-
-LARGEST_EXPONENT = 700.0  # e to the power of more is no finite number
 
 
 def _free_of_zero(a: Ends) -> bool:
@@ -23,25 +22,6 @@ def _power(base: Ends, exponent: Ends) -> bool:
     if base[0] > 0 or (base[0] >= 0 and exponent[0] > 0):
         return True
     return exponent[0] == exponent[1] and exponent[0].is_integer() and (exponent[0] >= 0 or _free_of_zero(base))
-
-
-# Operations that have no value for some arguments, and whether they have one for all arguments in some intervals.
-DOMAINS: dict[int, Callable[..., bool]] = {
-    ca.OP_DIV: lambda a, b: _free_of_zero(b),
-    ca.OP_INV: _free_of_zero,
-    ca.OP_LOG: lambda a: a[0] > 0,
-    ca.OP_LOG1P: lambda a: a[0] > -1,
-    ca.OP_SQRT: lambda a: a[0] >= 0,
-    ca.OP_ASIN: lambda a: a[0] >= -1 and a[1] <= 1,
-    ca.OP_ACOS: lambda a: a[0] >= -1 and a[1] <= 1,
-    ca.OP_ACOSH: lambda a: a[0] >= 1,
-    ca.OP_ATANH: lambda a: a[0] > -1 and a[1] < 1,
-    ca.OP_EXP: lambda a: a[1] < LARGEST_EXPONENT,
-    ca.OP_EXPM1: lambda a: a[1] < LARGEST_EXPONENT,
-    ca.OP_POW: _power,
-    ca.OP_CONSTPOW: _power,
-    ca.OP_FMOD: lambda a, b: _free_of_zero(b),
-}
 
 
 def surely_exist(space: SearchSpace, nodes: Sequence[int]) -> list[bool]:
@@ -96,5 +76,14 @@ def _exists(node: Node, ends: Sequence[Ends], args: Sequence[bool]) -> bool:
         low, high = ends[0]
         taken = [high > 0.5, low < 0.5]
         return args[0] and all(there or not may for there, may in zip(args[1:], taken, strict=False))
-    domain = DOMAINS.get(node.op)
-    return all(args) and (domain is None or domain(*ends))
+    return all(args) and _defined(node.op, ends)
+
+
+def _defined(op: int, ends: Sequence[Ends]) -> bool:
+    """Whether an operation has a value for all arguments in some intervals; special functions count as having one."""
+    known = OPERATIONS.get(op)
+    if op in (ca.OP_POW, ca.OP_CONSTPOW):
+        return _power(*ends)
+    if known is None or (Trait.DIVIDES in known.traits and not _free_of_zero(ends[-1])):
+        return known is None
+    return all(domain is None or domain.holds(ends[0]) for domain in (known.domain, known.finite))

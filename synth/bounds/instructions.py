@@ -16,8 +16,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.bounds.intervals import BACKWARD, FORWARD, Interval, loosened, whole
-from synth.model.program import OP_SELECT
+from synth.bounds.intervals import BACKWARD, FORWARD, loosened
+from synth.model.program import OP_SELECT, OPERATIONS
+from synth.operations.enclosures import whole
+from synth.operations.record import Interval
 
 WIDTH = 6  # of an instruction: what is done, where the result goes, and up to four operands
 Row = tuple[int, ...]
@@ -136,41 +138,15 @@ def _erf(x: Any) -> Any:
 
 # Value of the result from those of the operands.
 VALUES: dict[int, Callable[..., Any]] = {
+    **{Op[known.instruction]: known.function for known in OPERATIONS.values() if known.function and known.instruction},
     Op.MOVE: lambda a: a,
     Op.ADD: operator.add,
     Op.SUB: operator.sub,
     Op.MUL: operator.mul,
     Op.DIV: operator.truediv,
     Op.POW: operator.pow,
-    Op.FMOD: np.fmod,
-    Op.COPYSIGN: np.copysign,
-    Op.ATAN2: np.arctan2,
-    Op.HYPOT: np.hypot,
-    Op.MIN: np.minimum,
-    Op.MAX: np.maximum,
     Op.NEG: operator.neg,
-    Op.EXP: np.exp,
-    Op.LOG: np.log,
-    Op.SQRT: np.sqrt,
-    Op.SIN: np.sin,
-    Op.COS: np.cos,
-    Op.TAN: np.tan,
-    Op.ASIN: np.arcsin,
-    Op.ACOS: np.arccos,
-    Op.ATAN: np.arctan,
-    Op.FLOOR: np.floor,
-    Op.CEIL: np.ceil,
-    Op.ABS: np.abs,
-    Op.SIGN: np.sign,
     Op.ERF: _erf,
-    Op.SINH: np.sinh,
-    Op.COSH: np.cosh,
-    Op.TANH: np.tanh,
-    Op.ASINH: np.arcsinh,
-    Op.ACOSH: np.arccosh,
-    Op.ATANH: np.arctanh,
-    Op.LOG1P: np.log1p,
-    Op.EXPM1: np.expm1,
     Op.MUL_SUB: lambda a, b, c: a * b - c,
     Op.MUL_SUM: lambda a, b, c: a * (b + c),
     Op.ADD_SUB_MUL: lambda a, b, c, d: a + b - c * d,
@@ -224,43 +200,7 @@ MET: dict[int, Callable[[Any, Any], Any]] = {
 }
 
 # An operation of a formula -> the instruction that computes it; the others take two: box_emitter.
-ELEMENTARY: dict[int, Op] = {
-    ca.OP_ADD: Op.ADD,
-    ca.OP_SUB: Op.SUB,
-    ca.OP_MUL: Op.MUL,
-    ca.OP_DIV: Op.DIV,
-    ca.OP_POW: Op.POW,
-    ca.OP_CONSTPOW: Op.POW,
-    ca.OP_FMOD: Op.FMOD,
-    ca.OP_COPYSIGN: Op.COPYSIGN,
-    ca.OP_ATAN2: Op.ATAN2,
-    ca.OP_HYPOT: Op.HYPOT,
-    ca.OP_FMIN: Op.MIN,
-    ca.OP_FMAX: Op.MAX,
-    ca.OP_NEG: Op.NEG,
-    ca.OP_EXP: Op.EXP,
-    ca.OP_LOG: Op.LOG,
-    ca.OP_SQRT: Op.SQRT,
-    ca.OP_SIN: Op.SIN,
-    ca.OP_COS: Op.COS,
-    ca.OP_TAN: Op.TAN,
-    ca.OP_ASIN: Op.ASIN,
-    ca.OP_ACOS: Op.ACOS,
-    ca.OP_ATAN: Op.ATAN,
-    ca.OP_FLOOR: Op.FLOOR,
-    ca.OP_CEIL: Op.CEIL,
-    ca.OP_FABS: Op.ABS,
-    ca.OP_SIGN: Op.SIGN,
-    ca.OP_ERF: Op.ERF,
-    ca.OP_SINH: Op.SINH,
-    ca.OP_COSH: Op.COSH,
-    ca.OP_TANH: Op.TANH,
-    ca.OP_ASINH: Op.ASINH,
-    ca.OP_ACOSH: Op.ACOSH,
-    ca.OP_ATANH: Op.ATANH,
-    ca.OP_LOG1P: Op.LOG1P,
-    ca.OP_EXPM1: Op.EXPM1,
-}
+ELEMENTARY = {op: Op[known.instruction] for op, known in OPERATIONS.items() if known.instruction}
 COMPARED: dict[int, Op] = {ca.OP_LT: Op.LT, ca.OP_LE: Op.LE, ca.OP_EQ: Op.EQ, ca.OP_NE: Op.NE}
 OP_NAMES: dict[int, str] = {
     **{getattr(ca, name): name.removeprefix("OP_") for name in dir(ca) if name.startswith("OP_")},

@@ -16,10 +16,7 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.propagated_nodes import CONSTANT, INNER, PropagatedNodes
-from synth.model.program import OP_SPECIAL
-
-# The logarithm of the size of the result is a constant times that of the argument; twice something adds a constant.
-POWERS = {ca.OP_SQRT: 0.5, ca.OP_SQ: 2.0, ca.OP_INV: -1.0, ca.OP_NEG: 1.0, ca.OP_FABS: 1.0, ca.OP_TWICE: 1.0}
+from synth.model.program import EXPONENTS, OP_SPECIAL
 
 SUM, LARGEST, LEAST, ELASTIC = "sum", "largest", "least", "elastic"
 
@@ -121,8 +118,10 @@ class _Composition:
             self._product(k, [(node.args[0], 1.0), (node.args[1], 1.0)])
         elif node.op == ca.OP_DIV:
             self._product(k, [(node.args[0], 1.0), (node.args[1], -1.0)])
-        elif node.op in POWERS:
-            self._product(k, [(node.args[0], POWERS[node.op])], float(np.log(2.0)) if node.op == ca.OP_TWICE else 0.0)
+        elif node.op in EXPONENTS:
+            self._product(
+                k, [(node.args[0], EXPONENTS[node.op])], float(np.log(2.0)) if node.op == ca.OP_TWICE else 0.0
+            )
         elif node.op in (ca.OP_POW, ca.OP_CONSTPOW) and self.nodes.kind[node.args[1]] == CONSTANT:
             self._product(k, [(node.args[0], self.values[node.args[1]])])
         else:

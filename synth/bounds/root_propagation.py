@@ -9,10 +9,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.bounds.intervals import FORWARD, ROUNDING, Interval, backward, loosened, special_range, whole
+from synth.bounds.intervals import FORWARD, ROUNDING, backward, loosened, special_range
 from synth.bounds.propagated_nodes import PropagatedNodes
 from synth.model.constraint import NodeConstraint
-from synth.model.program import OP_SPECIAL, Node, Program
+from synth.model.program import OP_SPECIAL, TRAITS, Node, Program
+from synth.operations.enclosures import whole
+from synth.operations.record import Interval, Trait
 
 SWEEPS = 4  # forward over the whole question, with what limits cut carried back between them
 
@@ -60,21 +62,7 @@ def propagated_root(nodes: PropagatedNodes, leaves: Leaves) -> Root:
         return found.root
 
 
-# Their rules give no number where an end of an argument is none, and never an infinite end with the other sign.
-SIGN_KEEPING = {
-    ca.OP_CONST,
-    ca.OP_INPUT,
-    ca.OP_ADD,
-    ca.OP_SUB,
-    ca.OP_NEG,
-    ca.OP_TWICE,
-    ca.OP_MUL,
-    ca.OP_SQ,
-    ca.OP_SQRT,
-    ca.OP_EXP,
-    ca.OP_FMAX,
-    ca.OP_FMIN,
-}
+SIGN_KEEPING = {ca.OP_CONST, ca.OP_INPUT} | {op for op, traits in TRAITS.items() if Trait.ROUNDS_WELL in traits}
 
 
 def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interval:

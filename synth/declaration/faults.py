@@ -25,6 +25,7 @@ import casadi as ca
 import numpy as np
 
 from synth.errors import DeclarationError, InputError, shortened
+from synth.operations.records import BY_TEXT
 from synth.plugins import SHIPPED_FAMILIES
 
 LIBRARIES = frozenset({"synth", "casadi", "numpy", "scipy", "pandas"}) | sys.stdlib_module_names
@@ -34,7 +35,7 @@ TEXTS = "numbers, part.says(column, text) for a cell of text, choice.select({lab
 BOTH = "np.minimum and np.maximum, two at a time"
 # Functions of `math` that NumPy has under the same name and symbols do not take, and all others.
 INSTEAD = {name: f"np.{name}" for name in dir(math) if hasattr(np, name)} | {
-    **{f"a{name}": f"np.arc{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "tan2")},
+    **{name: o.numeric.partition("(")[0] for name, o in BY_TEXT.items() if o.numeric.startswith("np.arc")},
     "pow": "the operator **",
     "dist": "np.hypot",
     "fsum": "sum",

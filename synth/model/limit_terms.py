@@ -15,7 +15,8 @@ from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
-from synth.model.program import OP_SELECT, OP_SPECIAL, Program
+from synth.model.program import EXPONENTS, NUMBERS, OP_SELECT, OPERATIONS, TRAITS, Program
+from synth.operations.record import NO_TRAIT, Trait
 from synth.order.feasibility import SMALLEST
 
 # Share of the range of a variable around zero: within it all values count as equally large.
@@ -23,29 +24,7 @@ NEAR_ZERO = 1e-6
 # Terms count up to so many times a side that is given: what is asked for tells a size as well.
 MOST_TIMES = 1e3
 
-_SUMS = {ca.OP_ADD, ca.OP_SUB, ca.OP_HYPOT}
-_OF_ANY_ZERO = {ca.OP_LOG, ca.OP_SIN, ca.OP_COS, ca.OP_TAN}  # zero where their argument is not
 _POWERS = {ca.OP_POW, ca.OP_CONSTPOW}
-_NEVER_NEGATIVE = {
-    ca.OP_FABS,
-    ca.OP_SQ,
-    ca.OP_SQRT,
-    ca.OP_EXP,
-    ca.OP_COSH,
-    ca.OP_ACOS,
-    ca.OP_HYPOT,
-    ca.OP_LT,
-    ca.OP_LE,
-    ca.OP_EQ,
-    ca.OP_NE,
-    ca.OP_AND,
-    ca.OP_OR,
-    ca.OP_NOT,
-    OP_SPECIAL,
-}
-_OF_NO_SIGN_CHANGE = {ca.OP_MUL, ca.OP_DIV, ca.OP_INV, ca.OP_TWICE, ca.OP_FMIN, ca.OP_LOG1P,
-                      ca.OP_EXPM1, ca.OP_ATAN, ca.OP_TANH, ca.OP_SINH, ca.OP_ASINH, ca.OP_ERF, ca.OP_ADD, ca.OP_FMAX,
-                      ca.OP_IF_ELSE_ZERO, ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN}  # fmt: skip
 
 
 class LimitTerms:
@@ -79,9 +58,9 @@ class LimitTerms:
             elif node.op in _POWERS:
                 sure = known[node.args[0]]  # whatever the exponent is
             else:
-                sure = node.op in _NEVER_NEGATIVE or (
-                    node.op in _OF_NO_SIGN_CHANGE and all(known[a] for a in node.args)
-                )
+                traits = TRAITS[node.op]
+                keeps = Trait.KEEPS_SIGN in traits and all(known[a] for a in node.args)
+                sure = keeps or Trait.NEVER_NEGATIVE in traits
             known.append(sure)
         self._made: dict[int, int | None] = {}
         self._moves = program.downstream(program.input_nodes[:variables])
@@ -102,7 +81,7 @@ class LimitTerms:
         largest = self._largest(found)
         for k in sides:
             largest = self._capped(largest, k)
-        return self._largest([largest, self._number(least)]) if least > SMALLEST else largest
+        return self._largest([largest, self.number(least)]) if least > SMALLEST else largest
 
     def _capped(self, size: int, side: int) -> int:
         """Node of a size that is at most so many times that of a side that no variable moves, unless that is zero.
@@ -112,11 +91,11 @@ class LimitTerms:
         node = self.program.nodes[side]
         if self._moves[side] or (node.op == ca.OP_CONST and node.constant == 0):
             return size
-        most = self._node(ca.OP_MUL, self._number(MOST_TIMES), self._terms(side))
+        most = self._node(ca.OP_MUL, self.number(MOST_TIMES), self._terms(side))
         capped = self._node(ca.OP_FMIN, size, most)
         if node.op == ca.OP_CONST:
             return capped
-        return self._node(OP_SELECT, self._node(ca.OP_EQ, side, self._number(0.0)), size, capped)
+        return self._node(OP_SELECT, self._node(ca.OP_EQ, side, self.number(0.0)), size, capped)
 
     def _size(self, k: int) -> int | None:
         """Node of the size of one node; None where that is its magnitude."""
@@ -137,10 +116,10 @@ class LimitTerms:
         op, args = node.op, node.args
         if op == ca.OP_INPUT:
             least = self._near_zero.get(int(node.constant))
-            return None if least is None else self._node(ca.OP_FMAX, self._magnitude(k), self._number(least))
+            return None if least is None else self._node(ca.OP_FMAX, self.size(k), self.number(least))
         sizes = [self._made[a] for a in args]
         cancels = any(size is not None for size in sizes)
-        if op in _SUMS:
+        if Trait.ADDS in TRAITS.get(op, NO_TRAIT):
             keeps = op not in (ca.OP_SUB, ca.OP_ADD) or (op == ca.OP_ADD and all(self._not_negative[a] for a in args))
             return None if keeps and not cancels else self._largest([self._terms(a) for a in args])
         if op in (ca.OP_FMIN, ca.OP_FMAX):
@@ -151,77 +130,64 @@ class LimitTerms:
             return self._node(op, args[0], self._terms(args[1]), self._terms(args[2])) if cancels else None
         if op == ca.OP_IF_ELSE_ZERO:
             return None if sizes[1] is None else self._node(op, args[0], self._terms(args[1]))
-        if not cancels and op not in _OF_ANY_ZERO:
+        if not cancels and Trait.CROSSES_ZERO not in TRAITS.get(op, NO_TRAIT):
             return None
         if op == ca.OP_MUL:
-            first = self._node(ca.OP_MUL, self._terms(args[0]), self._magnitude(args[1]))
-            return self._largest([first, self._node(ca.OP_MUL, self._magnitude(args[0]), self._terms(args[1]))])
+            first = self._node(ca.OP_MUL, self._terms(args[0]), self.size(args[1]))
+            return self._largest([first, self._node(ca.OP_MUL, self.size(args[0]), self._terms(args[1]))])
         if op == ca.OP_DIV:
-            first = self._node(ca.OP_DIV, self._terms(args[0]), self._magnitude(args[1]))
-            share = self._node(ca.OP_DIV, self._terms(args[1]), self._magnitude(args[1]))
-            return self._largest([first, self._node(ca.OP_MUL, self._magnitude(k), share)])
+            first = self._node(ca.OP_DIV, self._terms(args[0]), self.size(args[1]))
+            share = self._node(ca.OP_DIV, self._terms(args[1]), self.size(args[1]))
+            return self._largest([first, self._node(ca.OP_MUL, self.size(k), share)])
         if op in (ca.OP_NEG, ca.OP_FABS):
             return self._terms(args[0])
         if op == ca.OP_TWICE:
             return self._node(op, self._terms(args[0]))
         if op == ca.OP_SQ:
-            return self._node(ca.OP_MUL, self._magnitude(args[0]), self._terms(args[0]))
-        if op in (ca.OP_SQRT, *_POWERS):
+            return self._node(ca.OP_MUL, self.size(args[0]), self._terms(args[0]))
+        if op in _POWERS or EXPONENTS.get(op) == 0.5:
             return self._power(k)
         slope = self._slope(k)
         if slope is None:
             return None
-        return self._largest([self._magnitude(k), self._node(ca.OP_MUL, slope, self._terms(args[0]))])
+        return self._largest([self.size(k), self._node(ca.OP_MUL, slope, self._terms(args[0]))])
 
     def _power(self, k: int) -> int | None:
         """Node of the size of a power of something that cancels; None where its exponent is no positive number."""
         node = self.program.nodes[k]
         base = self._terms(node.args[0])
-        if node.op == ca.OP_SQRT:
-            return self._node(ca.OP_SQRT, base)
+        if node.op not in _POWERS:
+            return self._node(node.op, base)
         exponent = self.program.nodes[node.args[1]]
         if exponent.op != ca.OP_CONST or exponent.constant <= 0:
             return None
         if exponent.constant < 1:
             return self._node(ca.OP_CONSTPOW, base, node.args[1])
         # Without the exponent as a factor, so that a power counts as the product that it is.
-        one_less = self._number(exponent.constant - 1.0)
-        others = self._node(ca.OP_CONSTPOW, self._magnitude(node.args[0]), one_less)
+        one_less = self.number(exponent.constant - 1.0)
+        others = self._node(ca.OP_CONSTPOW, self.size(node.args[0]), one_less)
         return self._node(ca.OP_MUL, others, base)
 
     def _slope(self, k: int) -> int | None:
         """Node of the magnitude of the derivative by the first argument; None where it is not needed."""
-        node, one = self.program.nodes[k], self._number(1.0)
-        op, a = node.op, node.args[0]
-        if op == ca.OP_LOG:
-            return self._magnitude(self._node(ca.OP_INV, a))
-        if op == ca.OP_LOG1P:
-            return self._magnitude(self._node(ca.OP_INV, self._node(ca.OP_ADD, one, a)))
-        if op in (ca.OP_EXPM1, ca.OP_EXP):
-            return self._node(ca.OP_EXP, a)
-        if op == ca.OP_INV:
-            return self._node(ca.OP_SQ, k)
-        if op == ca.OP_SIN:
-            return self._magnitude(self._node(ca.OP_COS, a))
-        if op == ca.OP_COS:
-            return self._magnitude(self._node(ca.OP_SIN, a))
-        if op == ca.OP_TAN:
-            return self._node(ca.OP_ADD, one, self._node(ca.OP_SQ, k))
-        if op in (ca.OP_ATAN, ca.OP_TANH, ca.OP_ERF, ca.OP_ASINH):
-            return one  # at most, of erf 1.13
-        if op == ca.OP_SINH:
-            return self._node(ca.OP_COSH, a)
-        return None
+        node = self.program.nodes[k]
+        slope = OPERATIONS[node.op].slope if node.op in OPERATIONS else None
+        return None if slope is None else slope(self, k, node.args[0])
 
     # -- nodes
 
     def _terms(self, k: int) -> int:
         """Node of the size of one node, its magnitude where that is it."""
         made = self._made[k]
-        return self._magnitude(k) if made is None else made
+        return self.size(k) if made is None else made
 
-    def _magnitude(self, k: int) -> int:
-        return k if k < len(self._not_negative) and self._not_negative[k] else self._node(ca.OP_FABS, k)
+    def put(self, name: str, *args: int) -> int:
+        """Node of an operation, by its name."""
+        return self._node(NUMBERS[name], *args)
+
+    def size(self, node: int) -> int:
+        """Node of the size of another."""
+        return node if node < len(self._not_negative) and self._not_negative[node] else self._node(ca.OP_FABS, node)
 
     def _largest(self, nodes: Sequence[int]) -> int:
         largest = nodes[0]
@@ -229,7 +195,8 @@ class LimitTerms:
             largest = largest if k == largest else self._node(ca.OP_FMAX, largest, k)
         return largest
 
-    def _number(self, value: float) -> int:
+    def number(self, value: float) -> int:
+        """Node of a constant."""
         return self.program.node(ca.OP_CONST, (), value)
 
     def _node(self, op: int, *args: int) -> int:

@@ -8,7 +8,7 @@ propagation of the search, the splitting of min, max and where into smooth branc
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from types import CodeType
@@ -17,67 +17,21 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.operations.record import Operation, Trait
+from synth.operations.records import BY_NAME
 from synth.special import SpecialCall
 
 InputValue = float | np.ndarray  # of a program: one number for all designs of a batch, or one for each
 
-ARITY_TWO = {
-    ca.OP_ADD: "({0} + {1})",
-    ca.OP_SUB: "({0} - {1})",
-    ca.OP_MUL: "({0} * {1})",
-    ca.OP_DIV: "({0} / {1})",
-    ca.OP_POW: "({0} ** {1})",
-    ca.OP_CONSTPOW: "({0} ** {1})",
-    ca.OP_LT: "np.less({0}, {1}).astype(float)",
-    ca.OP_LE: "np.less_equal({0}, {1}).astype(float)",
-    ca.OP_EQ: "np.equal({0}, {1}).astype(float)",
-    ca.OP_NE: "np.not_equal({0}, {1}).astype(float)",
-    ca.OP_AND: "np.logical_and({0}, {1}).astype(float)",
-    ca.OP_OR: "np.logical_or({0}, {1}).astype(float)",
-    ca.OP_FMOD: "np.fmod({0}, {1})",
-    ca.OP_COPYSIGN: "np.copysign({0}, {1})",
-    ca.OP_IF_ELSE_ZERO: "np.where({0}, {1}, 0.0)",
-    ca.OP_FMIN: "np.minimum({0}, {1})",
-    ca.OP_FMAX: "np.maximum({0}, {1})",
-    ca.OP_ATAN2: "np.arctan2({0}, {1})",
-    ca.OP_HYPOT: "np.hypot({0}, {1})",
-}
-ARITY_ONE = {
-    ca.OP_NEG: "(-{0})",
-    ca.OP_EXP: "np.exp({0})",
-    ca.OP_LOG: "np.log({0})",
-    ca.OP_SQRT: "np.sqrt({0})",
-    ca.OP_SQ: "({0} * {0})",
-    ca.OP_TWICE: "(2.0 * {0})",
-    ca.OP_SIN: "np.sin({0})",
-    ca.OP_COS: "np.cos({0})",
-    ca.OP_TAN: "np.tan({0})",
-    ca.OP_ASIN: "np.arcsin({0})",
-    ca.OP_ACOS: "np.arccos({0})",
-    ca.OP_ATAN: "np.arctan({0})",
-    ca.OP_NOT: "np.logical_not({0}).astype(float)",
-    ca.OP_FLOOR: "np.floor({0})",
-    ca.OP_CEIL: "np.ceil({0})",
-    ca.OP_FABS: "np.abs({0})",
-    ca.OP_SIGN: "np.sign({0})",
-    ca.OP_ERF: "erf({0})",
-    ca.OP_INV: "(1.0 / {0})",
-    ca.OP_SINH: "np.sinh({0})",
-    ca.OP_COSH: "np.cosh({0})",
-    ca.OP_TANH: "np.tanh({0})",
-    ca.OP_ASINH: "np.arcsinh({0})",
-    ca.OP_ACOSH: "np.arccosh({0})",
-    ca.OP_ATANH: "np.arctanh({0})",
-    ca.OP_LOG1P: "np.log1p({0})",
-    ca.OP_EXPM1: "np.expm1({0})",
-}
-# CasADi writes where(c, a, b) as (c ? a : 0) + (!c ? b : 0); read back as one instruction, the value is
-# known to be one of two, not the sum of two.
 OP_SELECT = -1
 OP_SPECIAL = -2  # a special function; the constant of the node is its position in ``Program.specials``
-COMMUTATIVE = {ca.OP_ADD, ca.OP_MUL, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_FMIN, ca.OP_FMAX, ca.OP_HYPOT}
-TEMPLATES = {**ARITY_ONE, **ARITY_TWO, OP_SELECT: "np.where({0}, {1}, {2})"}
-COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR}
+NUMBERS = {name: OP_SELECT if name == "SELECT" else getattr(ca, f"OP_{name}") for name in BY_NAME}  # of operations
+OPERATIONS: Mapping[int, Operation] = {NUMBERS[name]: operation for name, operation in BY_NAME.items()}
+# The logarithm of the result is so many times that of the argument; twice something adds a constant.
+EXPONENTS = {op: known.exponent for op, known in OPERATIONS.items() if known.exponent is not None}
+TRAITS = {op: known.traits for op, known in OPERATIONS.items()} | {OP_SPECIAL: Trait.NEVER_NEGATIVE}
+COMMUTATIVE = {op for op, traits in TRAITS.items() if Trait.COMMUTES in traits}
+COMPARISONS = {op for op, traits in TRAITS.items() if Trait.TRUTH in traits}
 
 
 class UnsupportedOperation(TypeError):
@@ -173,10 +127,8 @@ class Program:
                 work[target[0]] = numbers[source[1]]
             elif op == ca.OP_OUTPUT:
                 outputs[target[1]] = work[source[0]]
-            elif op in ARITY_TWO:
-                work[target[0]] = self.node(op, (work[source[0]], work[source[1]]))
-            elif op in ARITY_ONE:
-                work[target[0]] = self.node(op, (work[source[0]],))
+            elif op in OPERATIONS:
+                work[target[0]] = self.node(op, tuple(work[a] for a in source[: OPERATIONS[op].arity]))
             elif op == ca.OP_ASSIGN:
                 work[target[0]] = work[source[0]]
             else:
@@ -291,7 +243,7 @@ class Program:
             if node.op == OP_SPECIAL:
                 code = f"specials[{int(node.constant)}](" + ", ".join(names[a] for a in node.args) + ")"
             else:
-                code = TEMPLATES[node.op].format(*(names[a] for a in node.args))
+                code = OPERATIONS[node.op].numeric.format(*(names[a] for a in node.args))
             # Registers are handed on as soon as their last reader is done, so big batches stay small in memory.
             done = [a for a in dict.fromkeys(node.args) if a in register and last_use[a] == k]
             free.extend(register.pop(a) for a in done)

@@ -18,11 +18,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.model.program import ARITY_TWO, COMMUTATIVE, COMPARISONS, OP_SELECT, Node, Program
+from synth.model.program import COMMUTATIVE, COMPARISONS, EXPONENTS, OP_SELECT, Node, Program
 
 FLAT = {*COMPARISONS, ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN}
-# The logarithm of the result is a constant times that of the argument.
-POWERS = {ca.OP_SQRT: 0.5, ca.OP_SQ: 2.0, ca.OP_INV: -1.0, ca.OP_NEG: 1.0, ca.OP_FABS: 1.0, ca.OP_TWICE: 1.0}
 SUMS = {ca.OP_ADD, ca.OP_SUB}
 POWER = {ca.OP_POW, ca.OP_CONSTPOW}
 CHOICES = {OP_SELECT, ca.OP_IF_ELSE_ZERO, ca.OP_FMIN, ca.OP_FMAX}
@@ -294,7 +292,7 @@ class DerivativeSweeps:
             moving = [a for a in node.args if self._moves(a)]
             if not self._moves(k) or node.op == ca.OP_EXP:
                 answer = True
-            elif node.op in (ca.OP_MUL, ca.OP_DIV) or node.op in POWERS:
+            elif node.op in (ca.OP_MUL, ca.OP_DIV) or node.op in EXPONENTS:
                 answer = all(self._sized(a) for a in moving)
             elif node.op in POWER:
                 answer = self._sized(node.args[0])
@@ -310,8 +308,8 @@ class DerivativeSweeps:
         moving = [a for a in node.args if self._moves(a)]
         if node.op == ca.OP_EXP:
             return Rule([((VALUE, node.args[0]), one)])
-        if node.op in POWERS:
-            return Rule([((LOG, node.args[0]), g.constant(POWERS[node.op]))])
+        if node.op in EXPONENTS:
+            return Rule([((LOG, node.args[0]), g.constant(EXPONENTS[node.op]))])
         if node.op == ca.OP_MUL:
             return Rule([((LOG, a), one) for a in node.args if self._moves(a)])
         if node.op == ca.OP_DIV:
@@ -396,7 +394,7 @@ class DerivativeSweeps:
             return Rule([((VALUE, node.args[0]), g.constant(-1.0 if node.op == ca.OP_NEG else 2.0))])
         if node.op == ca.OP_EXP:
             return Rule([((VALUE, node.args[0]), k)], [(k, self._gradient((VALUE, node.args[0])), None)])
-        if self._sized(k) or node.op in (ca.OP_SQRT, ca.OP_INV) or (node.op in POWER and self._moves(node.args[1])):
+        if self._sized(k) or EXPONENTS.get(node.op, 1.0) < 1.0 or (node.op in POWER and self._moves(node.args[1])):
             return Rule([((LOG, k), k)], [(k, self._gradient((LOG, k)), None)])
         if node.op == ca.OP_MUL:
             return self._product(node.args[0], node.args[1], k)
@@ -446,7 +444,7 @@ class DerivativeSweeps:
         """Return the rule of an instruction that has no shorter one, by its derivatives."""
         g = self.graph
         symbols = [ca.SX.sym(f"a{k}") for k in range(len(node.args))]
-        if node.op in ARITY_TWO:
+        if len(node.args) == 2:
             result = ca.SX.binary(node.op, *symbols)
         else:
             result = ca.SX.unary(node.op, symbols[0])

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.model.program import TEMPLATES, Node, Program
+from synth.model.program import OPERATIONS, Node, Program
 from synth.nlp.differentiation import LOG, DerivativeSweeps, Graph, Rule, reached, with_shared_inverses
 from synth.nlp.rows import Rows
 
@@ -218,7 +218,7 @@ def _numpy_code(nodes: Sequence[Node], order: Sequence[int], wanted: Sequence[in
     for k in order:
         if k in names or nodes[k].op == ca.OP_CONST:
             continue
-        code = TEMPLATES[nodes[k].op].format(*(name(a) for a in nodes[k].args))
+        code = OPERATIONS[nodes[k].op].numeric.format(*(name(a) for a in nodes[k].args))
         # Registers are handed on as soon as their last reader is done: what is in use stays in the cache.
         free += [register.pop(a) for a in dict.fromkeys(nodes[k].args) if a in register and last_use[a] == k]
         slot = free.pop() if free else len(register)

@@ -11,17 +11,15 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.model.model import Model
-from synth.model.program import COMPARISONS, OP_SELECT, InputValue, Program
+from synth.model.program import COMPARISONS, OP_SELECT, TRAITS, InputValue, Program
+from synth.operations.record import Trait
 from synth.question.refusals import labels_of
 from synth.question.requirement_values import RequirementValues
 from synth.question.selection import Selection
 from synth.question.variable_ranges import VariableRanges
 
 # Operations with an infinite result, or none, where an argument is infinite. Of a quotient that is the dividend.
-STAYS_INFINITE = {
-    *(ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV, ca.OP_NEG, ca.OP_TWICE, ca.OP_SQ, ca.OP_SQRT, ca.OP_FABS),
-    *(ca.OP_LOG, ca.OP_LOG1P, ca.OP_HYPOT, ca.OP_SINH, ca.OP_COSH, ca.OP_ASINH),
-}
+STAYS_INFINITE = {op for op, traits in TRAITS.items() if Trait.STAYS_INFINITE in traits}
 
 
 @dataclass(frozen=True)

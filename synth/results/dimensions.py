@@ -9,6 +9,8 @@ from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING, TypeAlias
 
+from synth.operations.record import Trait
+from synth.operations.records import BY_TEXT
 from synth.results.expression import Expression
 from synth.units import parse_unit, si_text
 
@@ -19,7 +21,6 @@ Dimension: TypeAlias = tuple[Fraction, ...]  # exponents of kg, m, s, K, A
 
 NONE: Dimension = (Fraction(0),) * 5
 ANY: Dimension = ()  # of a column that a table does not have, in whose place a number stands
-SAME = ("min", "max", "hypot", "abs", "fmod", "copysign", "floor", "ceil")  # functions that keep the dimension
 
 
 DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 24, 32, 45, 64, 90, 180, 360)
@@ -195,11 +196,12 @@ class _Dimensions:
         return tuple(x * times for x in own)
 
     def _function(self, name: str, arguments: Sequence[Expression]) -> Dimension | None:
-        if name == "sqrt":
-            own = self.of(arguments[0])
-            return tuple(x / 2 for x in own) if own else own
-        if name in SAME:
+        function = BY_TEXT[name]
+        if Trait.KEEPS_UNIT in function.traits:
             return self._common(arguments)
+        if function.exponent is not None:
+            own = self.of(arguments[0])
+            return tuple(x * Fraction(function.exponent) for x in own) if own else own
         if name == "sign":
             return NONE
         own = self._common(arguments)

@@ -19,63 +19,18 @@ A tree is a list whose first entry says what it is:
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
+
+from synth.operations.record import Domain, Trait
+from synth.operations.records import BY_NAME, BY_TEXT
 
 Expression: TypeAlias = list[Any]
 
-COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    "and": lambda a, b: bool(a and b),
-    "or": lambda a, b: bool(a or b),
+COMPARISONS = {
+    o.text: o.scalar for o in BY_NAME.values() if o.scalar is not None and Trait.TRUTH in o.traits and o.arity == 2
 }
-
-
-def _sign(x: float) -> float:
-    return math.nan if math.isnan(x) else float((x > 0) - (x < 0))
-
-
-def _least(*x: float) -> float:
-    return math.nan if any(map(math.isnan, x)) else min(x)
-
-
-def _most(*x: float) -> float:
-    return math.nan if any(map(math.isnan, x)) else max(x)
-
-
-FUNCTIONS: Mapping[str, Callable[..., float]] = {
-    "exp": math.exp,
-    "ln": math.log,
-    "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "atan2": math.atan2,
-    "hypot": math.hypot,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "tanh": math.tanh,
-    "asinh": math.asinh,
-    "acosh": math.acosh,
-    "atanh": math.atanh,
-    "log1p": math.log1p,
-    "expm1": math.expm1,
-    "erf": math.erf,
-    "floor": lambda x: float(math.floor(x)),
-    "ceil": lambda x: float(math.ceil(x)),
-    "abs": abs,
-    "sign": _sign,
-    "fmod": math.fmod,
-    "copysign": math.copysign,
-    "min": _least,
-    "max": _most,
-}
+FUNCTIONS = {name: o.scalar for name, o in BY_TEXT.items() if o.scalar is not None}
 
 
 def parts_of(tree: Expression) -> list[Expression]:
@@ -171,11 +126,14 @@ def _beyond(tree: Expression, numbers: list[float]) -> float:
     """Result of float arithmetic where ``math`` refuses: infinity, or not-a-number."""
     if any(map(math.isnan, numbers)):
         return math.nan
-    if tree[0] == "f" and tree[1] in ("ln", "log1p") and numbers[0] == (0.0 if tree[1] == "ln" else -1.0):
+    if tree[0] != "f":
+        return math.inf if tree[0] == "^" and numbers[0] > 0 else math.nan
+    function = BY_TEXT[tree[1]]
+    if function.domain == Domain(numbers[0], math.inf, open=True):  # a logarithm of nothing
         return -math.inf
-    if tree[0] in ("^",) or (tree[0] == "f" and tree[1] in ("exp", "expm1", "cosh")):
-        return math.inf if tree[0] != "^" or numbers[0] > 0 else math.nan
-    return math.nan
+    if function.finite is None:
+        return math.nan
+    return math.copysign(math.inf, numbers[0]) if Trait.KEEPS_SIGN in function.traits else math.inf
 
 
 def in_force(

@@ -17,16 +17,15 @@ import casadi as ca
 import numpy as np
 
 from synth.model.constraint import Constraint
-from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
+from synth.model.program import OP_SELECT, OP_SPECIAL, OPERATIONS, Node, Program
 from synth.order.feasibility import TOLERANCE, holds
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
-from synth.proof.interval_arithmetic import DEFINED_FROM, ZERO, Pair, is_thin
+from synth.proof.interval_arithmetic import ZERO, Pair, is_thin
 from synth.proof.tape import Expr, Ref, Tape
 from synth.robust.settings import RobustLimits
 
 Box: TypeAlias = tuple[np.ndarray, np.ndarray]  # lower and upper positions (things,), or of many boxes (boxes, things)
 WHERE = (OP_SELECT, ca.OP_IF_ELSE_ZERO)
-DEFINED_THERE = (ca.OP_SQRT, ca.OP_ACOSH)  # at the least argument too
 
 
 @dataclass(frozen=True)
@@ -261,11 +260,11 @@ class _Regularity:
     def _own(self, node: Node, r: Sequence[Pair]) -> Expr:
         """Mask of boxes in which an instruction is defined for all its arguments."""
         do, op = self._do, node.op
-        if op in DEFINED_FROM:
-            return do("less_equal" if op in DEFINED_THERE else "less", DEFINED_FROM[op], r[0][0])
-        if op in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
-            name = "less" if op == ca.OP_ATANH else "less_equal"
-            return self._all([do(name, -1.0, r[0][0]), do(name, r[0][1], 1.0)])
+        domain = OPERATIONS[op].domain if op in OPERATIONS else None
+        if domain is not None:
+            name = "less" if domain.open else "less_equal"
+            above = do(name, domain.low, r[0][0])
+            return above if domain.high == np.inf else do("logical_and", above, do(name, r[0][1], domain.high))
         if op in (ca.OP_DIV, ca.OP_INV):
             return self._apart_from_zero(r[-1])
         if op == ca.OP_TAN:

@@ -9,10 +9,11 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.clusters import Cells, ClusterTree
-from synth.bounds.intervals import FORWARD, Interval
+from synth.bounds.intervals import FORWARD
 from synth.declaration import Refusal
 from synth.model.model import Model
 from synth.model.program import COMPARISONS, Program
+from synth.operations.record import Interval
 from synth.question.refusals import allowed_rows
 from synth.question.search_space import SearchSpace
 

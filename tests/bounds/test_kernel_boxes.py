@@ -24,7 +24,7 @@ from synth.bounds.root_propagation import Leaves, propagated_root
 from synth.bounds.settings import KernelSizes
 from synth.kernels.loading import LEVELS, best_variant, processor_level, variant
 from synth.model.constraint import Goal, NodeConstraint
-from synth.model.program import OP_SELECT, TEMPLATES, Program
+from synth.model.program import OP_SELECT, OPERATIONS, Program
 from synth.order.margins import above
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
@@ -506,7 +506,7 @@ def test_the_family_agrees(options, grid, monkeypatch):
 def test_formulas_of_special_functions_have_an_instruction_for_every_operation():
     """Nothing that can be traced is missing: those of two instructions are told apart in the emitter."""
     rest = {ca.OP_SQ, ca.OP_TWICE, ca.OP_INV, ca.OP_NOT, ca.OP_AND, ca.OP_OR, ca.OP_IF_ELSE_ZERO, OP_SELECT}
-    assert set(ELEMENTARY) | set(COMPARED) | rest == set(TEMPLATES)
+    assert set(ELEMENTARY) | set(COMPARED) | rest == set(OPERATIONS)
 
 
 def of_variables(n, outputs):

@@ -12,10 +12,10 @@ from pathlib import Path
 from synth.bounds import kernel_boxes
 from synth.bounds.box_batches import GIVEN, NUMBERS, SCORE_WIDTH, TAKEN
 from synth.bounds.instructions import OP_NAMES, WIDTH, labels
-from synth.bounds.intervals import CANCELLATION
-from synth.model.program import TEMPLATES
+from synth.model.program import OPERATIONS
 from synth.nlp import interior_point, kernel_solver
 from synth.nlp.settings import InteriorPointSettings
+from synth.operations.enclosures import CANCELLATION
 
 FOLDER = Path(__file__).parents[2] / "synth" / "kernels" / "c"
 ENDS = ("CONVERGED", "INFEASIBLE", "STUCK", "STOPPED")
@@ -60,7 +60,7 @@ def solver_record() -> list[str]:
         "WIDTH": kernel_solver.WIDTH,
         **{f"MOST_{name}": most for name, most in kernel_solver.MOST.items()},
         **{name: getattr(interior_point, name) for name in ENDS},
-        **{f"OP_{name}": op for op, name in OP_NAMES.items() if op in TEMPLATES},
+        **{f"OP_{name}": op for op, name in OP_NAMES.items() if op in OPERATIONS},
     }
     lines = [f"#define {name} {value}" for name, value in numbers.items()]
     for k, field in enumerate(fields(InteriorPointSettings)):

@@ -128,7 +128,7 @@ def test_arguments_that_are_needed_twice_have_a_cell():
         return f"Helpers!$A${len(cells)}"
 
     text = write(["f", "expm1", [["neg", ["*", [X, Y], []]]]], NAMES, helper)
-    assert cells == ["-(slot.x_value*why)", "EXP(-(slot.x_value*why))"]
+    assert cells == ["EXP(-(slot.x_value*why))", "-(slot.x_value*why)"]
     assert text.count("slot") == 0
     assert "Helpers!$A$2" in text
 

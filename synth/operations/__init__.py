@@ -1,0 +1,1 @@
+"""Elementary operations of formulas: one record each, which all readers ask."""
