@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -38,20 +38,20 @@ class DesignEntry(msgspec.Struct, frozen=True, kw_only=True):
     status: Status
     gap: float | None
     note: str
-    alternatives: Sequence[str]
+    alternatives: tuple[str, ...]
     objectives: Numbers
     values: Numbers
     choices: Texts
     parts: Texts
-    rows: Sequence[str] = ()
+    rows: tuple[str, ...] = ()
     limits: Mapping[str, tuple[Number, Number]]
     residuals: Numbers
     utilisation: Numbers
     elasticity: Mapping[str, Numbers]
     off_grid: Texts
-    advice: Sequence[str]
-    violated: Sequence[str]
-    not_checked: Sequence[str]
+    advice: tuple[str, ...]
+    violated: tuple[str, ...]
+    not_checked: tuple[str, ...]
     outside: Texts = {}
     steps: Numbers = {}
     next_rows: Mapping[str, NextRow] = {}
@@ -82,14 +82,14 @@ class FrontFile(msgspec.Struct, frozen=True, kw_only=True):
     options: Texts
     requirements: Texts
     requirement_values_si: Mapping[str, float]
-    not_asked: Sequence[str]
+    not_asked: tuple[str, ...]
     objectives: Mapping[str, Literal["min", "max"]]
     units: Texts
     kinds: Texts
     limit_units: Texts
     limit_senses: Texts
     restated: Mapping[str, Any]
-    headline: Sequence[str] = ()
+    headline: tuple[str, ...] = ()
     sized_by: str = ""
     tables: Texts = {}
     settings: SettingsRecord
@@ -103,7 +103,7 @@ class FrontFile(msgspec.Struct, frozen=True, kw_only=True):
     parts: Mapping[str, PartEntry]
     scale: Mapping[str, tuple[float, float]] | Unset = UNSET
     calculation: str = ""
-    designs: Sequence[DesignEntry]
+    designs: tuple[DesignEntry, ...]
     result: str = ""
     digest: str = ""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -109,34 +110,18 @@ def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
 
 
 def _front_from_file(file: FrontFile, content: dict[str, Any], folder: Path) -> ParetoFront:
-    frame = Frame(
-        family=file.family,
-        title=file.title,
-        options=file.options,
-        requirements=file.requirements,
-        requirement_values=file.requirement_values_si,
-        not_asked=tuple(file.not_asked),
-        objectives=file.objectives,
-        units=file.units,
-        kinds=file.kinds,
-        limit_units=file.limit_units,
-        limit_senses=file.limit_senses,
-        restated=file.restated,
-        headline=tuple(file.headline),
-        sized_by=file.sized_by,
-        tables=file.tables,
-    ).located(folder)
+    same = {name: value for name, value in structs.asdict(file).items() if name in {f.name for f in fields(Frame)}}
+    frame = Frame(**same, requirement_values=file.requirement_values_si).located(folder)
     if not frame.objectives:
         raise ValueError("objectives: there is none")
-    told = structs.asdict(file.certificate)
-    gap = file.certificate.gap
+    gap = None if file.certificate.gap is None else float(file.certificate.gap)
     return ParetoFront(
         frame=frame,
         designs=[_design_from_file(frame, entry, content["parts"]) for entry in file.designs],
         status=file.status,
         complete=file.complete,
         statistics=file.statistics,
-        certificate=Certificate(**{**told, "gap": None if gap is None else float(gap)}),
+        certificate=Certificate(**{**structs.asdict(file.certificate), "gap": gap}),
         explanation=file.explanation,
         settings=file.settings,
         interrupted=file.interrupted,
@@ -149,33 +134,16 @@ def _front_from_file(file: FrontFile, content: dict[str, Any], folder: Path) -> 
 def _design_from_file(frame: Frame, entry: DesignEntry, rows: dict[str, dict[str, Any]]) -> Design:
     for row in entry.next_rows.values():
         parse_unit(row.unit)
-    return Design(
-        frame=frame,
-        values=_numbers(entry.values),
-        parts={slot: PartRow.read(rows[key]) for slot, key in entry.parts.items()},
-        rows=tuple(PartRow.read(rows[key]) for key in entry.rows),
-        choices=entry.choices,
-        objectives=_numbers(entry.objectives),
-        limits={n: (_number(value), _number(bound)) for n, (value, bound) in entry.limits.items()},
-        residuals=_numbers(entry.residuals),
-        utilisation={n: None if used is None else float(used) for n, used in entry.utilisation.items()},
-        status=entry.status,
-        elasticity={objective: _numbers(shares) for objective, shares in entry.elasticity.items()},
-        gap=entry.gap,
-        rank=entry.rank,
-        score=entry.score,
-        note=entry.note,
-        alternatives=tuple(entry.alternatives),
-        off_grid=entry.off_grid,
-        outside=entry.outside,
-        advice=tuple(entry.advice),
-        violated=tuple(entry.violated),
-        not_checked=tuple(entry.not_checked),
-        robust=entry.robust,
-        steps=DesignSteps(_numbers(entry.steps)),
-        digits=entry.digits,
-        next_rows=entry.next_rows,
-    )
+    read = {
+        "parts": {slot: PartRow.read(rows[key]) for slot, key in entry.parts.items()},
+        "rows": tuple(PartRow.read(rows[key]) for key in entry.rows),
+        "limits": {n: (_number(value), _number(bound)) for n, (value, bound) in entry.limits.items()},
+        "utilisation": {n: None if used is None else float(used) for n, used in entry.utilisation.items()},
+        "elasticity": {objective: _numbers(shares) for objective, shares in entry.elasticity.items()},
+        "steps": DesignSteps(_numbers(entry.steps)),
+    }
+    read |= {name: _numbers(getattr(entry, name)) for name in ("values", "objectives", "residuals")}
+    return Design(frame=frame, **{**structs.asdict(entry), **read})
 
 
 def _numbers(values: Mapping[str, Number]) -> dict[str, float]:
