@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 
 from synth.operations.record import Trait
-from synth.operations.records import BY_TEXT
+from synth.operations.records import function_of
 from synth.results.expression import Expression, parts_of, with_parts
 from synth.units import parse_unit
 
@@ -278,7 +278,7 @@ class _Writer:
         return text + ("/(" + "*".join(self.number(x, FACTOR) for x in under) + ")" if under else "")
 
     def _function(self, name: str, arguments: list[Expression], firm: int) -> str:
-        sheet = BY_TEXT[name].sheet
+        sheet = function_of(name).sheet
         if sheet is None:
             return f"{name.upper()}({','.join(map(self.number, arguments))})"
         power, negative = _Argument(self, ["f", "exp", arguments]), _Argument(self, ["neg", arguments[0]])
@@ -304,7 +304,7 @@ class _Writer:
             return not (tree[2][0] == "n" and tree[2][1] > 0 and float(tree[2][1]).is_integer())
         if kind != "f":
             return False
-        function = BY_TEXT[tree[1]]  # a spreadsheet refuses what is not defined or not finite
+        function = function_of(tree[1])  # a spreadsheet refuses what is not defined or not finite
         return function.domain is not None or function.finite is not None or Trait.DIVIDES in function.traits
 
 

@@ -98,6 +98,7 @@ REPORT = {
     "rich",
     "pandas",
     "synth.results",
+    "synth.operations",
     "synth.units",
     "synth.errors",
     "synth.folders.files",

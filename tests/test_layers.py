@@ -180,7 +180,8 @@ def picture() -> str:
     return "\n".join(lines)
 
 
-ON_THE_GROUND = {"system", "text", "order", "folders", "ui"}  # whatever reads, writes or shows something imports them
+# Whatever reads, writes or shows something imports them.
+ON_THE_GROUND = {"system", "text", "order", "operations", "folders", "ui"}
 
 
 def is_drawn(place: str) -> bool:

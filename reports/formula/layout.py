@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from synth.operations.record import Trait
-from synth.operations.records import BY_TEXT
+from synth.operations.records import function_of
 from synth.results.calculation import NamedQuantity
 from synth.results.dimensions import EXACT, Fold, constant_in, dimension_of, fraction_of, unit_for
 from synth.results.expression import Expression, parts_of, with_parts
@@ -131,7 +131,7 @@ def textbook(tree: Expression) -> Expression:
         return _sign_taken_in(tree)
     if tree[0] != "f":
         return tree
-    name, inner, outer = BY_TEXT[tree[1]].plain or (tree[1], 0.0, 0.0)
+    name, inner, outer = function_of(tree[1]).plain or (tree[1], 0.0, 0.0)
     arguments = [["+", [["n", inner], *_terms(tree[2][0])]]] if inner else tree[2]
     result = _exponential(arguments[0]) if name == "exp" else ["f", name, arguments]
     return ["+", [result, ["n", outer]]] if outer else result
@@ -320,8 +320,9 @@ class Typesetter:
         return [self._number(float(t[1]), SUM, unit) if t[0] == "n" else self.lay(t) for t in trees]
 
     def _function(self, name: str, arguments: Sequence[Expression]) -> Layout:
-        laid = tuple(self._alike(arguments) if Trait.KEEPS_UNIT in BY_TEXT[name].traits else map(self.lay, arguments))
-        if BY_TEXT[name].exponent == 0.5:
+        function = function_of(name)
+        laid = tuple(self._alike(arguments) if Trait.KEEPS_UNIT in function.traits else map(self.lay, arguments))
+        if function.exponent == 0.5:
             return Root(laid[0])
         if name == "abs":
             return Fence(laid[0], bars=True)

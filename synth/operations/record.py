@@ -103,7 +103,7 @@ class Nodes(Protocol):
 
 
 @dataclass(frozen=True)
-class Sheet:
+class InCell:
     """Formula of a spreadsheet.
 
     Arguments stand in braces, with how firmly each must hold together (``term``, ``factor``, ``divisor``, ``base``), or
@@ -150,7 +150,7 @@ class Operation:
     traits : Trait
     plain : tuple, optional
         Text of another function of the argument plus a number, plus another number, which is the same.
-    sheet : Sheet, optional
+    sheet : InCell, optional
         How spreadsheets write it, where they have no function of the same text.
     """
 
@@ -170,7 +170,7 @@ class Operation:
     slope: Callable[[Nodes, int, int], int] | None = None
     traits: Trait = NO_TRAIT
     plain: tuple[str, float, float] | None = None
-    sheet: Sheet | None = None
+    sheet: InCell | None = None
 
     def __post_init__(self) -> None:
         if len(self.backward) != self.arity:

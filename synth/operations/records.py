@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from synth.operations import enclosures as e
-from synth.operations.record import INF, NO_TRAIT, BackwardRule, Domain, Elasticity, Enclosure, Nodes, Operation, Sheet
+from synth.operations.record import INF, NO_TRAIT, BackwardRule, Domain, Elasticity, Enclosure, InCell, Nodes, Operation
 from synth.operations.record import Trait as T
 
 HALF_TURN, QUARTER = float(np.pi), float(np.pi) / 2
@@ -61,17 +61,12 @@ def _rising(
 
 
 def _pair(
-    name: str,
-    text: str,
-    scalar: Callable[..., float],
-    function: Callable[..., Any],
-    enclosure: Enclosure | None,
-    back: BackwardRule | None = None,
-    **known: Any,
+    name: str, scalar: Callable[..., float], function: Callable[..., Any], enclosure: Enclosure | None, **known: Any
 ) -> Operation:
     """A function of two arguments that NumPy has, with one rule backward for both."""
+    back, known = known.pop("back", None), {"text": name.lower()} | known
     numeric = f"np.{function.__name__}({{0}}, {{1}})"
-    return _operation(name, numeric, enclosure, back, back, text=text, scalar=scalar, function=function, **known)
+    return _operation(name, numeric, enclosure, back, back, scalar=scalar, function=function, **known)
 
 
 def _size_of(name: str) -> Callable[[Nodes, int, int], int]:
@@ -193,7 +188,7 @@ POWERS = (
         traits=T.KEEPS_SIGN,
         plain=("exp", 0.0, -1.0),
         # Far from 1 nothing is lost, and the logarithm of nothing does not exist.
-        sheet=Sheet(
+        sheet=InCell(
             "IF({power:cell}=1,{0:cell},IF(OR({power:cell}<0.5,{power:cell}>2),{power:cell}-1,"
             "({power:cell}-1)*{0:cell}/LN({power:cell})))"
         ),
@@ -221,9 +216,9 @@ POWERS = (
         traits=T.KEEPS_SIGN | T.STAYS_INFINITE,
         plain=("ln", 1.0, 0.0),
         # W. Kahan: what is lost in 1 + x is lost in (1 + x) - 1 as well, so that their quotient mends it.
-        sheet=Sheet("IF(1+{0:cell}=1,{0:cell},LN(1+{0:cell})*{0:cell}/((1+{0:cell})-1))"),
+        sheet=InCell("IF(1+{0:cell}=1,{0:cell},LN(1+{0:cell})*{0:cell}/((1+{0:cell})-1))"),
     ),
-    _pair("HYPOT", "hypot", math.hypot, np.hypot, e.length, traits=LENGTH, sheet=Sheet("SQRT({0:base}^2+{1:base}^2)")),
+    _pair("HYPOT", math.hypot, np.hypot, e.length, traits=LENGTH, sheet=InCell("SQRT({0:base}^2+{1:base}^2)")),
 )
 # The size of the logarithm of less than 1, which is negative.
 LOG_BELOW_ONE = Elasticity((0.0, 1.0), lambda y: 1 / np.log(y), 0.0, -INF, sign=-1)
@@ -254,7 +249,7 @@ WAVES = (
     _function("ACOS", math.acos, np.arccos, e.arc_cosine, domain=UNIT, elasticity=ARC_COSINE, traits=T.NEVER_NEGATIVE),
     _rising("ATAN", math.atan, np.arctan, slope=_at_most_one, traits=T.KEEPS_SIGN, **_odd(ARC_TANGENT)),
     # Mathematics has the height first, spreadsheets the length.
-    _pair("ATAN2", "atan2", math.atan2, np.arctan2, e.angle, sheet=Sheet("ATAN2({1},{0})")),
+    _pair("ATAN2", math.atan2, np.arctan2, e.angle, sheet=InCell("ATAN2({1},{0})")),
 )
 HYPERBOLIC_SINE = Elasticity((0.0, INF), lambda y: y / np.tanh(y), 1.0, INF)
 HYPERBOLIC_COSINE = Elasticity((0.0, INF), lambda y: y * np.tanh(y), 0.0, INF)
@@ -279,42 +274,27 @@ HYPERBOLIC = (
 )
 STEPS = T.KEEPS_SIGN | T.KEEPS_UNIT
 EXTREME = T.KEEPS_SIGN | T.ROUNDS_WELL | T.COMMUTES | T.KEEPS_UNIT
-COPIED_SIGN = Sheet("IF({1:term}<0,-ABS({0}),ABS({0}))")
+COPIED_SIGN = InCell("IF({1:term}<0,-ABS({0}),ABS({0}))")
 CHOICES = (
-    _rising("FLOOR", lambda x: float(math.floor(x)), np.floor, traits=STEPS, sheet=Sheet("INT({0})")),
-    _rising("CEIL", lambda x: float(math.ceil(x)), np.ceil, traits=STEPS, sheet=Sheet("-INT({negative})", "term")),
+    _rising("FLOOR", lambda x: float(math.floor(x)), np.floor, traits=STEPS, sheet=InCell("INT({0})")),
+    _rising("CEIL", lambda x: float(math.ceil(x)), np.ceil, traits=STEPS, sheet=InCell("-INT({negative})", "term")),
     _rising("SIGN", _sign, np.sign, traits=T.KEEPS_SIGN),
     _function(
-        "FABS",
-        abs,
-        np.abs,
-        e.magnitude,
-        e.back_abs,
-        "abs",
-        instruction="ABS",
-        exponent=1.0,
-        traits=SIZE | T.KEEPS_UNIT,
+        "FABS", abs, np.abs, e.magnitude, e.back_abs, "abs", instruction="ABS", exponent=1.0, traits=SIZE | T.KEEPS_UNIT
     ),
-    _pair("FMIN", "min", _least, np.minimum, e.least, e.above, instruction="MIN", traits=EXTREME),
-    _pair("FMAX", "max", _most, np.maximum, e.largest, e.below, instruction="MAX", traits=EXTREME),
+    _pair("FMIN", _least, np.minimum, e.least, back=e.above, text="min", instruction="MIN", traits=EXTREME),
+    _pair("FMAX", _most, np.maximum, e.largest, back=e.below, text="max", instruction="MAX", traits=EXTREME),
     _pair(
         "FMOD",
-        "fmod",
         math.fmod,
         np.fmod,
         None,
         traits=T.DIVIDES | T.KEEPS_UNIT,
-        sheet=Sheet("{0:divisor}-{1:divisor}*TRUNC({0:divisor}/{1:divisor})", "factor"),  # MOD: sign of the divisor
+        sheet=InCell("{0:divisor}-{1:divisor}*TRUNC({0:divisor}/{1:divisor})", "factor"),  # MOD: sign of the divisor
     ),
-    _pair("COPYSIGN", "copysign", math.copysign, np.copysign, None, traits=T.KEEPS_UNIT, sheet=COPIED_SIGN),
+    _pair("COPYSIGN", math.copysign, np.copysign, None, traits=T.KEEPS_UNIT, sheet=COPIED_SIGN),
     _operation(
-        "IF_ELSE_ZERO",
-        "np.where({0}, {1}, 0.0)",
-        e.or_zero,
-        None,
-        e.back_yes,
-        instruction="",
-        traits=T.KEEPS_SIGN,
+        "IF_ELSE_ZERO", "np.where({0}, {1}, 0.0)", e.or_zero, None, e.back_yes, instruction="", traits=T.KEEPS_SIGN
     ),
     # CasADi writes where(c, a, b) as (c ? a : 0) + (!c ? b : 0); read back as one operation, the value is known to be
     # one of two, not the sum of two.
@@ -340,3 +320,9 @@ CONDITIONS = (
 )
 BY_NAME = {o.name: o for o in (*ARITHMETIC, *POWERS, *WAVES, *HYPERBOLIC, *CHOICES, *CONDITIONS)}
 BY_TEXT = {o.text: o for o in BY_NAME.values() if o.text and T.TRUTH not in o.traits}  # as trees call functions
+UNKNOWN = _operation("UNKNOWN", "{0}", None, None)
+
+
+def function_of(text: str) -> Operation:
+    """What is known of a function of a tree; nothing, where a tree from elsewhere calls one that is none."""
+    return BY_TEXT.get(text, UNKNOWN)

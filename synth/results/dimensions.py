@@ -10,7 +10,7 @@ from itertools import product
 from typing import TYPE_CHECKING, TypeAlias
 
 from synth.operations.record import Trait
-from synth.operations.records import BY_TEXT
+from synth.operations.records import function_of
 from synth.results.expression import Expression
 from synth.units import parse_unit, si_text
 
@@ -196,7 +196,7 @@ class _Dimensions:
         return tuple(x * times for x in own)
 
     def _function(self, name: str, arguments: Sequence[Expression]) -> Dimension | None:
-        function = BY_TEXT[name]
+        function = function_of(name)
         if Trait.KEEPS_UNIT in function.traits:
             return self._common(arguments)
         if function.exponent is not None:
