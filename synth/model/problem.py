@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from synth.declaration import Declaration, DeclarationError, declaring
+from synth.declaration.verbs import SWITCHED
 from synth.errors import InputError
 from synth.model.hookspecs import FamilyHooks
 from synth.model.model import Model
@@ -66,9 +67,9 @@ class DesignProblem(FamilyHooks):
         raise DeclarationError(f"{type(self).__name__} does not define declare(self, d)")
 
     def option(self, name: str) -> str:
-        """Return an option that is in force: the one given, or the default."""
-        if name in self.options:
-            return self.options[name]
+        """Option that is in force: the one given, or the default."""
+        if (given := self.options.get(name)) is not None and given not in SWITCHED:
+            return given
         traced = next(iter(self._models.values()), None)
         declared = self.declaration(frozenset(), Catalogs()) if traced is None else traced[0].declaration
         return declared.options[name].chosen

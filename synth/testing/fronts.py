@@ -162,7 +162,7 @@ def the_largest_front_can_be_read_back(example: FeasibleCase) -> None:
     text = record_text(front_record(replace(front, designs=[longest] * INPUT_LIMITS.points)))
     with TemporaryDirectory() as folder:
         path = Path(folder) / "front.json"
-        path.write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8", newline="")
         assert len(read_bytes(path, "front")) == len(text.encode())
     assert len(text.encode()) + SPARE * INPUT_LIMITS.points < INPUT_LIMITS.file
 

@@ -116,7 +116,7 @@ def robust(saved: Path) -> tuple[Path, str]:
 def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, str], tmp_path: Path) -> None:
     folder, shown = robust
     assert "2 of 2 designs keep all limits over the whole range (proven)" in shown
-    assert "designs.csv, front.json, robust.csv, design_01.yaml" in " ".join(shown.split())
+    assert "designs.csv, front.json, offered.json, robust.csv, design_01.yaml" in " ".join(shown.split())
     designs = rows(folder / "designs.csv")
     assert {row["robust"] for row in designs} == {"yes"}
     assert {float(row["yield"]) for row in designs} == {1.0}

@@ -112,10 +112,17 @@ def test_a_proof_that_is_given_up_is_another_answer_than_what_does_not_hold(save
 
 
 def test_a_front_that_contradicts_itself_does_not_hold(copy: Path) -> None:
-    rewritten(copy, lambda content: content["designs"][0].update(score="best"))
+    rewritten(copy, lambda content: content["designs"][0]["values"].pop("mass"))
     done = at_once("verify", copy)
     assert (done.returncode, done.stderr) == (5, "")
-    assert done.stdout.startswith("- front.json contradicts itself (design 1: score is 'best')\n")
+    assert done.stdout.startswith("- front.json contradicts itself (design 1: mass has no value)\n")
+
+
+def test_a_front_with_values_of_another_type_is_refused_with_their_place(copy: Path) -> None:
+    rewritten(copy, lambda content: content["designs"][0].update(score="best"))
+    done = at_once("verify", copy)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "Expected `float`, got `str` - at `$.designs[0].score`" in " ".join(done.stderr.split())
 
 
 def test_a_fault_of_the_proof_is_one_of_the_program(saved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
