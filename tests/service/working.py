@@ -70,7 +70,11 @@ class Client:
         return self("POST", path, **({} if body is None else {"json": body}), **asked)
 
     def submit(self, kind: str, request: dict[str, Any], **more: Any) -> str:
-        answer = self.post("jobs", {"kind": kind, "request": request, **more})
+        """Id of a new job; a busy machine may be asked again."""
+        asked = {"kind": kind, "request": request, **more}
+        answer = until(
+            lambda: self.post("jobs", asked), lambda told: told.status_code != httpx.codes.SERVICE_UNAVAILABLE
+        )
         assert answer.status_code == 202, answer.text
         return str(answer.json()["id"])
 
