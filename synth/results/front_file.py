@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from synth.order.feasibility import Status
+from synth.results.front_record import FRONT_FORMAT
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.next_row import NextRow
 from synth.results.ratings import DesignRating
@@ -76,7 +77,7 @@ class CertificateEntry(msgspec.Struct, frozen=True, kw_only=True):
 class FrontFile(msgspec.Struct, frozen=True, kw_only=True):
     """The content of a front.json; quantities in SI, ``units`` are those in which people read them."""
 
-    format: Literal[1]
+    format: Annotated[int, msgspec.Meta(ge=FRONT_FORMAT, le=FRONT_FORMAT)]
     family: str
     title: str
     options: Texts

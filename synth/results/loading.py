@@ -110,7 +110,7 @@ def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
 
 
 def _front_from_file(file: FrontFile, content: dict[str, Any], folder: Path) -> ParetoFront:
-    same = {name: value for name, value in structs.asdict(file).items() if name in {f.name for f in fields(Frame)}}
+    same = {f.name: getattr(file, f.name) for f in fields(Frame) if f.name in file.__struct_fields__}
     frame = Frame(**same, requirement_values=file.requirement_values_si).located(folder)
     if not frame.objectives:
         raise ValueError("objectives: there is none")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import ItemsView, Iterator, KeysView, Mapping
 from typing import Any, Literal, Self
 
 import msgspec
@@ -25,7 +25,7 @@ class FileRecord(msgspec.Struct, frozen=True, kw_only=True, eq=False):
 
     @classmethod
     def from_json(cls, content: Any) -> Self:
-        """FileRecord from its entry of a file; keys of other versions are left out.
+        """Record from its entry of a file; keys of other versions are left out.
 
         Raises
         ------
@@ -38,45 +38,45 @@ class FileRecord(msgspec.Struct, frozen=True, kw_only=True, eq=False):
         """Keys and values as front.json has them, plain in depth: for YAML too, which knows no records."""
         return dict(plain(self))
 
+    @property
+    def _entries(self) -> dict[str, Any]:
+        """Keys that are set, with their values, in the order of the fields."""
+        names = zip(self.__struct_encode_fields__, self.__struct_fields__, strict=True)
+        return {key: value for key, name in names if (value := getattr(self, name)) is not UNSET}
+
     def __getitem__(self, key: str) -> Any:
         """Value of a key."""
-        names = dict(zip(self.__struct_encode_fields__, self.__struct_fields__, strict=True))
-        value = getattr(self, names[key])
-        if value is UNSET:
-            raise KeyError(key)
-        return value
+        return self._entries[key]
 
     def __iter__(self) -> Iterator[str]:
-        """Keys in the order of the fields."""
-        for key, name in zip(self.__struct_encode_fields__, self.__struct_fields__, strict=True):
-            if getattr(self, name) is not UNSET:
-                yield key
+        """Keys that are set."""
+        return iter(self._entries)
 
     def __len__(self) -> int:
         """Number of keys; an empty record is false."""
-        return sum(1 for _ in self)
+        return len(self._entries)
 
     def __contains__(self, key: object) -> bool:
         """True if a key is set."""
-        return key in list(self)
+        return key in self._entries
 
     def __eq__(self, other: object) -> bool:
         """True if a record or mapping has the same keys and values."""
-        return dict(self.items()) == dict(other.items()) if isinstance(other, Mapping) else NotImplemented
+        return self._entries == dict(other.items()) if isinstance(other, Mapping) else NotImplemented
 
     __hash__ = None  # type: ignore[assignment]  # it may hold mappings
 
     def get(self, key: str, default: Any = None) -> Any:
         """Value of a key, or the default where it is not set."""
-        return self[key] if key in self else default
+        return self._entries.get(key, default)
 
-    def keys(self) -> list[str]:
+    def keys(self) -> KeysView[str]:
         """Keys that are set."""
-        return list(self)
+        return self._entries.keys()
 
-    def items(self) -> list[tuple[str, Any]]:
+    def items(self) -> ItemsView[str, Any]:
         """Keys that are set, with their values."""
-        return [(key, self[key]) for key in self]
+        return self._entries.items()
 
 
 Mapping.register(FileRecord)
