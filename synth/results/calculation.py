@@ -18,7 +18,7 @@ from synth.folders.files import read_json
 from synth.order.feasibility import holds, residual, utilisation
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
-from synth.results.plain import compact_json, digest_of, finite
+from synth.results.plain import compact_json, digest_of, finite, intact
 from synth.text.numbers import percent
 from synth.text.row_cells import CODE_OF, cell_value, named_column, text_code
 
@@ -341,8 +341,7 @@ class Calculation:
         if content.get("format") != CALCULATION_FORMAT:
             raise InputError(f"{field}: format", content.get("format"), f"format {CALCULATION_FORMAT}")
         try:
-            fits = content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"})
-            if not fits:
+            if not intact(content):
                 raise InputError(
                     field, "a changed file", f"{RIGHT}; its checksum does not fit: it was changed after it was saved"
                 )

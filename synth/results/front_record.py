@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from synth.results.plain import digest_of, finite, plain
+from synth.results.plain import digest_of, finite, intact, plain
 
 if TYPE_CHECKING:
     from synth.results.design import Design
@@ -25,15 +25,15 @@ def changed(content: Mapping[str, Any]) -> str:
     if "digest" not in content:
         return "front.json has no checksum; it was not written by this version"
     try:
-        fits = content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"})
+        unchanged = intact(content)
     except (ValueError, RecursionError):  # numbers that are none
-        fits = False
-    return "" if fits else "front.json was changed after it was saved: its checksum does not fit"
+        unchanged = False
+    return "" if unchanged else "front.json was changed after it was saved: its checksum does not fit"
 
 
 def fits(content: Any, digest: str) -> bool:
     """True if a file beside front.json is the one with this checksum."""
-    return bool(digest == content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"}))
+    return bool(digest == content["digest"]) and intact(content)
 
 
 # Of a record: what the search took, what follows from the rest, and where tables lie.

@@ -34,3 +34,8 @@ def digest_of(content: Mapping[str, Any]) -> str:
 def compact_json(content: Mapping[str, Any]) -> str:
     """Text of a file that programs read."""
     return json.dumps(content, separators=(",", ":"), allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def intact(content: Mapping[str, Any]) -> bool:
+    """True if the checksum in a record is that of the rest of it."""
+    return bool(content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"}))
