@@ -36,6 +36,6 @@ def compact_json(content: Mapping[str, Any]) -> str:
     return json.dumps(content, separators=(",", ":"), allow_nan=False, ensure_ascii=False) + "\n"
 
 
-def intact(content: Mapping[str, Any]) -> bool:
+def intact(content: Mapping[str, object]) -> bool:
     """True if the checksum in a record is that of the rest of it."""
     return bool(content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"}))
