@@ -207,13 +207,19 @@ class _Budget:
     """Processor time that a process may use from now on; on the clock it has longer, unless it is stuck."""
 
     def __init__(self, engine: EngineProcess, seconds: float) -> None:
-        self._pid = engine.pid
-        self._used = processor_time(engine.pid) + seconds
-        self._end = time.monotonic() + engine.settings.stuck * seconds
+        self._pid, self._settings, self._seconds = engine.pid, engine.settings, seconds
+        self._limit = processor_time(engine.pid) + seconds
+        self._moved(processor_time(engine.pid))
+
+    def _moved(self, used: float) -> None:
+        self._seen, self._end = used, time.monotonic() + self._settings.stuck * self._seconds
 
     def is_spent(self) -> bool:
-        """Whether the time is used up."""
-        return processor_time(self._pid) >= self._used or time.monotonic() >= self._end
+        """Whether the time is used up, or the process has long had hardly any of it."""
+        used = processor_time(self._pid)
+        if used - self._seen >= self._settings.stirs * self._seconds:
+            self._moved(used)
+        return used >= self._limit or time.monotonic() >= self._end
 
 
 def answer_of(message: Message) -> Any:

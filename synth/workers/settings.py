@@ -26,8 +26,10 @@ class EngineSettings:
     start : float
         In s of a processor, that it may take until it is warm.
     stuck : float
-        Times a limit of processor time that may pass on the clock: on a busy machine a process waits for its turn, one
-        that waits for ever is stuck.
+        Times a limit of processor time that may pass on the clock while a process hardly gets any: on a busy machine it
+        waits for its turn, one that waits for ever is stuck.
+    stirs : float
+        Share of the limit that it must have had by then, to have as long again.
     look : float
         In s, between two looks at how much processor time it has had.
     tell : float
@@ -41,6 +43,7 @@ class EngineSettings:
     calls: int = 500
     start: float = 60.0
     stuck: float = 10.0
+    stirs: float = 0.01
     look: float = 0.2
     tell: float = 0.25
 

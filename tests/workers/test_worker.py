@@ -14,7 +14,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import psutil
 import pytest
@@ -36,6 +37,7 @@ from synth.workers.engine_process import (
     EngineProcess,
     Engines,
     EngineTimeoutError,
+    _Budget,
 )
 from synth.workers.engine_tasks import BATCH_FILE_TASK, EXAMPLES_TASK, FILES_TASK, READ_TASK
 from synth.workers.settings import INTERACTIVE, WORK, EngineSettings, WorkSettings
@@ -334,6 +336,20 @@ def test_a_process_that_is_stuck_is_ended() -> None:
     with pytest.raises(EngineTimeoutError):
         engine.call(FILES_TASK, {"kind": "batch"}, 0.2)
     assert not engine.is_alive()
+
+
+def test_a_process_that_a_busy_machine_gives_little_is_not_stuck() -> None:
+    settings = EngineSettings(stuck=1e-3, stirs=1e-4)
+    engine = cast("EngineProcess", SimpleNamespace(pid=os.getpid(), settings=settings))
+    budget = _Budget(engine, 100.0)
+    for _ in range(3):
+        time.sleep(0.15)  # beyond the time that one has that gets nothing
+        before = time.process_time()
+        while time.process_time() < before + 0.03:
+            pass
+        assert not budget.is_spent()
+    until(budget.is_spent, bool)
+    assert time.process_time() < 50.0
 
 
 def test_what_somebody_waits_for_is_not_nicer_than_a_search() -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from synth.workers.engine_process import Engines
 from synth.workers.engine_tasks import FAMILIES_TASK
+from synth.workers.settings import INTERACTIVE
 from tests.service.calling import Service
 from tests.service.working import BATCH, FRONT, Client, working
 
@@ -17,7 +18,7 @@ WARM = 120.0  # s
 @pytest.fixture(scope="session")
 def engines() -> Iterator[Engines]:
     """Yield one engine process."""
-    found = Engines(1)
+    found = Engines(1, INTERACTIVE)
     found.call(FAMILIES_TASK, {}, WARM)  # what a test asks first is not to wait for a process that begins
     yield found
     found.close()

@@ -16,6 +16,7 @@ from synth.batches.store import Outcome
 from synth.queue.models import Tenant
 from synth.queue.owners import new_owner
 from synth.workers.engine_process import Engines
+from synth.workers.settings import INTERACTIVE
 from tests.service.api.test_batch_routes import BOOK, LAUGHS, bring, changed
 from tests.service.calling import Service, code_of
 from tests.service.served import most_memory, processor_time
@@ -60,7 +61,7 @@ BOMBS = {
 @pytest.fixture(scope="module")
 def own_engine() -> Any:
     """Yield an engine process that has done nothing else, so that its memory is that of the files."""
-    found = Engines(1)
+    found = Engines(1, INTERACTIVE)
     yield found
     found.close()
 
