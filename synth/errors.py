@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import traceback
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from numbers import Integral
 from types import TracebackType
 from typing import Any, TypeVar
@@ -112,6 +113,27 @@ class SeveralErrors(InputError):
 def first_with_others(faults: Sequence[InputError]) -> InputError:
     """Return a fault as it is, several as one error that has them all."""
     return faults[0] if len(faults) == 1 else SeveralErrors(faults)
+
+
+@contextmanager
+def gathered(faults: list[InputError]) -> Iterator[None]:
+    """Add what is refused inside to a list, and go on."""
+    try:
+        yield
+    except InputError as fault:
+        faults += fault.every()
+
+
+def refuse_gathered(faults: Sequence[InputError]) -> None:
+    """Refuse all gathered faults at once.
+
+    Raises
+    ------
+    InputError
+        There is one at least.
+    """
+    if faults:
+        raise first_with_others(faults)
 
 
 class UnknownOptionError(InputError):

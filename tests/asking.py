@@ -8,8 +8,8 @@ from typing import Any
 from synth.model.problem import DesignProblem
 from synth.question.instance import Instance
 from synth.question.request import Request
+from synth.question.request_fields import SEARCHED
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import SEARCHED
 from synth.question.uncertainty import Uncertainty
 from synth.robust.rating import Rater
 from synth.search.question import Question

@@ -24,6 +24,7 @@ LAYERS = (
     ("declaration", "queue"),
     ("model",),
     ("question",),
+    ("verbs",),
     ("proof", "bounds", "nlp"),
     ("robust",),
     ("analysis",),

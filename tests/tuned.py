@@ -8,8 +8,8 @@ from typing import Any
 
 import synth
 from synth.question.request import Request
+from synth.question.request_fields import SEARCHED
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import SEARCHED
 from synth.search.settings import TUNING, Tuning
 from synth.search.synthesize import find_front
 

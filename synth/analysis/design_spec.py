@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import Described, InputError
-from synth.question.spec_keys import A_DESIGN, ROW_EXPECTED, refuse_several, refuse_values
+from synth.question.request_fields import ROW_EXPECTED
+from synth.question.spec_keys import A_DESIGN, refuse_several, refuse_values
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem

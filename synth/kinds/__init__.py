@@ -21,7 +21,9 @@ from types import MappingProxyType
 from typing import Any, Protocol, cast
 
 from synth.errors import InputError
+from synth.question.request_fields import FIELDS
 from synth.queue.records import Posed, Record, Sources, Tell
+from synth.verbs.requests import VERBS, Subject, Verb
 
 __all__ = ["KINDS", "Kind", "KindModule", "Posed", "Record", "Sources", "Tell", "kind"]
 
@@ -41,117 +43,71 @@ class Kind:
 
     Parameters
     ----------
-    name : str
+    verb : Verb
+        What it asks.
     module : str
         Imported in an engine process only.
-    title : str
-        One line for people.
     bulk : bool
         Whether it waits behind what somebody waits for; of some kinds ``Posed.bulk`` decides for each request.
     record : str
         Name of the main record.
-    timed : bool
-        Whether its requests take a ``time_limit``.
-    checked : bool
-        Whether the check of a spec tells all that is wrong with its requests.
-    keys : tuple of str
-        Of its requests beside those of a spec; ``beside`` of its module tells what is wrong under them.
     """
 
-    name: str
+    verb: Verb
     module: str
-    title: str
     bulk: bool = False
     record: str
-    timed: bool = True
-    checked: bool = False
-    keys: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its name, that of the verb."""
+        return self.verb.name
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self.verb.title
+
+    @property
+    def timed(self) -> bool:
+        """Whether its requests take a ``time_limit``."""
+        return "time_limit" in self.verb.fields()
+
+    @property
+    def checked(self) -> bool:
+        """Whether the check of a spec tells all that is wrong with its requests."""
+        return self.verb.about is Subject.QUESTION
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of its requests beside those of a spec; ``beside`` of its module tells what is wrong under them."""
+        return tuple(name for name in self.verb.request.fields() if name not in FIELDS) if self.checked else ()
 
     def load(self) -> KindModule:
         """Return its module."""
         return cast("KindModule", import_module(self.module))
 
 
-def _kinds(*found: Kind) -> Mapping[str, Kind]:
-    return MappingProxyType({one.name: one for one in found})
+def _kinds(*found: tuple[str, str, str, bool]) -> Mapping[str, Kind]:
+    kinds = [
+        Kind(verb=VERBS[name], module=f"synth.kinds.{module}", record=record, bulk=bulk)
+        for name, module, record, bulk in found
+    ]
+    return MappingProxyType({kind.name: kind for kind in kinds})
 
 
 KINDS: Mapping[str, Kind] = _kinds(
-    Kind(
-        name="synthesis",
-        module="synth.kinds.synthesis",
-        title="Ranked Pareto designs for a requirement",
-        record="front.json",
-        checked=True,
-    ),
-    Kind(
-        name="compare",
-        module="synth.kinds.comparison",
-        title="Several families asked the same",
-        record="comparison.json",
-        checked=True,
-    ),
-    Kind(
-        name="whatif",
-        module="synth.kinds.whatif",
-        title="A question at many values of a requirement, limit, weight, part or option",
-        record="study.json",
-        checked=True,
-        keys=("vary", "breaks"),
-    ),
-    Kind(
-        name="explain",
-        module="synth.kinds.explain",
-        title="Why nothing is feasible, and what would make it so",
-        record="explanation.json",
-        checked=True,
-        keys=("physics",),
-    ),
-    Kind(
-        name="prices",
-        module="synth.kinds.prices",
-        title="What a per cent of each requirement and limit costs",
-        record="prices.json",
-    ),
-    Kind(
-        name="near_equals",
-        module="synth.kinds.near_equals",
-        title="Other parts, counts or choices that are nearly as good",
-        record="near_equals.json",
-    ),
-    Kind(
-        name="rate",
-        module="synth.kinds.rate",
-        title="How designs stand what scatters",
-        record="rating.json",
-    ),
-    Kind(
-        name="verify",
-        module="synth.kinds.verify",
-        title="A front checked again without the search",
-        record="verification.json",
-    ),
-    Kind(
-        name="report",
-        module="synth.kinds.report",
-        title="The report of a front, with calculation sheets",
-        record="report.json",
-        timed=False,
-    ),
-    Kind(
-        name="batch",
-        module="synth.kinds.batch",
-        title="A table of requirements, answered row by row",
-        bulk=True,
-        record="batch.json",
-    ),
-    Kind(
-        name="size_range",
-        module="synth.kinds.size_range",
-        title="A few variants that serve a whole table of applications",
-        bulk=True,
-        record="size_range.json",
-    ),
+    ("synthesis", "synthesis", "front.json", False),
+    ("compare", "comparison", "comparison.json", False),
+    ("whatif", "whatif", "study.json", False),
+    ("explain", "explain", "explanation.json", False),
+    ("prices", "prices", "prices.json", False),
+    ("near_equals", "near_equals", "near_equals.json", False),
+    ("rate", "rate", "rating.json", False),
+    ("verify", "verify", "verification.json", False),
+    ("report", "report", "report.json", False),
+    ("batch", "batch", "batch.json", True),
+    ("size_range", "size_range", "size_range.json", True),
 )
 
 

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from synth.errors import Described, InputError, SeveralErrors, at
-from synth.kinds.request_schemas import REFERENCE
+from synth.errors import Described, InputError, at, gathered, refuse_gathered
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs, refuse_unused
 from synth.question.request import Request
+from synth.question.request_fields import FIELDS, REFERENCE, SEARCHED, shown_kind
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import FIELDS, OF_A_DESIGN, SEARCHED, no_family, refuse_several, refuse_values, shown_kind
+from synth.question.spec_keys import no_family, refuse_several
 from synth.question.spec_patch import patched
 from synth.queue.records import QUESTION, TABLE, Record, Sources, Tell
 from synth.results import ParetoFront
@@ -30,69 +29,43 @@ from synth.tables.catalogs import Catalogs
 from synth.tables.table_text import TableText
 from synth.text.numbers import RAISED, typed_number
 from synth.units import typed_quantity
+from synth.verbs.request import WHERE, WORKERS, VerbRequest, in_request, known_keys, one_thread
+from synth.verbs.requests import OF, SPEC, FrontRequest
 
-WHERE = "request"
-OF = "of"
 FAMILY = "family"
-WORKERS = "workers"
 CATALOGS = "catalogs"
 MAPPINGS = ("options", "requirements", "limits", "fix", "parts", "weights", "robust")  # keys with entries of their own
 STATED = re.compile(
     r"(?<![A-Za-z0-9_.])[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)? [A-Za-z][A-Za-z0-9*/()]*"
 )  # a number with a unit
 POWER = re.compile(r"(?<=[A-Za-z])[2-4](?![0-9])")  # of a unit
-SPEC = tuple(key for key in FIELDS if key not in OF_A_DESIGN)
 TABLE_EXPECTED = (
     "a table of your own by name and version, 'my_linings@3', or ['+', 'my_linings@3'] to extend the shipped one"
 )
-Check = Callable[[str, Any], Any]
 
 
 # ---- keys -----------------------------------------------------------------------------------------------------------
 
 
-def checked_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
-    """Entries of a request, those of a spec each of its kind; None counts as not stated.
-
-    Whatever reads a request, or writes a message about it, begins with these.
-
-    Raises
-    ------
-    InputError
-        It is no mapping, has a key that is none of these or a value that is not of its kind, or holds what no file can.
-    """
-    given = known_keys(request, keys)
-    faults: list[InputError] = []
-    for key, value in given.items():
-        with noted(faults):
-            check_entry(key, value)
-    refuse_noted(faults)
-    return given
+Own = TypeVar("Own", bound=VerbRequest)
 
 
-def known_keys(request: Any, keys: Collection[str]) -> dict[str, Any]:
-    """Entries of a request, whatever their kind; None counts as not stated.
+def about_front(request: Any, verb: type[Own]) -> tuple[FrontRequest, Own]:
+    """Front that a request is about, and what it asks of it.
 
     Raises
     ------
     InputError
-        It is no mapping, has a key that is none of these, or holds what no file can.
+        With everything that is not of its kind.
     """
-    if not isinstance(request, Mapping):
-        raise InputError(WHERE, shown_kind(request), "a JSON object")
-    try:
-        json.dumps(request, ensure_ascii=False, allow_nan=False).encode()
-    except (ValueError, TypeError, RecursionError):  # halves of characters, numbers that are none
-        raise InputError(WHERE, Described("what JSON cannot hold"), "texts in Unicode and finite numbers") from None
-    faults: list[InputError] = []
-    for key in request:
-        with noted(faults):
-            if key == WORKERS and key not in keys:
-                one_thread(request[key])
-            elif key not in keys:
-                raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))
-    refuse_noted(faults)
-    return {str(key): value for key, value in request.items() if value is not None and key in keys}
+    keys = (*FrontRequest.fields(), *verb.fields())
+    given, faults = known_keys(request, keys), list[InputError]()
+    with gathered(faults):
+        own = verb.read(given, in_request)
+    with gathered(faults):
+        front = FrontRequest.read(given, in_request)
+    refuse_gathered(faults)
+    return front, own
 
 
 def check_entry(key: str, value: Any) -> None:
@@ -107,8 +80,7 @@ def check_entry(key: str, value: Any) -> None:
     if key == WORKERS:
         one_thread(value)
     elif key in FIELDS and key != CATALOGS:
-        with at(key):
-            FIELDS[key](f"{WHERE}: {key}", stated_entries(key, value))
+        FIELDS[key].read(in_request(key), stated_entries(key, value))
 
 
 def stated_entries(key: str, value: Any) -> Any:
@@ -118,31 +90,10 @@ def stated_entries(key: str, value: Any) -> Any:
     return {name: entry for name, entry in value.items() if entry is not None}
 
 
-@contextmanager
-def noted(faults: list[InputError]) -> Iterator[None]:
-    """Note what is refused inside, and go on."""
-    try:
-        yield
-    except InputError as fault:
-        faults += fault.every()
-
-
-def refuse_noted(faults: Sequence[InputError]) -> None:
-    """Refuse what was noted, all of it at once.
-
-    Raises
-    ------
-    InputError
-        There is something.
-    """
-    if faults:
-        raise SeveralErrors(faults) if len(faults) > 1 else faults[0]
-
-
 def spec_of(
     request: Any, sources: Sources, more: Collection[str] = (), several: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Spec of a request, every entry of its kind, and the entries under some more keys as they stand.
+    """Spec of a request as it stands, and the entries under some more keys.
 
     Under ``of`` an earlier job may stand: then its spec is meant, with the entries of this request in place of its own.
 
@@ -158,12 +109,12 @@ def spec_of(
     Raises
     ------
     InputError
-        A key is unknown, a value is not of its kind, or there is no such job.
+        A key is unknown, or there is no such job.
     """
     if not several and isinstance(request, Mapping) and request.get(FAMILY) is not None:
         check_entry(FAMILY, request[FAMILY])
         refuse_several(request[FAMILY], WHERE)
-    given = checked_keys(request, (*SPEC, *more, OF))
+    given = known_keys(request, (*SPEC, *more, OF))
     own = {key: given.pop(key) for key in more if key in given}
     if OF not in given:
         return _without_none(given), own
@@ -190,59 +141,7 @@ def problem_of(spec: Mapping[str, Any]) -> DesignProblem:
     if spec.get(FAMILY) is None:
         raise no_family(WHERE)
     refuse_several(spec[FAMILY], WHERE)
-    return load(spec[FAMILY], **FIELDS["options"](WHERE, spec.get("options")))
-
-
-def flag(name: str, value: Any) -> bool:
-    """Return a truth value.
-
-    Raises
-    ------
-    InputError
-        It is none.
-    """
-    if not isinstance(value, bool):
-        raise InputError(f"{WHERE}: {name}", shown_kind(value), "true or false", (name,))
-    return value
-
-
-def one_thread(value: Any) -> None:
-    """Refuse more threads than one: whoever runs the workers says how much is worked at.
-
-    Raises
-    ------
-    InputError
-        Something else is stated.
-    """
-    if value is not None and (isinstance(value, bool) or value != 1):
-        right = "1, or nothing: a job is searched by one thread, and any number finds the same"
-        raise InputError(f"{WHERE}: {WORKERS}", shown_kind(value), right, (WORKERS,))
-
-
-def seconds(value: Any) -> float | None:
-    """Return a time limit in seconds; None where none is stated.
-
-    Raises
-    ------
-    InputError
-        It is no time.
-    """
-    with at("time_limit"):
-        found: float | None = FIELDS["time_limit"](f"{WHERE}: time_limit", value)
-    return found
-
-
-def seed(value: Any) -> int:
-    """Return the seed of random choices, 0 where none is stated.
-
-    Raises
-    ------
-    InputError
-        It is none.
-    """
-    with at("seed"):
-        found: int | None = FIELDS["seed"](f"{WHERE}: seed", value)
-    return found or 0
+    return load(spec[FAMILY], **FIELDS["options"].value.read(WHERE, spec.get("options")))
 
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
@@ -382,7 +281,7 @@ def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = Tru
         return replace(front_of_record(content, Path(name)), folder=None)
 
 
-def front_of(asked: Mapping[str, Any], sources: Sources) -> tuple[ParetoFront, Catalogs]:
+def front_of(asked: FrontRequest, sources: Sources) -> tuple[ParetoFront, Catalogs]:
     """Return the front that a request is of, with its tables.
 
     Raises
@@ -390,11 +289,9 @@ def front_of(asked: Mapping[str, Any], sources: Sources) -> tuple[ParetoFront, C
     InputError
         There is none, or one of its tables cannot be had.
     """
-    if OF not in asked:
-        raise InputError(f"{WHERE}: {OF}", None, "the id of a job that has found a front", (OF,))
     with at(OF):
-        records = records_of(sources, asked[OF])
-    front = front_in(records, asked.get(FAMILY))
+        records = records_of(sources, asked.of)
+    front = front_in(records, asked.family)
     with at(OF):
         return front, catalogs_of(front.frame.restated.get("catalogs"), sources)
 
@@ -407,24 +304,27 @@ def is_comparison(records: Mapping[str, bytes]) -> bool:
 # ---- questions ------------------------------------------------------------------------------------------------------
 
 
-def question_of(spec: Mapping[str, Any], sources: Sources) -> Request:
-    """Request to one family in a spec.
+def question_of(spec: Mapping[str, Any], sources: Sources, **usual: Any) -> tuple[Request, SearchSettings]:
+    """Request to one family in a spec, and how it is searched; ``usual`` counts where the spec states nothing.
 
     Raises
     ------
     InputError
-        For everything that is not of its kind.
+        With everything that is not of its kind.
     """
-    content = {key: value for key, value in spec.items() if key != "catalogs"}
-    if spec.get("catalogs") is not None:
-        tables = catalogs_of(spec["catalogs"], sources)
-    else:
-        tables = as_catalogs(None)
+    content = {key: value for key, value in spec.items() if key != CATALOGS}
     refuse_several(content.get(FAMILY, ""), WHERE)
-    refuse_values(content.get("values"), WHERE)
-    request = Request.from_json(content, WHERE, catalogs=tables)
+    faults: list[InputError] = []
+    with gathered(faults):
+        tables = as_catalogs(None)
+        tables = catalogs_of(spec.get(CATALOGS), sources)
+    with gathered(faults):
+        request = Request.from_json(content, WHERE, catalogs=tables)
+    with gathered(faults):
+        settings = settings_of(spec, **usual)
+    refuse_gathered(faults)
     refuse_unused(request.problem, tables)
-    return request
+    return request, settings
 
 
 def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:

@@ -20,40 +20,27 @@ from synth.batches.outputs import write_outputs
 from synth.batches.row_questions import Fault
 from synth.batches.row_table import RowTable, read_table
 from synth.batches.store import Store
-from synth.errors import Described, InputError, at, first_with_others
-from synth.kinds.asked import (
-    WHERE,
-    catalogs_of,
-    check_entry,
-    digests,
-    flag,
-    known_keys,
-    noted,
-    refuse_noted,
-    seconds,
-    seed,
-    settings_of,
-)
+from synth.errors import Described, InputError, at, first_with_others, gathered, refuse_gathered
+from synth.kinds.asked import catalogs_of, digests
 from synth.kinds.files import UnknownFileError
-from synth.kinds.request_schemas import keys_of
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.registry import load
+from synth.question.request_fields import shown_kind
 from synth.question.settings import SearchSettings
-from synth.question.spec_keys import shown_kind
 from synth.queue.records import TABLE, Posed, Record, Sources, Tell
 from synth.results.drawings import can_make
 from synth.results.report_request import ReportOptions
 from synth.tables.table_file import EXCEL
+from synth.verbs.request import WHERE, in_request, known_keys
+from synth.verbs.requests import ROW, BatchRequest
 
 UPLOAD, ROWS = "upload", "rows"
-COMMON = ("parts", "limits", "fix")
-KEYS = keys_of("batch")
+KEYS = tuple(BatchRequest.fields())
 KEPT = tuple(key for key in KEYS if key not in (UPLOAD, ROWS))
 SUMMARY = "batch.json"
 FILES = ("designs.csv", "rows.csv", SUMMARY)
 REPORTS = {"report.html": "html", "report.pdf": "pdf", "batch.xlsx": "xlsx"}  # by the format that they are of
 STATED = "rows.json"  # what rows are kept as that stand in a request
-ROW = '{"load_torque": "600 N*m"}'
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -247,59 +234,28 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
     InputError
         Something of it is wrong.
     """
-    common: dict[str, Any] = {name: stated.get(name) for name in COMMON}
-    common |= {"objectives": stated.get("objectives")}
-    how, usual, faults = dict[str, Any](), SearchSettings(), list[InputError]()
-    for key in (*COMMON, "objectives"):
-        with noted(faults):
-            check_entry(key, stated.get(key))
-    with noted(faults):
-        common["grid"] = flag("grid", stated.get("grid", True))
-    with noted(faults):
-        how["seed"] = seed(stated.get("seed"))
-    with noted(faults):
-        how["time_limit"] = seconds(stated.get("time_limit"))
-    for key in ("points", "gap"):
-        with noted(faults):
-            how |= {key: stated[key]} if key in stated else {}
-            settings_of({key: how.get(key)})
-    with noted(faults):
-        family = _family(stated.get("family"))
-    with noted(faults):
-        mapping = _mapping(stated.get("mapping"))
-    with noted(faults):
+    faults: list[InputError] = []
+    with gathered(faults):
+        asked = BatchRequest.read(stated, in_request)
+    with gathered(faults):
         catalogs = catalogs_of(stated.get("catalogs"), sources)
-    refuse_noted(faults)
-    settings = settings_of(how, points=usual.points)
+    refuse_gathered(faults)
+    if asked.family is not None:
+        load(asked.family)
+    settings = SearchSettings(points=asked.points, gap=asked.gap, seed=asked.seed, time_limit=asked.time_limit)
+    common: dict[str, Any] = {"parts": asked.parts, "limits": asked.limits, "fix": asked.fix}
+    common |= {"objectives": asked.objectives, "grid": asked.grid}
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
         yield BatchJob(
-            family,
+            asked.family,
             _rows(table, Path(folder)),
             Path(folder) / "out",
-            mapping,
+            dict(asked.mapping or {}),
             catalogs,
             sources.database or None,
             settings,
             common,
         )
-
-
-def _family(stated: Any) -> str | None:
-    """Return the family of rows that name none."""
-    if stated is not None and not isinstance(stated, str):
-        raise InputError(f"{WHERE}: family", shown_kind(stated), "the name of a family", ("family",))
-    if stated is not None:
-        load(stated)
-    return stated
-
-
-def _mapping(stated: Any) -> dict[str, str]:
-    right = 'an object such as {"Lastmoment [Nm]": "load_torque"} ("carry" for a column that is only carried along)'
-    if stated is None:
-        return {}
-    if not isinstance(stated, Mapping) or not all(isinstance(k, str) and isinstance(v, str) for k, v in stated.items()):
-        raise InputError(f"{WHERE}: mapping", shown_kind(stated), right, ("mapping",))
-    return {heading.strip(): name.strip() for heading, name in stated.items()}
 
 
 def _rows(table: Record, folder: Path) -> RowTable:

@@ -8,8 +8,6 @@ from typing import Any
 from synth.errors import InputError
 from synth.kinds.asked import (
     FAMILY,
-    SPEC,
-    WHERE,
     best_of,
     by_name,
     catalogs_of,
@@ -41,6 +39,8 @@ from synth.studies.families.requirement_sheet import (
     refuse_all,
     sheet_of,
 )
+from synth.verbs.request import WHERE
+from synth.verbs.requests import SPEC
 
 KEPT = (FRONT_FILE, CALCULATION, OFFERED)  # of the front of each family; the rest is rendered from these
 

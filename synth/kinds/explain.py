@@ -7,16 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 from synth.analysis.settings import WAYS_OUT
-from synth.errors import InputError
+from synth.errors import InputError, gathered
 from synth.kinds.asked import (
     by_name,
     digests,
-    flag,
     of_files,
     question_of,
     question_record,
     read_json,
-    settings_of,
     spec_of,
     stated_spec,
     titled,
@@ -28,6 +26,8 @@ from synth.question.settings import SearchSettings
 from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
 from synth.studies.infeasibility.explain import explanation_of
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
+from synth.verbs.request import in_request
+from synth.verbs.requests import ExplainRequest
 
 MAIN = "explanation.json"
 PHYSICS = "physics"
@@ -47,7 +47,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     stated = stated_spec(asked, settings, ("seed", "time_limit"))
     stated = {key: value for key, value in stated.items() if key not in ("objectives", "weights")}
     return Posed(
-        request={**stated, PHYSICS: flag(PHYSICS, own.get(PHYSICS, False))},
+        request={**stated, **ExplainRequest.read(own, in_request).to_json()},
         title=f"Ways out: {titled(asked)}",
         families=(asked.problem.name,),
         tables=digests(stated.get("catalogs"), sources),
@@ -57,17 +57,16 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
 def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
     """Return the spec in a request, and what is wrong beside it."""
     spec = {key: value for key, value in request.items() if key != PHYSICS}
-    try:
-        flag(PHYSICS, False if request.get(PHYSICS) is None else request[PHYSICS])
-    except InputError as fault:
-        return spec, [fault]
-    return spec, []
+    faults: list[InputError] = []
+    with gathered(faults):
+        ExplainRequest.read({PHYSICS: request.get(PHYSICS)}, in_request)
+    return spec, faults
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Find what excludes each other and what would help."""
     spec, own = spec_of(request, sources, (PHYSICS,))
-    found = explanation_of(*_asked(spec, sources), told(tell), bool(own.get(PHYSICS)))
+    found = explanation_of(*_asked(spec, sources), told(tell), ExplainRequest.read(own, in_request).physics)
     return {**of_files(found.files()), **by_name(question_record("explain", request, sources))}
 
 
@@ -88,6 +87,6 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
 
 
 def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSettings]:
-    asked = replace(question_of(spec, sources), objectives=None, weights={})
-    settings = settings_of(spec)
+    asked, settings = question_of(spec, sources)
+    asked = replace(asked, objectives=None, weights={})
     return asked, SearchSettings(points=1, gap=WAYS_OUT.gap, seed=settings.seed, time_limit=settings.time_limit)

@@ -15,14 +15,16 @@ from synth.analysis.drawing import is_drawn
 from synth.analysis.reporting import explored, explored_comparison
 from synth.errors import ExtraNeededError
 from synth.kinds import kind as kind_named
-from synth.kinds.asked import checked_keys, front_in, is_comparison
-from synth.kinds.report import ReportAsked, reported
+from synth.kinds.asked import front_in, is_comparison
+from synth.kinds.report import reported
 from synth.kinds.verify import unpack
 from synth.queue.records import NOTHING, Record, Sources
 from synth.results import ParetoFront
 from synth.results.drawings import PLOT, can_make, report
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import load_front
+from synth.verbs.request import in_request, known_keys
+from synth.verbs.requests import FrontReportRequest
 
 __all__ = ["ExtraNeededError", "UnknownFileError", "files_of", "files_to_have", "render"]
 
@@ -94,7 +96,7 @@ def render(
     InputError
         An option is wrong.
     """
-    given = checked_keys(options or {}, OPTIONS)
+    given = known_keys(options or {}, OPTIONS)
     if name not in files_of(kind, records):
         raise UnknownFileError(name)
     if name in records:
@@ -104,7 +106,7 @@ def render(
     if name == EXPLORED:
         return Record.of(name, _explored(records))
     if name == EXPLORER:
-        files, _ = reported(records, ReportAsked.read({**given, "formats": ["explorer"]}), sources)
+        files, _ = reported(records, _request(given, "explorer"), sources)
         return Record.of(name, files[name])
     if is_comparison(records):
         return Record.of(name, _report(records, name, given, sources))
@@ -123,9 +125,13 @@ def render(
     return Record.of(name, _report(records, name, given, sources))
 
 
+def _request(given: Mapping[str, Any], form: str) -> FrontReportRequest:
+    return FrontReportRequest.read({**given, "formats": [form]}, in_request)
+
+
 def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, Any], sources: Sources) -> bytes:
     """Return one file of a report of a front."""
-    files, notes = reported(records, ReportAsked.read({**given, "formats": [name.rsplit(".", 1)[-1]]}), sources)
+    files, notes = reported(records, _request(given, name.rsplit(".", 1)[-1]), sources)
     if name not in files:
         raise UnknownFileError(notes[-1] if notes else name)  # a design that cannot be drawn
     return files[name]

@@ -5,29 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth.errors import whole_number
-from synth.kinds.asked import (
-    FAMILY,
-    OF,
-    by_name,
-    checked_keys,
-    front_of,
-    of_files,
-    question_record,
-    read_json,
-    seconds,
-    seed,
-    told,
-)
-from synth.kinds.request_schemas import keys_of
+from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
 from synth.order.feasibility import Status
 from synth.queue.records import Posed, Record, Sources, Tell
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
-from synth.text.input_limits import INPUT_LIMITS
+from synth.verbs.requests import NearEqualsRequest
 
 MAIN = "near_equals.json"
-KEYS = keys_of("near_equals")
-USUAL: Mapping[str, Any] = {"design": 1, "within": "2 %", "count": 5}
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -38,34 +22,30 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    given = {**USUAL, **checked_keys(request, KEYS)}
-    front, _ = front_of(given, sources)
-    rank = whole_number(given["design"], "design", INPUT_LIMITS.points, path=("design",))
-    chosen_design(front, rank)
-    read_share(given["within"])
-    count = whole_number(given["count"], "count", INPUT_LIMITS.listed, path=("count",))
-    limit = seconds(given.get("time_limit"))
-    stated = {key: given[key] for key in (OF, FAMILY) if key in given}
-    stated |= {"design": rank, "within": given["within"], "count": count, "seed": seed(given.get("seed"))}
+    of, asked = about_front(request, NearEqualsRequest)
+    front, _ = front_of(of, sources)
+    chosen_design(front, asked.design)
+    read_share(asked.within)
     return Posed(
-        request={**stated, **({} if limit is None else {"time_limit": limit})},
-        title=f"Near equals within {given['within']} of design {rank}: {front.frame.title}",
+        request={**of.to_json(), **asked.to_json()},
+        title=f"Near equals within {asked.within} of design {asked.design}: {front.frame.title}",
         families=(front.frame.family,),
     )
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Find what is nearly as good."""
-    front, tables = front_of(request, sources)
+    of, asked = about_front(request, NearEqualsRequest)
+    front, tables = front_of(of, sources)
     found = near_equals(
         front,
-        request["design"],
-        request["within"],
-        count=request["count"],
+        asked.design,
+        asked.within,
+        count=asked.count,
         catalogs=tables,
-        seed=request["seed"],
+        seed=asked.seed,
         progress=told(tell),
-        time_limit=request.get("time_limit"),
+        time_limit=asked.time_limit,
     )
     return {**of_files(found.files()), **by_name(question_record("near_equals", request, sources))}
 

@@ -3,28 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from synth.kinds.asked import (
-    FAMILY,
-    OF,
-    by_name,
-    checked_keys,
-    front_of,
-    of_files,
-    question_record,
-    read_json,
-    seconds,
-    told,
-)
-from synth.kinds.request_schemas import keys_of
+from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
 from synth.order.feasibility import Status
 from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
 from synth.studies.prices.run import chosen_designs, prices, read_step
+from synth.verbs.requests import PricesRequest
 
 MAIN = "prices.json"
-KEYS = keys_of("prices")
-STEP = "1 %"
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -35,31 +23,22 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    given = checked_keys(request, KEYS)
-    front, _ = front_of(given, sources)
-    ranks = [int(d.rank or 0) for d in chosen_designs(front, given.get("design"))]
-    step = given.get("step", STEP)
-    read_step(step)
-    limit = seconds(given.get("time_limit"))
-    stated = {key: given[key] for key in (OF, FAMILY) if key in given}
+    of, asked = about_front(request, PricesRequest)
+    front, _ = front_of(of, sources)
+    ranks = tuple(int(d.rank or 0) for d in chosen_designs(front, asked.design))
+    read_step(asked.step)
     return Posed(
-        request={**stated, "design": ranks, "step": step, **({} if limit is None else {"time_limit": limit})},
-        title=f"Prices: {front.frame.title}, {step}",
+        request={**of.to_json(), **replace(asked, design=ranks).to_json()},
+        title=f"Prices: {front.frame.title}, {asked.step}",
         families=(front.frame.family,),
     )
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Tell what a per cent of everything costs."""
-    front, tables = front_of(request, sources)
-    found = prices(
-        front,
-        list(request["design"]),
-        request["step"],
-        catalogs=tables,
-        progress=told(tell),
-        time_limit=request.get("time_limit"),
-    )
+    of, asked = about_front(request, PricesRequest)
+    front, tables = front_of(of, sources)
+    found = prices(front, asked.design, asked.step, catalogs=tables, progress=told(tell), time_limit=asked.time_limit)
     return {**of_files(found.files()), **by_name(question_record("prices", request, sources))}
 
 

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from synth.analysis.design_spec import given_design, must_be_a_design
 from synth.errors import InputError
 from synth.kinds.asked import (
-    FAMILY,
-    OF,
-    WHERE,
+    about_front,
     by_name,
     catalogs_of,
-    checked_keys,
     digests,
     front_of,
     of_files,
     question_record,
     read_json,
-    seconds,
     told,
     words,
 )
-from synth.kinds.request_schemas import DESIGN, RATED
 from synth.model.problem import DesignProblem
 from synth.order.feasibility import Status
+from synth.question.request_fields import FIELDS
 from synth.question.spec import spec_from_mapping
 from synth.question.uncertainty import read_block
 from synth.queue.records import Posed, Record, Sources, Tell
@@ -36,10 +33,11 @@ from synth.results.ratings import NOT_SHOWN, YES
 from synth.robust.rate import rate, rater_for
 from synth.studies.prices.run import chosen_designs
 from synth.tables.catalogs import Catalogs
+from synth.verbs.request import WHERE, in_request, known_keys
+from synth.verbs.requests import OF, RateRequest
 
 MAIN = "rating.json"
 ROBUST = "robust"
-OF_JOB, OF_DESIGN = (tuple(schema["properties"]) for schema in (RATED, DESIGN))
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -50,29 +48,28 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    designs, problem, tables, block, frame = _designs(request, sources)
-    limit = seconds(request.get("time_limit"))
-    scattering = read_block(block)
-    rater_for(frame, scattering, problem, tables)
-    stated: dict[str, Any] = {key: request[key] for key in (OF, FAMILY) if request.get(key) is not None}
-    if OF in request:
-        stated["design"] = [int(d.rank or 0) for d in designs]
-    else:
-        stated = {str(k): plain(v) for k, v in request.items() if v is not None and k not in (ROBUST, "time_limit")}
-    stated |= {ROBUST: plain(block), **({} if limit is None else {"time_limit": limit})}
+    given = _designs(request, sources)
+    scattering = read_block(given.block)
+    rater_for(given.frame, scattering, given.problem, given.tables)
+    stated = {**given.stated, ROBUST: plain(given.block)}
     return Posed(
-        request=stated,
-        title=f"Rating: {frame.title}, {', '.join(map(words, scattering.names))}",
-        families=(frame.family,),
+        request=stated if given.time_limit is None else {**stated, "time_limit": given.time_limit},
+        title=f"Rating: {given.frame.title}, {', '.join(map(words, scattering.names))}",
+        families=(given.frame.family,),
         tables=digests(stated.get("catalogs"), sources),
     )
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Rate the designs."""
-    designs, problem, tables, block, _ = _designs(request, sources)
+    given = _designs(request, sources)
     found = rate(
-        designs, block, problem=problem, catalogs=tables, progress=told(tell), time_limit=request.get("time_limit")
+        given.designs,
+        given.block,
+        problem=given.problem,
+        catalogs=given.tables,
+        progress=told(tell),
+        time_limit=given.time_limit,
     )
     return {**of_files(found.files()), **by_name(question_record("rate", request, sources))}
 
@@ -95,23 +92,57 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     }
 
 
-def _designs(
-    request: Mapping[str, Any], sources: Sources
-) -> tuple[list[Design], DesignProblem | None, Catalogs, dict[str, Any], Frame]:
-    """Return the designs that are meant, their problem where it is known, tables, what scatters, and their frame."""
+@dataclass(frozen=True, kw_only=True)
+class _Given:
+    """Designs that are rated: their problem where it is known, their tables, what scatters, and how it is stored."""
+
+    designs: list[Design]
+    problem: DesignProblem | None = None
+    tables: Catalogs
+    block: dict[str, Any]
+    frame: Frame
+    stated: dict[str, Any]
+    time_limit: float | None
+
+
+def _designs(request: Mapping[str, Any], sources: Sources) -> _Given:
     if isinstance(request, Mapping) and request.get(OF) is not None:
-        given = checked_keys(request, OF_JOB)
-        front, tables = front_of(given, sources)
-        designs, problem, known = chosen_designs(front, given.get("design")), None, front.frame.restated.get(ROBUST)
-        frame, block = front.frame, given.get(ROBUST) or known
-    else:
-        given = checked_keys(request, OF_DESIGN)
-        tables = catalogs_of(given.get("catalogs"), sources)
-        asked = spec_from_mapping({k: v for k, v in given.items() if k != "catalogs"}, WHERE, Path())
-        must_be_a_design(asked)
-        problem, tables, design = given_design(asked, tables)
-        designs, frame, block = [design], design.frame, dict(asked.robust)
-    if not block:
+        of, asked = about_front(request, RateRequest)
+        front, tables = front_of(of, sources)
+        designs = chosen_designs(front, asked.design)
+        return _Given(
+            designs=designs,
+            tables=tables,
+            block=_block(asked.robust or front.frame.restated.get(ROBUST)),
+            frame=front.frame,
+            stated={**of.to_json(), "design": [int(d.rank or 0) for d in designs]},
+            time_limit=asked.time_limit,
+        )
+    content = known_keys(request, tuple(FIELDS))
+    tables = catalogs_of(content.get("catalogs"), sources)
+    spec = spec_from_mapping({k: v for k, v in content.items() if k != "catalogs"}, WHERE, Path())
+    must_be_a_design(spec)
+    problem, tables, design = given_design(spec, tables)
+    return _Given(
+        designs=[design],
+        problem=problem,
+        tables=tables,
+        block=_block(spec.robust),
+        frame=design.frame,
+        stated={str(k): plain(v) for k, v in content.items() if k not in (ROBUST, "time_limit")},
+        time_limit=spec.time_limit,
+    )
+
+
+def _block(stated: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What scatters.
+
+    Raises
+    ------
+    InputError
+        Nothing does.
+    """
+    if not stated:
         right = "what scatters, for example {'friction': 'catalogue range'} (the question has no robust block)"
-        raise InputError(f"{WHERE}: {ROBUST}", None, right, (ROBUST,))
-    return designs, problem, tables, dict(block), frame
+        raise InputError(in_request(ROBUST), None, right, (ROBUST,))
+    return dict(stated)

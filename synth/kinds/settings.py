@@ -36,8 +36,6 @@ class KindSettings:
         Lines of a part table that is brought: each question that names it reads them.
     told_faults : int
         Of a table that are told one by one.
-    verify_seconds : float
-        For the proof of a verification where the request says nothing.
     """
 
     interactive_steps: int = 12
@@ -52,7 +50,6 @@ class KindSettings:
     head: int = 200
     part_rows: int = 20_000
     told_faults: int = 200
-    verify_seconds: float = 120.0
 
 
 KIND_SETTINGS = KindSettings()

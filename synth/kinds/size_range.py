@@ -9,17 +9,16 @@ from typing import Any
 from synth.batches.batch import BatchResult
 from synth.batches.store import Store
 from synth.errors import Described, InputError
-from synth.kinds.asked import OF, WHERE, catalogs_of, known_keys, of_files, read_json, seconds
-from synth.kinds.request_schemas import keys_of
-from synth.question.spec_keys import shown_kind
+from synth.kinds.asked import catalogs_of, of_files, read_json
+from synth.question.request_fields import shown_kind
 from synth.queue.job_table import BATCH, LIVE
 from synth.queue.models import Job
 from synth.queue.records import Posed, Record, Sources, Tell
-from synth.variants.size_range import check_size_range, size_range
-from synth.variants.variant_settings import VARIANTS
+from synth.variants.size_range import size_range
+from synth.verbs.request import in_request, known_keys
+from synth.verbs.requests import OF, VERBS, SizeRangeRequest
 
 MAIN = "size_range.json"
-KEYS = keys_of("size_range")
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -30,11 +29,13 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    stated = known_keys(request, KEYS)  # each of its own meaning
-    asked = _asked(stated)
+    stated = known_keys(request, tuple(VERBS["size_range"].fields()))
+    asked = SizeRangeRequest.read(stated, in_request)
     job = _batch(stated.get(OF), sources)
     families = tuple(job.content["families"])
-    return Posed(request={OF: job.id, **asked}, title=f"Size range of {job.title}", families=families, bulk=True)
+    return Posed(
+        request={OF: job.id, **asked.to_json()}, title=f"Size range of {job.title}", families=families, bulk=True
+    )
 
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
@@ -49,7 +50,17 @@ def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, 
         database=sources.database,
         catalogs=catalogs_of(stated, sources) if stated else None,
     )
-    return of_files(size_range(source, **_asked(request)).files())
+    asked = SizeRangeRequest.read(request, in_request)
+    found = size_range(
+        source,
+        asked.variants,
+        asked.objective,
+        per_row=asked.per_row,
+        candidates=asked.candidates,
+        gap=asked.gap,
+        time_limit=asked.time_limit,
+    )
+    return of_files(found.files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
@@ -57,26 +68,6 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     content = read_json(records, MAIN)
     told = ("variants", "fewest", "fewest_proven", "objective", "unit", "total_excess", "gap")
     return {"outcome": "optimal", **{name: content[name] for name in told}}
-
-
-def _asked(stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Selection of the variants, as ``synth.size_range`` takes it.
-
-    Raises
-    ------
-    InputError
-        Something of it is not of its kind.
-    """
-    usual = {"variants": None, "objective": None, "per_row": None, "candidates": VARIANTS.candidates, "gap": 1e-3}
-    asked = {name: stated.get(name, value) for name, value in usual.items()}
-    asked["time_limit"] = seconds(stated.get("time_limit")) or VARIANTS.seconds
-    check_size_range(*(asked[name] for name in ("variants", "candidates", "gap", "time_limit")))
-    objective, per_row = asked["objective"], asked["per_row"]
-    if objective is not None and not isinstance(objective, str):
-        raise InputError(f"{WHERE}: objective", shown_kind(objective), "the name of a quantity", ("objective",))
-    if per_row is not None and not (isinstance(per_row, list) and all(isinstance(name, str) for name in per_row)):
-        raise InputError(f"{WHERE}: per_row", shown_kind(per_row), "a list of names of variables", ("per_row",))
-    return asked
 
 
 def _batch(job: Any, sources: Sources) -> Job:
@@ -93,6 +84,6 @@ def _batch(job: Any, sources: Sources) -> Job:
         if found is not None and found.kind == BATCH:
             if found.state in LIVE:
                 open_batch = Described(f"a batch that is {found.state}")
-                raise InputError(f"{WHERE}: {OF}", open_batch, "a batch that is done", (OF,))
+                raise InputError(in_request(OF), open_batch, "a batch that is done", (OF,))
             return found
-    raise InputError(f"{WHERE}: {OF}", None if job is None else shown_kind(job), "the id of a batch", (OF,))
+    raise InputError(in_request(OF), None if job is None else shown_kind(job), "the id of a batch", (OF,))

@@ -15,21 +15,15 @@ from typing import Any, TypeVar
 from synth.analysis.describe import described
 from synth.analysis.design_spec import given_design, must_be_a_design
 from synth.declaration import Declaration
-from synth.errors import InputError, SeveralErrors, at
+from synth.errors import InputError, SeveralErrors, at, gathered
 from synth.kinds import comparison, synthesis
 from synth.kinds.asked import (
     CATALOGS,
     FAMILY,
     MAPPINGS,
-    OF,
-    SPEC,
-    WHERE,
     catalogs_of,
     check_entry,
-    checked_keys,
     digests,
-    known_keys,
-    noted,
     settings_of,
     spec_of,
 )
@@ -43,9 +37,10 @@ from synth.question.examples import examples as all_examples
 from synth.question.names import requirement_named
 from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
+from synth.question.request_fields import FIELDS
 from synth.question.requirement_values import missing, value_of
 from synth.question.spec import spec_from_mapping
-from synth.question.spec_keys import FIELDS, asks_several, no_family
+from synth.question.spec_keys import asks_several, no_family
 from synth.question.uncertainty import read_remaining
 from synth.question.user_limits import UserLimits
 from synth.question.variable_ranges import VariableRanges
@@ -55,6 +50,8 @@ from synth.results.plain import plain
 from synth.search.question import pose
 from synth.tables.catalogs import Catalogs
 from synth.units import typed_quantity
+from synth.verbs.request import WHERE, known_keys
+from synth.verbs.requests import OF, SPEC
 
 T = TypeVar("T")
 SECTIONS = {"option": "option", "slot": "part", "objective": "objective"}  # of a form, by kind of row
@@ -114,8 +111,8 @@ def declaration(family: Any, options: Mapping[str, Any] | None = None) -> dict[s
         There is no such family or option.
     """
     with at("options"):
-        chosen = FIELDS["options"]("options", options)
-    problem = load(FIELDS["family"](FAMILY, family) if isinstance(family, str) else family, **chosen)
+        chosen = FIELDS["options"].value.read("options", options)
+    problem = load(FIELDS["family"].read(FAMILY, family) if isinstance(family, str) else family, **chosen)
     rows = [{**row, "section": _section(row)} for row in described(problem)]
     return {
         "name": problem.name,
@@ -170,7 +167,7 @@ def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
     InputError
         For everything that is wrong with it.
     """
-    given = checked_keys(design, tuple(FIELDS))
+    given = known_keys(design, tuple(FIELDS))
     tables = catalogs_of(given.get("catalogs"), sources)
     asked = spec_from_mapping({key: value for key, value in given.items() if key != "catalogs"}, WHERE, Path())
     must_be_a_design(asked)
@@ -315,7 +312,7 @@ class _Check:
         """True if an entry is of its kind; note where it is not."""
         faults: list[InputError] = []
         if value is not None:
-            with noted(faults):
+            with gathered(faults):
                 check_entry(key, value)
         self.faults += faults
         return not faults
@@ -345,7 +342,7 @@ class _Check:
         options = dict(spec.get("options") or {})
         while True:
             try:
-                problem = load(spec[FAMILY], **FIELDS["options"](WHERE, options))
+                problem = load(spec[FAMILY], **FIELDS["options"].value.read(WHERE, options))
                 problem.model(frozenset(), as_catalogs(None))
             except InputError as fault:
                 self.faults.append(fault)

@@ -13,7 +13,6 @@ from synth.kinds.asked import (
     question_of,
     question_record,
     read_json,
-    settings_of,
     spec_of,
     stated_spec,
     titled,
@@ -39,7 +38,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         For everything that is wrong with it.
     """
     spec, _ = spec_of(request, sources)
-    asked, settings = question_of(spec, sources), settings_of(spec)
+    asked, settings = question_of(spec, sources)
     checked(asked, settings)
     stated = stated_spec(asked, settings)
     return Posed(
@@ -64,7 +63,7 @@ def checked(asked: Request, settings: SearchSettings) -> None:
 
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Search the designs; every other file of a front is rendered from these records."""
-    asked, settings = question_of(request, sources), settings_of(request)
+    asked, settings = question_of(request, sources)
     front = find_front(asked, settings, told(tell))
     kept = of_files(front.files(), (FRONT_FILE, CALCULATION, OFFERED))
     return {**kept, **by_name(question_record("synthesis", request, sources))}

@@ -10,11 +10,9 @@ from typing import Any
 
 from synth.errors import at
 from synth.kinds.asked import (
-    FAMILY,
-    OF,
+    about_front,
     by_name,
     catalogs_of,
-    checked_keys,
     front_in,
     fronts_in,
     is_comparison,
@@ -22,18 +20,15 @@ from synth.kinds.asked import (
     question_record,
     read_json,
     records_of,
-    seconds,
 )
-from synth.kinds.request_schemas import keys_of
-from synth.kinds.settings import KIND_SETTINGS
 from synth.queue.records import Posed, Record, Sources, Tell
 from synth.results.front_record import FRONT_FILE, KEPT, fits
 from synth.results.verification import Verification
+from synth.verbs.requests import OF, VerifyRequest
 from synth.verification.verify import verify
 from synth.verification.verify_comparison import verify_comparison
 
 MAIN = "verification.json"
-KEYS = keys_of("verify")
 WHOLE = "all of the comparison"
 
 
@@ -45,18 +40,16 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     InputError
         For everything that is wrong with it.
     """
-    given = checked_keys(request, KEYS)
-    limit = seconds(given.get("time_limit"))
+    of, asked = about_front(request, VerifyRequest)
     with at(OF):
-        records = records_of(sources, given.get(OF))
-    stated = {key: given[key] for key in (OF, FAMILY) if key in given}
-    if is_comparison(records) and FAMILY not in given:
+        records = records_of(sources, of.of)
+    if is_comparison(records) and of.family is None:
         families, title = tuple(fronts_in(records)), WHOLE
     else:
-        front = front_in(records, given.get(FAMILY), check=False)
+        front = front_in(records, of.family, check=False)
         families, title = (front.frame.family,), front.frame.title
     return Posed(
-        request={**stated, "time_limit": KIND_SETTINGS.verify_seconds if limit is None else limit},
+        request={**of.to_json(), **asked.to_json()},
         title=f"Verification: {title}",
         families=families,
     )
@@ -65,13 +58,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Check what was saved; how far the proof is cannot be told before it ends."""
     tell({"stage": "verify", "done": 0.0, "message": ""})
-    records, limit = records_of(sources, request[OF]), float(request["time_limit"])
-    if is_comparison(records) and FAMILY not in request:
+    of, asked = about_front(request, VerifyRequest)
+    records, limit = records_of(sources, of.of), asked.time_limit
+    if is_comparison(records) and of.family is None:
         found = _comparison(records, sources, limit)
     else:
-        front = front_in(records, request.get(FAMILY), check=False)
+        front = front_in(records, of.family, check=False)
         found = verify(front, catalogs=catalogs_of(front.frame.restated.get("catalogs"), sources), time_limit=limit)
-        found = _with_kept(found, records, request.get(FAMILY))
+        found = _with_kept(found, records, of.family)
     content = {**asdict(found), "verdict": found.verdict.value, "holds": found.holds, "sentence": found.sentence()}
     return by_name(json_record(MAIN, content), question_record("verify", request, sources))
 

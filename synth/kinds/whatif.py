@@ -10,47 +10,38 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from synth.errors import InputError, at
+from synth.errors import InputError, gathered
 from synth.kinds.asked import (
-    OF,
-    SPEC,
-    WHERE,
     by_name,
     catalogs_of,
     digests,
-    flag,
     json_record,
-    noted,
     of_files,
     problem_of,
     question_of,
     question_record,
     read_json,
-    settings_of,
     spec_of,
     stated_spec,
     titled,
     told,
     words,
 )
-from synth.kinds.request_schemas import VARIED_ENDS as ENDS
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.model import Model
 from synth.order.feasibility import Status
 from synth.question.objectives import chosen_objectives
-from synth.question.request import Request
-from synth.question.settings import SearchSettings
-from synth.question.spec_keys import shown_kind
 from synth.queue.records import Posed, Record, Sources, Tell
 from synth.results.plain import plain
 from synth.studies.whatif.run import POINTS, study_of
 from synth.studies.whatif.steps import check_steps
 from synth.studies.whatif.study_record import study_record
 from synth.studies.whatif.vary import Varied, read_vary
+from synth.verbs.request import WHERE, in_request
+from synth.verbs.requests import OF, SPEC, VARIED_ENDS, WhatIfRequest
 
 MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
-VARIES = "names with values, {'load_torque': '500:700:50 N*m'}"
 
 
 def read(request: Mapping[str, Any], sources: Sources) -> Posed:
@@ -64,14 +55,15 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     if request.get(OF) is not None and request.get("points") is None:
         spec.pop("points", None)  # those of a whole front are far more than a step needs
-    asked, settings = _asked(spec, sources)
-    vary = _vary(own.get(VARY))
+    beyond = WhatIfRequest.read(own, in_request)
+    asked, settings = question_of(spec, sources, points=POINTS)
+    vary = _vary(beyond.vary)
     varied, count = check_steps(asked, settings, vary, KIND_SETTINGS.posed_steps)
     if count > KIND_SETTINGS.steps:
         raise InputError(f"{WHERE}: vary", f"{count} steps", f"at most {KIND_SETTINGS.steps} steps", (VARY,))
     stated = stated_spec(asked, settings)
     return Posed(
-        request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},
+        request={**stated, VARY: _stated_vary(beyond.vary), BREAKS: beyond.breaks},
         title=f"What if {', '.join(map(words, varied))}: {titled(asked)}",
         families=(asked.problem.name,),
         bulk=count > KIND_SETTINGS.interactive_steps,
@@ -87,17 +79,15 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     """
     spec = {key: value for key, value in request.items() if key not in (VARY, BREAKS)}
     faults: list[InputError] = []
-    with noted(faults):
-        flag(BREAKS, True if request.get(BREAKS) is None else request[BREAKS])
+    with gathered(faults):
+        WhatIfRequest.read({name: request.get(name) for name in (VARY, BREAKS)}, in_request)
     stated, vary = request.get(VARY), dict[str, Any]()
     if not isinstance(stated, Mapping) or not stated:
-        with noted(faults):
-            raise _no_vary(stated)
         return spec, faults
     for name, values in stated.items():
-        with noted(faults):
+        with gathered([]):  # of its ends: told already
             vary |= _vary({name: values})
-    with noted([]):  # of the spec: its check tells it
+    with gathered([]):  # of the spec: its check tells it
         known = {key: value for key, value in spec.items() if key in (*SPEC, OF)}
         whole, _ = spec_of(known, sources)
         tables = catalogs_of(whole.get("catalogs"), sources)
@@ -110,10 +100,10 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
         chosen = _objectives(model, whole.get("objectives"))
         found: list[Varied] = []
         for name, values in vary.items():
-            with noted(faults):
+            with gathered(faults):
                 found += read_vary({name: values}, model, chosen)
         if not faults:
-            with noted(faults):
+            with gathered(faults):
                 read_vary(vary, model, chosen)
         given |= {x.name: x.asked(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
         return {**spec, **whole, "requirements": given}, faults
@@ -123,7 +113,9 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
 def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
     """Answer all steps, and find where the best parts or counts change."""
     spec, own = spec_of(request, sources, (VARY, BREAKS))
-    study = study_of(*_asked(spec, sources), _vary(own[VARY]), told(tell), bool(own.get(BREAKS, True)))
+    beyond = WhatIfRequest.read(own, in_request)
+    question = question_of(spec, sources, points=POINTS)
+    study = study_of(*question, _vary(beyond.vary), told(tell), beyond.breaks)
     main = json_record(MAIN, study_record(study))
     return {**of_files(study.files()), **by_name(main, question_record("whatif", request, sources))}
 
@@ -149,10 +141,6 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     }
 
 
-def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSettings]:
-    return question_of(spec, sources), settings_of(spec, points=POINTS)
-
-
 def _objectives(model: Model, stated: Any) -> list[str]:
     """Return the objectives of a spec; where they are wrong, which its check tells, those of the family."""
     try:
@@ -161,32 +149,13 @@ def _objectives(model: Model, stated: Any) -> list[str]:
         return list(chosen_objectives(model, None))
 
 
-def _vary(stated: Any) -> dict[str, Any]:
-    """Varied quantity as the verb takes it.
-
-    Raises
-    ------
-    InputError
-        It is no mapping, or ends and a count are not stated as such.
-    """
-    if not isinstance(stated, Mapping):
-        raise _no_vary(stated)
-    found = dict[str, Any]()
-    for name, values in stated.items():
-        with at(VARY, str(name)):
-            found[str(name)] = _ends(values) if isinstance(values, Mapping) else values
-    return found
-
-
-def _no_vary(stated: Any) -> InputError:
-    return InputError(f"{WHERE}: vary", None if stated is None else shown_kind(stated), VARIES, (VARY,))
+def _vary(stated: Mapping[str, Any]) -> dict[str, Any]:
+    """Varied quantity as the verb takes it: ends and a count as a tuple."""
+    return {str(name): _ends(values) if isinstance(values, Mapping) else values for name, values in stated.items()}
 
 
 def _ends(values: Mapping[str, Any]) -> tuple[Any, ...]:
-    if set(values) != set(ENDS):
-        right = "a text or list of values, or {'from': '200 mm', 'to': '300 mm', 'count': 11}"
-        raise InputError(f"{WHERE}: vary", ", ".join(map(str, values)), right)
-    return tuple(values[key] for key in ENDS)
+    return tuple(values[key] for key in VARIED_ENDS)
 
 
 def _stated_vary(stated: Mapping[str, Any]) -> dict[str, Any]:
@@ -194,7 +163,7 @@ def _stated_vary(stated: Mapping[str, Any]) -> dict[str, Any]:
 
     def entry(values: Any) -> Any:
         if isinstance(values, Mapping):
-            return {key: values[key] for key in ENDS}
+            return {key: values[key] for key in VARIED_ENDS}
         return plain(list(values) if isinstance(values, Sequence) and not isinstance(values, str) else values)
 
     return {str(name): entry(values) for name, values in stated.items()}

@@ -8,7 +8,7 @@ from typing import Any
 
 from synth.errors import InputError
 from synth.model.model import Model
-from synth.question.spec_keys import is_number, shown_kind
+from synth.question.request_fields import is_number, shown_kind
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:

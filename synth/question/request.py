@@ -15,7 +15,8 @@ from synth.model.registry import load
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.question.count_domain import stated
 from synth.question.names import as_mapping
-from synth.question.spec_keys import ASKED, read_keys, refuse_several, refuse_values
+from synth.question.request_fields import ASKED
+from synth.question.spec_keys import read_keys, refuse_several, refuse_values
 from synth.question.uncertainty import Uncertainty, read_remaining
 from synth.tables.catalogs import Catalogs
 

@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from synth.errors import InputError, whole_number
-from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_gap, is_number, read_keys
+from synth.question.request_fields import GAP_EXPECTED, SEARCHED, is_gap, is_number
+from synth.question.spec_keys import read_keys
 from synth.text.input_limits import INPUT_LIMITS
 
 Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...

@@ -11,16 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from synth.errors import Described, InputError, at
+from synth.errors import Described, InputError
 from synth.folders.files import read_bytes
-from synth.question.spec_keys import (
-    ASKED,
-    FIELDS,
-    SEARCHED,
-    asks_several,
-    hint_at_key,
-    read_keys,
-)
+from synth.question.request_fields import ASKED, FIELDS, SEARCHED
+from synth.question.spec_keys import asks_several, hint_at_key, read_keys
 from synth.text.input_limits import INPUT_LIMITS
 
 if TYPE_CHECKING:
@@ -82,8 +76,7 @@ class Spec:
         for key, value in given.items():
             if key not in FIELDS:
                 raise InputError("flag", key, hint_at_key(key))
-            with at(key):
-                given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
+            given[key] = FIELDS[key].read(f"--{key.replace('_', '-')}", value)
         return replace(self, **given)
 
     def request(self) -> Request:

@@ -14,14 +14,18 @@ def patched(spec: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]
     spec : mapping
         Keys of a spec, such as ``requirements`` and ``limits``.
     patch : mapping
-        Some of these keys, each with the entries that change; every other entry stays.
+        Some of these keys, each with the entries that change; every other entry stays. What is a mapping in one of
+        both alone is replaced as a whole.
 
     Examples
     --------
     >>> patched({"limits": {"mass": "<= 5 kg", "length": "<= 1 m"}, "points": 3}, {"limits": {"mass": "<= 6 kg"}})
     {'limits': {'mass': '<= 6 kg', 'length': '<= 1 m'}, 'points': 3}
+    >>> patched({"objectives": ["mass", "length"]}, {"objectives": {"mass": "min"}})
+    {'objectives': {'mass': 'min'}}
     """
     result = dict(spec)
     for key, entries in patch.items():
-        result[key] = {**(spec.get(key) or {}), **entries} if isinstance(entries, Mapping) else entries
+        before = spec.get(key)
+        result[key] = {**before, **entries} if isinstance(before, Mapping) and isinstance(entries, Mapping) else entries
     return result

@@ -47,6 +47,7 @@ from synth.system.deadline import Stopped, until
 from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import percent, thousands, typed_number
 from synth.units import parse_quantity
+from synth.verbs.requests import NearEqualsRequest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -143,14 +144,14 @@ class NearEquals:
 def near_equals(
     front: ParetoFront,
     design: int | Design,
-    within: Any = "2 %",
+    within: Any = NearEqualsRequest.within,
     *,
-    count: int = 5,
+    count: int = NearEqualsRequest.count,
     problem: Any = None,
     catalogs: Any = None,
-    seed: int = 0,
+    seed: int = NearEqualsRequest.seed,
     progress: Callable[[Mapping[str, Any]], None] | None = None,
-    time_limit: float | None = None,
+    time_limit: float | None = NearEqualsRequest.time_limit,
 ) -> NearEquals:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one.
 

@@ -24,6 +24,7 @@ from synth.terminal.options import (
     RowFamily,
     RowPoints,
     RowsFolder,
+    RowTime,
     Seed,
     VisibleRows,
 )
@@ -83,9 +84,7 @@ def batch(
     gap: Gap = None,
     grid: Grid[bool] = True,
     seed: Seed[int] = 0,
-    time_limit: Annotated[
-        str | None, typer.Option(help="Stop each row after this time, in seconds or such as '2 min'.")
-    ] = None,
+    time_limit: RowTime = None,
     objective: Objectives = None,
     catalogs: Annotated[Path | None, typer.Option(help="Folder with your own tables.", metavar="DIR")] = None,
     workers: Workers = None,

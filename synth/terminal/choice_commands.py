@@ -12,7 +12,7 @@ from synth.errors import derived
 from synth.folders.csv_style import CsvStyle, csv_style
 from synth.folders.output_folder import EXPLANATION_TEXT, FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
 from synth.results.drawings import PLOT
-from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, Seed, TimeLimit
+from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, takes
 from synth.terminal.session import (
     HELPS,
     INFEASIBLE,
@@ -25,6 +25,7 @@ from synth.terminal.session import (
     tell_readings,
     tell_written,
 )
+from synth.verbs.requests import NearEqualsRequest, PricesRequest
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -36,15 +37,12 @@ def register(app: typer.Typer) -> None:
     app.command(name="prices")(prices)
 
 
+@takes(NearEqualsRequest)
 def near_equals(
+    asked: NearEqualsRequest,
     *,
     source: FrontFolder,
     folder: Folder = None,
-    design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
-    within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
-    count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
-    seed: Seed[int] = 0,
-    time_limit: TimeLimit = None,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -55,12 +53,18 @@ def near_equals(
     from synth.studies.near_optimal import near_equals as find
     from synth.terminal.choice_console import print_near_equals
     from synth.terminal.console import output, progress_display
-    from synth.units import parse_quantity
 
-    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     front = load_front(source)
     with progress_display(quiet) as progress:
-        found = find(front, design, within, count=count, seed=seed, progress=progress, time_limit=seconds)
+        found = find(
+            front,
+            asked.design,
+            asked.within,
+            count=asked.count,
+            seed=asked.seed,
+            progress=progress,
+            time_limit=asked.time_limit,
+        )
     target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_near_equals(found, output())
@@ -71,15 +75,12 @@ def near_equals(
         raise typer.Exit(INFEASIBLE)
 
 
+@takes(PricesRequest)
 def prices(
+    asked: PricesRequest,
     *,
     source: FrontFolder,
     folder: Folder = None,
-    design: Annotated[
-        list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
-    ] = None,
-    step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
-    time_limit: TimeLimit = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
     csv: Csv = "en",
     quiet: Quiet = False,
@@ -92,13 +93,11 @@ def prices(
     from synth.studies.prices.run import prices as find
     from synth.terminal.choice_console import print_prices
     from synth.terminal.console import output, progress_display
-    from synth.units import parse_quantity
 
-    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     front = load_front(source)
     with progress_display(quiet) as progress:
         try:
-            found = find(front, design or None, step, progress=progress, time_limit=seconds, folder=folder)
+            found = find(front, asked.design, asked.step, progress=progress, time_limit=asked.time_limit, folder=folder)
         except KeyboardInterrupt:
             tell("stopped before the first design was begun; nothing is written")
             raise typer.Exit(STOPPED) from None
@@ -122,7 +121,7 @@ def show_common() -> None:
 
 def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool, plot: bool, csv: CsvStyle) -> None:
     """Search the families of a spec, show their common front and save it where a folder is named; end as ``run``."""
-    from synth.question.spec_keys import ASKED, SEARCHED
+    from synth.question.request_fields import ASKED, SEARCHED
     from synth.studies.families.compare import compare
     from synth.tables.catalogs import Catalogs
     from synth.terminal.choice_console import comparison_explanation, how_long, print_comparison

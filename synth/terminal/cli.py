@@ -42,11 +42,14 @@ from synth.terminal.options import (
     Grid,
     Objectives,
     Plot,
+    Points,
     Quiet,
     Seed,
     SpecFile,
+    Threads,
     TimeLimit,
     VisibleRows,
+    takes,
 )
 from synth.terminal.plots import show_plot
 from synth.terminal.session import (
@@ -75,6 +78,7 @@ from synth.terminal.session import (
 )
 from synth.text.notices import listening
 from synth.text.plain_text import plain_streams
+from synth.verbs.requests import ExplainRequest, VerifyRequest
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
@@ -225,12 +229,12 @@ def run(
     *,
     spec: SpecFile,
     folder: Folder = None,
-    points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
+    points: Points = None,
     gap: Gap = None,
     grid: Grid[bool | None] = None,
     seed: Seed[int | None] = None,
     time_limit: TimeLimit = None,
-    workers: Annotated[int | None, typer.Option(help="Processes to use.")] = None,
+    workers: Threads = None,
     objective: Objectives = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
     more: Annotated[
@@ -298,11 +302,12 @@ def run(
 
 
 @app.command()
+@takes(ExplainRequest)
 def explain(
+    beyond: ExplainRequest,
     *,
     spec: SpecFile,
     folder: Folder = None,
-    physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
     time_limit: TimeLimit = None,
     csv: Csv = "en",
     quiet: Quiet = False,
@@ -321,7 +326,7 @@ def explain(
         request = asked.request()
         if not quiet:
             tell_readings(request.catalogs)
-        found = explanation_of(request, asked.settings(), progress, physics)
+        found = explanation_of(request, asked.settings(), progress, beyond.physics)
     if not quiet:
         print_explanation(found, request.problem.title, output())
     if folder is not None:
@@ -455,24 +460,17 @@ def curves(
 
 
 @app.command()
-def verify(
-    *,
-    folder: FrontFolder,
-    time_limit: Annotated[
-        str | None, typer.Option(help="Give the proof up after this time, in seconds or such as '2 min'.")
-    ] = None,
-) -> None:
+@takes(VerifyRequest)
+def verify(asked: VerifyRequest, *, folder: FrontFolder) -> None:
     """Check a saved front without the search: its files, every design, and the proof of the certificate."""
     from synth.results.loading import unchecked_front
     from synth.terminal.console import output, print_verification
-    from synth.units import parse_quantity
     from synth.verification.verify_comparison import is_comparison, verify_comparison
 
-    limit = {} if time_limit is None else {"time_limit": parse_quantity(time_limit, "s", "--time-limit")}
     if is_comparison(folder):
-        verification = verify_comparison(folder, **limit)
+        verification = verify_comparison(folder, asked.time_limit)
     else:
-        verification = unchecked_front(folder).verify(**limit)
+        verification = unchecked_front(folder).verify(time_limit=asked.time_limit)
     print_verification(verification, output())
     if not verification.holds:
         raise typer.Exit(DOES_NOT_HOLD if verification.findings else NOT_PROVEN)

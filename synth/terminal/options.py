@@ -2,14 +2,72 @@
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar
 
 import typer
 
+from synth.question.request_fields import FIELDS, RequestField
 from synth.text.notices import ignore_notices
+from synth.text.numbers import typed_number
+from synth.verbs.request import VerbRequest, as_flag
+from synth.verbs.requests import BatchRequest
 
 T = TypeVar("T")
+P = ParamSpec("P")
+Asked = TypeVar("Asked", bound=VerbRequest)
+
+
+def option(record: RequestField, **other: Any) -> Any:
+    """Option of the command line for a field of a request; ``other`` as for ``typer.Option``."""
+    words = {"metavar": record.metavar, "help": _help(record), **other}
+    if record.unit == "s" and record.usual is not None:
+        words["show_default"] = f"{typed_number(record.usual)} s"
+    return typer.Option(record.flag or as_flag(record.name), **words)
+
+
+def _help(record: RequestField) -> str:
+    """Help in one line; a list is given by repeating its option."""
+    text = record.help.replace("`", "")
+    return f"{text[:-1]}; repeat it." if record.value.option in (list[int], list[str]) else text
+
+
+def takes(
+    request: type[Asked],
+) -> Callable[[Callable[Concatenate[Asked, P], None]], Callable[..., None]]:
+    """Command whose options are the fields of a request; its first argument is the request that they state.
+
+    They come behind what the command is about and where its results go.
+    """
+
+    def decorated(command: Callable[Concatenate[Asked, P], None]) -> Callable[..., None]:
+        fields = {name: record for name, record in request.fields().items() if record.flag != ""}
+
+        def run(*args: P.args, **values: P.kwargs) -> None:
+            stated = {name: values.pop(name) for name in fields}
+            asked = request.read({name: value for name, value in stated.items() if value != []}, as_flag)
+            command(asked, *args, **values)
+
+        own = list(inspect.signature(command, eval_str=True).parameters.values())[1:]
+        behind = 1 + max(k for k, one in enumerate(own) if one.name in ABOUT)
+        every = [*own[:behind], *map(_parameter, fields.values()), *own[behind:]]
+        run.__signature__ = inspect.Signature(every)  # type: ignore[attr-defined]
+        run.__annotations__ = {one.name: one.annotation for one in every}
+        run.__name__, run.__doc__, run.__module__ = command.__name__, command.__doc__, command.__module__
+        return run
+
+    return decorated
+
+
+ABOUT = ("source", "spec", "folder")
+
+
+def _parameter(record: RequestField) -> inspect.Parameter:
+    typed = record.value.option if record.usual is not None else record.value.option | None
+    annotation = Annotated.__class_getitem__((typed, option(record)))  # type: ignore[attr-defined]
+    return inspect.Parameter(record.name, inspect.Parameter.KEYWORD_ONLY, default=record.usual, annotation=annotation)
 
 
 def _families(begun: str) -> list[str]:
@@ -41,19 +99,22 @@ RowsFolder = Annotated[
         "--output", "-o", help="Folder for the results; by default ROWS_batch beside the table.", metavar="DIR"
     ),
 ]
-RowFamily = Annotated[str | None, typer.Option(help="Family of the rows that name none.", metavar="FAMILY")]
+RowFamily = Annotated[str | None, option(BatchRequest.fields()["family"])]
 Headings = Annotated[
     Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
 ]
-RowPoints = Annotated[int | None, typer.Option(help="At most this many designs per row.")]
+RowPoints = Annotated[int | None, option(BatchRequest.fields()["points"])]
+RowTime = Annotated[str | None, option(BatchRequest.fields()["time_limit"])]
+Points = Annotated[int | None, option(FIELDS["points"])]
 Encoding = Annotated[
     str | None, typer.Option(help="Of CSV files where it is not recognised, such as cp1250.", metavar="NAME")
 ]
 VisibleRows = Annotated[bool, typer.Option("--visible-rows", help="Leave out hidden and filtered rows of workbooks.")]
-Gap = Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")]
-Grid = Annotated[T, typer.Option("--grid/--no-grid", help="Makeable sizes only.")]
-Seed = Annotated[T, typer.Option(help="Seed of the random starts.")]
-TimeLimit = Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")]
+Gap = Annotated[float | None, option(FIELDS["gap"])]
+Grid = Annotated[T, option(FIELDS["grid"])]
+Seed = Annotated[T, option(FIELDS["seed"])]
+TimeLimit = Annotated[str | None, option(FIELDS["time_limit"])]
+Threads = Annotated[int | None, option(FIELDS["workers"])]
 Objectives = Annotated[
     list[str] | None,
     typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),

@@ -10,14 +10,15 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal.batch_commands import Database
-from synth.terminal.options import Quiet
+from synth.terminal.options import Quiet, option
 from synth.terminal.session import BAD_INPUT, INFEASIBLE, check_output, tell, tell_readings, tell_written
+from synth.verbs.requests import FrontReportRequest
 
 if TYPE_CHECKING:
     from synth.analysis.reporting import WrittenReport
     from synth.results.report_request import ReportOptions
 
-FULL = 5  # designs that a report tells in full unless it is told otherwise
+FIELDS = FrontReportRequest.fields()
 FILES = (".yaml", ".yml", ".json")
 SUMMARY, JOBS = "batch.json", "jobs.sqlite"  # by which the folder of a batch is known
 OPTION = {"svg": "drawing"}  # of formats that are called otherwise
@@ -38,10 +39,10 @@ def report(
         typer.Option("--output", "-o", help="Folder for the files, by default that of the source.", metavar="DIR"),
     ] = None,
     design: Annotated[
-        str | None, typer.Option(help="Designs that get sheets, such as 1,3,knee; by default the first.")
+        str | None, option(FIELDS["design"], help="Designs that get sheets, such as 1,3,knee; by default the first.")
     ] = None,
     full: Annotated[
-        int | None, typer.Option(help="Designs that report.html tells in full, 5 by default.", min=0)
+        int | None, option(FIELDS["full"], help="Designs that report.html tells in full, 5 by default.", min=0)
     ] = None,
     row: Annotated[
         str | None,
@@ -62,7 +63,7 @@ def report(
     about: Annotated[
         Path | None, typer.Option(help="YAML: project, customer, number, author, date, ...", metavar="FILE")
     ] = None,
-    length: Annotated[str, typer.Option(help="Of the sheets: summary, normal or full.")] = "normal",
+    length: Annotated[str, option(FIELDS["length"])] = FrontReportRequest.length,
     fonts: Annotated[
         list[Path] | None,
         typer.Option("--font-path", help="A font, or a folder of fonts, for PDF; repeat it.", metavar="PATH"),
@@ -98,7 +99,7 @@ def report(
     )
     if _is_batch(source):
         _refuse(flags, "no option of fronts alone: a batch has report.html, --pdf and --xlsx", ("--pdf", "--xlsx"))
-        if length != "normal":
+        if length != FrontReportRequest.length:
             raise InputError("--length", length, "the folder of a front with it: a batch has no sheets")
         target = folder or source
         written = _of_batch(source, target, row, how, database)
@@ -112,7 +113,7 @@ def report(
         written = _of_design(source, target, how, quiet)
     else:
         target = folder or (source if source.is_dir() else source.parent)
-        written = _of_front(source, target, design or "1", FULL if full is None else full, how)
+        written = _of_front(source, target, design or "1", FrontReportRequest.full if full is None else full, how)
     if not quiet:
         tell_written(written.folder, target, written.files)
     for note in (*written.notes, *map(str, written.lacking)):

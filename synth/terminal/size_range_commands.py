@@ -12,8 +12,9 @@ from synth.folders.output_folder import SIZE_RANGE, save_result
 from synth.results.drawings import report
 from synth.tables.table_file import read_as
 from synth.terminal.batch_commands import Database, Workers, batch_job, finish
-from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowFamily, RowPoints, VisibleRows
+from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowFamily, RowPoints, VisibleRows, takes
 from synth.terminal.session import STOPPED, claim_output, rows_folder, tell_written
+from synth.verbs.requests import SizeRangeRequest
 
 
 def register(app: typer.Typer) -> None:
@@ -21,26 +22,13 @@ def register(app: typer.Typer) -> None:
     app.command(name="size-range")(size_range)
 
 
+@takes(SizeRangeRequest)
 def size_range(
+    asked: SizeRangeRequest,
     *,
     source: Annotated[
         Path, typer.Argument(help="The folder of a batch, or a table of rows to run first.", metavar="DIR|ROWS.csv")
     ],
-    variants: Annotated[
-        int | None, typer.Option(help="How many variants; by default the fewest that serve all rows.")
-    ] = None,
-    objective: Annotated[
-        str | None, typer.Option(help="What should exceed each row's own best as little as possible.", metavar="NAME")
-    ] = None,
-    per_row: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--per-row", help="A variable that each row decides, no part of a variant; repeat it.", metavar="NAME"
-        ),
-    ] = None,
-    candidates: Annotated[int, typer.Option(help="Consider at most about this many designs.")] = 500,
-    gap: Annotated[float, typer.Option(help="How far from proven the choice may be, as a fraction.")] = 1e-3,
-    time_limit: Annotated[str, typer.Option(help="Time for choosing, in seconds or such as '2 min'.")] = "60",
     folder: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Folder for the results; by default DIR or ROWS_batch.", metavar="DIR"),
@@ -56,17 +44,15 @@ def size_range(
     quiet: Quiet = False,
 ) -> None:
     """Choose the standard variants that serve all feasible rows of a batch."""
-    from synth.units import parse_quantity
     from synth.variants.size_range import size_range as choose
 
     style = csv_style(csv, "--csv")
-    seconds = parse_quantity(time_limit, "s", "--time-limit")
     job_id = None
     if not source.is_dir():
         place = rows_folder(source, folder)
-        asked = None if objective is None else [objective]
+        objectives = None if asked.objective is None else [asked.objective]
         rows = Path(read_as(str(source), encoding, visible_rows))
-        job = batch_job(rows, place, family, mapping, points, None, True, 0, None, asked, None, database, style)
+        job = batch_job(rows, place, family, mapping, points, None, True, 0, None, objectives, None, database, style)
         job_id = job.id
         code = finish(lambda: job, workers, None, quiet, named=folder is not None)
         if code == STOPPED:
@@ -76,12 +62,12 @@ def size_range(
     claim_output(target)
     found = choose(
         source,
-        variants,
-        objective,
-        per_row=per_row or None,
-        candidates=candidates,
-        gap=gap,
-        time_limit=seconds,
+        asked.variants,
+        asked.objective,
+        per_row=asked.per_row,
+        candidates=asked.candidates,
+        gap=asked.gap,
+        time_limit=asked.time_limit,
         database=database,
         job=job_id,
     )

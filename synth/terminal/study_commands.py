@@ -11,7 +11,8 @@ from synth.analysis.design_spec import must_be_a_question, must_be_one_family
 from synth.errors import InputError
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import STUDY
-from synth.terminal.options import Csv, Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
+from synth.question.request_fields import FIELDS
+from synth.terminal.options import Csv, Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, Threads, option
 from synth.terminal.session import (
     INFEASIBLE,
     STOPPED,
@@ -23,6 +24,7 @@ from synth.terminal.session import (
     tell_readings,
     tell_written,
 )
+from synth.verbs.requests import WhatIfRequest
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -47,19 +49,19 @@ def whatif(
     ],
     folder: Folder = None,
     points: Annotated[
-        int | None, typer.Option(help="At most this many designs per step; 3 unless the spec says otherwise.")
+        int | None,
+        option(FIELDS["points"], help="At most this many designs per step; 3 unless the spec says otherwise."),
     ] = None,
     gap: Gap = None,
     grid: Grid[bool | None] = None,
     seed: Seed[int | None] = None,
     time_limit: Annotated[
-        str | None, typer.Option(help="Stop after this time for all steps, in seconds or such as '2 min'.")
+        str | None,
+        option(FIELDS["time_limit"], help="Stop after this time for all steps, in seconds or such as '2 min'."),
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Threads to use.")] = None,
+    workers: Threads = None,
     objective: Objectives = None,
-    breaks: Annotated[
-        bool, typer.Option("--breaks/--no-breaks", help="Find where the best parts or counts change.")
-    ] = True,
+    breaks: Annotated[bool, option(WhatIfRequest.fields()["breaks"])] = WhatIfRequest.breaks,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:

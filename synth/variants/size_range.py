@@ -17,7 +17,7 @@ from synth.batches.batch import BatchResult
 from synth.batches.batch_folder import job_of_folder, opened_batch
 from synth.batches.outputs import SHORT, explanation_of, status_of
 from synth.batches.store import Store
-from synth.errors import InputError, whole_number
+from synth.errors import InputError
 from synth.folders.csv_style import ENGLISH, CsvStyle
 from synth.folders.files import csv_text, frame_csv
 from synth.folders.output_folder import SIZE_RANGE, save_result
@@ -25,11 +25,11 @@ from synth.model.model import Model
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
 from synth.results import cell_value
-from synth.text.input_limits import INPUT_LIMITS
 from synth.units import header
 from synth.variants.coverage import ServedQuestion, SharedModel, Variant, objective_of_pairs, pinned_by_all
 from synth.variants.p_median import Chooser, Medians
 from synth.variants.variant_settings import VARIANTS, VariantSettings
+from synth.verbs.requests import SizeRangeRequest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -116,9 +116,9 @@ def size_range(
     objective: str | None = None,
     *,
     per_row: Sequence[str] | None = None,
-    candidates: int = VARIANTS.candidates,
-    gap: float = 1e-3,
-    time_limit: float = VARIANTS.seconds,
+    candidates: int = SizeRangeRequest.candidates,
+    gap: float = SizeRangeRequest.gap,
+    time_limit: float = SizeRangeRequest.time_limit,
     database: str | None = None,
     job: str | None = None,
 ) -> SizeRange:
@@ -152,7 +152,7 @@ def size_range(
     InputError
         There is no such batch, or so few variants cannot serve all rows.
     """
-    check_size_range(variants, candidates, gap, time_limit)
+    SizeRangeRequest.read({"variants": variants, "candidates": candidates, "gap": gap, "time_limit": time_limit})
     started = time.monotonic()
     if isinstance(source, BatchResult):
         database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
@@ -188,22 +188,6 @@ def size_range(
         "seconds": {"evaluate": evaluated, "choose": time.monotonic() - begin},
     }
     return batch.result(choice, chosen_from, costs, values, points, (fewest, bound), statistics)
-
-
-def check_size_range(variants: Any, candidates: Any, gap: Any, time_limit: Any) -> None:
-    """Refuse numbers with which no size range can be asked.
-
-    Raises
-    ------
-    InputError
-    """
-    if variants is not None:
-        whole_number(variants, "variants", INPUT_LIMITS.listed, path=("variants",))
-    whole_number(candidates, "candidates", INPUT_LIMITS.listed, path=("candidates",))
-    if not isinstance(gap, (int, float)) or isinstance(gap, bool) or not 0 <= gap < 1:
-        raise InputError("gap", gap, "a fraction from 0 to below 1, for example 0.001")
-    if not isinstance(time_limit, (int, float)) or isinstance(time_limit, bool) or not 0 < time_limit < math.inf:
-        raise InputError("time_limit", time_limit, "a positive number of seconds")
 
 
 class _Batch:

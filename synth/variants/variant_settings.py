@@ -61,10 +61,6 @@ class VariantSettings:
     medians : MedianSettings
     pairs : int
         Of questions and variants that are evaluated at a time: what memory allows. The result is the same.
-    candidates : int
-        Designs that are considered, where nothing else is asked.
-    seconds : float
-        For choosing, where nothing else is said.
     sample : int
         Questions on which candidates are tried where there are too many of them.
     curve_points : int
@@ -73,8 +69,6 @@ class VariantSettings:
 
     medians: MedianSettings = field(default_factory=MedianSettings)
     pairs: int = 40_000
-    candidates: int = 500
-    seconds: float = 60.0
     sample: int = 400
     curve_points: int = 40
 

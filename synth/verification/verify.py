@@ -49,6 +49,7 @@ from synth.special import expanded
 from synth.text.numbers import gap_text, percent, typed_number
 from synth.text.plain_text import counted
 from synth.units import typed_quantity
+from synth.verbs.requests import VerifyRequest
 from synth.verification.contradictions import contradiction
 from synth.verification.pareto_regions import uncovered
 from synth.verification.ranking import ranking_faults
@@ -64,7 +65,7 @@ def verify(
     front: ParetoFront,
     problem: str | type[DesignProblem] | DesignProblem | None = None,
     catalogs: Any = None,
-    time_limit: float = 120.0,
+    time_limit: float = VerifyRequest.time_limit,
 ) -> Verification:
     """Check a front without help of the search that made it.
 

@@ -1,4 +1,4 @@
-"""Lists of families in README, docs and examples, from the registry and the families' pages: ``make lists``.
+"""Lists of families and requests in README, docs and examples: ``make lists``.
 
 The page of a family tells what stands in the lists, in a comment below its heading::
 
@@ -19,6 +19,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import synth
+from synth.question.request_fields import RequestField
+from synth.text.numbers import typed_number
+from synth.verbs.requests import VERBS, Verb
 from tests.shipped import FAMILIES
 
 ROOT = Path(__file__).parents[2]
@@ -91,7 +94,34 @@ def lists() -> list[Written]:
             "$ ",
             "".join(f"{e.name:{wide}s}  {e.title}\n" for e in entries),
         ),
+        requests(),
     ]
+
+
+def requests() -> Written:
+    """Table of the requests of jobs, from the records of the verbs."""
+    rows = [f"| `{verb.name}` | {verb.about.value} | {taken(verb)} |\n" for verb in VERBS.values()]
+    begin, end = "<!-- requests: written by `make lists` -->\n", "<!-- end of requests -->\n"
+    return Written("docs/rest.md", begin, end, "| kind | about | takes |\n|---|---|---|\n" + "".join(rows))
+
+
+def taken(verb: Verb) -> str:
+    """What a verb takes beside its subject, with defaults."""
+    fields = [one for one in verb.request.fields().values() if one.name not in ("upload", "rows")]
+    return (
+        "; ".join(f"`{one.name}`{defaulted(one)}: {one.help[0].lower()}{one.help[1:-1]}" for one in fields)
+    ) or "nothing more"
+
+
+def defaulted(record: RequestField) -> str:
+    """Default of a field in brackets, where there is one."""
+    if record.usual is None:
+        return ""
+    usual = record.usual
+    shown = ", ".join(usual) if isinstance(usual, tuple) else str(usual).lower()
+    if isinstance(usual, float):
+        shown = typed_number(usual)
+    return f" ({shown}{'' if record.unit == '-' else f' {record.unit}'})"
 
 
 def links() -> dict[Path, str]:

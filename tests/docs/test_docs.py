@@ -31,7 +31,7 @@ import pytest
 import synth
 import synth.results.front
 from synth.analysis.describe import describe
-from synth.question.spec_keys import FIELDS
+from synth.question.request_fields import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
 from tests.docs import lists, mechanics_page

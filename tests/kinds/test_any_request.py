@@ -14,14 +14,15 @@ from hypothesis import strategies as st
 
 from synth.errors import ExtraNeededError, InputError
 from synth.kinds import KINDS, Sources, batch
-from synth.kinds.request_schemas import DESIGN, REQUESTS
-from synth.question.spec_keys import FIELDS
+from synth.question.request_fields import FIELDS
+from synth.verbs.requests import DESIGN, VERBS
 from synth.workers.engine_questions import check, evaluate
 from synth.workers.engine_work import read
 from tests.kinds.jobs import DISC, PAIR, SPECS, disc, pair
 from tests.repetitions import repetitions
 
 pytestmark = pytest.mark.slow
+REQUESTS = {name: verb.schema() for name, verb in VERBS.items()}
 DUTY = DISC["requirements"]
 LECTURE = SPECS["lecture_design"]
 SPREAD = {"friction": "catalogue range", "tolerance": {}, "mode": "rate", "samples": 64, "seed": 1, "confidence": 0.9}
@@ -190,11 +191,12 @@ def test_every_kind_has_a_schema() -> None:
         ("whatif", "a", ()),
         ("explain", [], ()),
         ("synthesis", {"of": "front", "points": {"x": 2}}, ("points",)),
-        ("verify", {"of": "pair", "family": [[]]}, ("family", 0)),
+        ("verify", {"of": "pair", "family": [[]]}, ("family",)),
         ("verify", {"of": "front", "time_limit": 10**400}, ("time_limit",)),
         ("rate", {"of": "front", "robust": [{}]}, ("robust",)),
         ("synthesis", {**DISC, "robust": {**SPREAD, "tolerance": []}}, ("robust", "tolerance")),
         ("batch", {"family": "disc_clutch", "rows": [DUTY], "objectives": True}, ("objectives",)),
+        ("synthesis", {"of": "front", "requirements": "600 N*m"}, ("requirements",)),
     ],
 )
 def test_what_broke_the_reader_is_refused_where_it_stands(kind: str, request_: Any, path: tuple[Any, ...]) -> None:

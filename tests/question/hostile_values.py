@@ -6,7 +6,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from synth.question.spec_keys import FIELDS
+from synth.question.request_fields import FIELDS
 
 HUGE = st.sampled_from([10**400, -(10**400), 2**64, 10**308, 1e308, float("inf"), float("nan")]) | st.just(5000).map(
     lambda n: 10**n

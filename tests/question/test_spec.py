@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
+from synth.question.request_fields import FIELDS
 from synth.question.settings import SearchSettings
 from synth.question.spec import read_spec, spec_from_mapping
-from synth.question.spec_keys import FIELDS
 from tests.question.hostile_values import ENTRIES, JUNK
 from tests.repetitions import repetitions
 

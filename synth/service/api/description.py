@@ -6,9 +6,9 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from synth.kinds.request_schemas import DESIGN, REQUESTS
 from synth.service.context import API
 from synth.service.errors import JSON
+from synth.verbs.requests import DESIGN, VERBS
 
 
 class DescribedService(FastAPI):
@@ -18,9 +18,9 @@ class DescribedService(FastAPI):
         """Describe the interface."""
         told = super().openapi()
         schemas = told["components"]["schemas"]
-        schemas |= {_name(kind): schema for kind, schema in REQUESTS.items()} | {"Design": DESIGN}
+        schemas |= {_name(name): verb.schema() for name, verb in VERBS.items()} | {"Design": DESIGN}
         schemas["JobRequest"]["anyOf"] = [
-            {"properties": {"kind": {"const": kind}, "request": _ref(_name(kind))}} for kind in REQUESTS
+            {"properties": {"kind": {"const": kind}, "request": _ref(_name(kind))}} for kind in VERBS
         ]
         batch = _ref(_name("batch"))
         bodies = {

@@ -45,6 +45,7 @@ from synth.studies.settings import PRICES, PriceLimits
 from synth.system.deadline import Stopped, until
 from synth.text.numbers import more_or_less, number_text, percent
 from synth.units import parse_quantity
+from synth.verbs.requests import PricesRequest
 
 LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
 
@@ -52,7 +53,7 @@ LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
 def prices(
     front: ParetoFront,
     design: int | Sequence[int] | None = None,
-    step: Any = "1 %",
+    step: Any = PricesRequest.step,
     *,
     problem: Any = None,
     catalogs: Any = None,

@@ -1,0 +1,109 @@
+"""The records of the verbs: what command line, Python, JSON schema and documentation have from them."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import pytest
+import typer.main
+
+import synth
+from synth.errors import InputError
+from synth.question.request_fields import FIELDS, RequestField
+from synth.question.settings import SearchSettings
+from synth.terminal.cli import app
+from synth.verbs.requests import VERBS, NearEqualsRequest, PricesRequest, Verb
+from tests.waiting import PATIENCE
+
+COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+CALLED = {"synthesis": "synthesize"}  # in Python, where it is not the name of the verb
+COMMAND = {"synthesis": "run", "compare": "run"}
+
+
+def every_field() -> Iterator[RequestField]:
+    yield from FIELDS.values()
+    for verb in VERBS.values():
+        yield from verb.fields().values()
+
+
+def test_every_field_has_a_sentence_a_unit_and_examples_that_are_accepted() -> None:
+    for record in every_field():
+        assert record.name.isidentifier()
+        assert record.help.endswith("."), record.name
+        assert record.unit, record.name
+        assert record.examples, record.name
+        for example in record.examples:
+            jsonschema.validate(example, record.schema())
+            record.read(record.name, example)
+        if record.usual is not None:
+            assert record.read(record.name, record.usual) == record.usual
+
+
+def test_schemas_are_schemas() -> None:
+    for verb in VERBS.values():
+        jsonschema.Draft202012Validator.check_schema(verb.schema())
+
+
+# Of a table they stand in files, or come from one.
+NO_OPTIONS = ("parts", "limits", "fix", "objectives", "catalogs")
+# Python takes them in another form: designs and tables themselves.
+OTHERWISE = {"rate": {"robust", "design"}, "batch": {"upload", "rows", "family"}, "compare": {"family"}}
+
+
+def options(verb: Verb) -> dict[str, RequestField]:
+    """Fields that are options of the command of a verb."""
+    searched = {name: FIELDS[name] for name in ("points", "gap", "grid", "seed", "time_limit", "workers")}
+    fields = {**(searched if verb.name in ("synthesis", "compare", "whatif") else {}), **verb.request.fields()}
+    return {name: one for name, one in fields.items() if one.flag != "" and name not in NO_OPTIONS}
+
+
+@pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
+def test_the_command_line_takes_what_the_record_says(verb: Verb) -> None:
+    params = {one.name: one for one in COMMANDS[COMMAND.get(verb.name, verb.name.replace("_", "-"))].params}
+    for name, record in options(verb).items():
+        assert (record.flag or f"--{name.replace('_', '-')}").split("/")[0] in params[name].opts, name
+        if params[name].default is not None:
+            assert record.read(name, params[name].default) == record.usual, name
+
+
+@pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
+def test_python_takes_what_the_record_says(verb: Verb) -> None:
+    verb_called = (
+        synth.ParetoFront.report if verb.name == "report" else getattr(synth, CALLED.get(verb.name, verb.name))
+    )
+    parameters = inspect.signature(verb_called).parameters
+    for name, record in verb.request.fields().items():
+        if name not in OTHERWISE.get(verb.name, ()):
+            default = parameters[name].default
+            assert default in (None, inspect.Parameter.empty) or record.read(name, default) == record.usual, name
+
+
+def test_settings_of_a_search_are_those_of_the_fields() -> None:
+    usual = SearchSettings()
+    for name in ("points", "gap", "seed", "workers", "time_limit"):
+        assert getattr(usual, name) == FIELDS[name].usual
+
+
+def test_all_that_is_wrong_is_said_at_once_and_by_the_name_that_was_typed() -> None:
+    with pytest.raises(InputError) as caught:
+        NearEqualsRequest.read({"count": 0, "seed": -1, "within": "2 %"}, "--{}".format)
+    assert [fault.path for fault in caught.value.every()] == [("count",), ("seed",)]
+    assert str(caught.value).startswith("--count: got 0; expected a whole number")
+
+
+def test_a_request_is_stored_as_it_is_read() -> None:
+    asked = PricesRequest.read({"design": [1, 2], "step": "2 %", "time_limit": "1 min"})
+    assert asked.to_json() == {"design": [1, 2], "step": "2 %", "time_limit": 60.0}
+    assert PricesRequest.read(asked.to_json()).to_json() == asked.to_json()
+
+
+def test_records_load_nothing_heavy() -> None:
+    heavy = "casadi", "numpy", "pandas", "cvxpy", "scipy", "yaml"
+    code = f"import sys, synth.verbs.requests; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=PATIENCE)
+    assert done.stdout.strip() == "[]"
