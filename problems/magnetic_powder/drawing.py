@@ -6,6 +6,7 @@ All sizes of the section are those of the circuit and of the masses.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from synth import Design
@@ -35,8 +36,8 @@ ROTOR, POWDER, BODY, COIL, DRUM = 1, 2, 3, 4, 5
 class _Places:
     """Places along the axis from the left face of the body, and radii [mm]."""
 
-    def __init__(self, size: Sizes, *, complete: bool) -> None:
-        self.length = size("pack_length") if complete else size("length")
+    def __init__(self, size: Sizes, length: str) -> None:
+        self.length = size(length)
         self.rotor = ((self.length - size("face_length")) / 2, (self.length + size("face_length")) / 2)
         self.window = ((self.length - size("coil_length")) / 2, (self.length + size("coil_length")) / 2)
         half_web = size("rotor_web_thickness") / 2
@@ -48,7 +49,19 @@ class _Places:
         self.coil = self.bore + size("coil_height")
 
 
-def powder_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
+@dataclass
+class _Section:
+    """What the section shows, and what it omits."""
+
+    shapes: list[Drawable]
+    items: list[Item]
+    balloons: list[Balloon]
+    dimensions: list[Measured]
+    weights: list[Weight]
+    omitted: list[str]
+
+
+def powder_drawing(spec: Mapping[str, Any], design: Design, *, scope: str) -> Drawing:
     """Return the drawing of a magnetic-powder clutch.
 
     Parameters
@@ -57,16 +70,17 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -
         What the hook is told.
     design : Design
         The design.
-    complete : bool
-        Whether mass and length are those of the whole clutch, so that shields and shaft are known.
+    scope : {"parts", "complete"}
+        What mass and length are those of.
     """
     size = Sizes(spec, design)
-    at = _Places(size, complete=complete)
+    length, add_around = _AROUND[scope]
+    at = _Places(size, length)
     still = size("built_drum") > 0
     shapes, items, balloons = _parts(size, at, still=still)
     x0, between = at.rotor[0], at.shaft + 0.6 * (at.rim - at.shaft)
     dimensions: list[Measured] = [
-        Dimension((0.0, at.outside), (at.length, at.outside), "pack_length" if complete else "length", "top"),
+        Dimension((0.0, at.outside), (at.length, at.outside), length, "top"),
         Dimension((at.window[0], at.outside), (at.window[1], at.outside), "coil_length", "top"),
         Dimension((x0, at.outside), (at.window[0], at.outside), "pole_length", "top", times=2),
         Dimension((at.window[1], at.bore), (at.window[1], at.coil), "coil_height", "right"),
@@ -87,39 +101,8 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -
         weights.append(Weight((DRUM,), ("drum_mass",), "steel_density"))
     omitted = ["bearings, seals, hub and what fastens the rotor on its shaft", "insulation and leads of the coil"]
     omitted.append("what carries the drum and drives it" if still else "slip rings and brushes, drive of the body")
-    thick = 0.0
-    if complete:
-        shield, shaft = (DRUM + 1, DRUM + 2) if still else (DRUM, DRUM + 1)
-        thick, out = size("shield_thickness"), (size("shaft_length") - at.length) / 2
-        end = at.length + out
-        shapes += [
-            Area(rectangle(-thick, 0.0, 0.0, at.outside), shield),
-            Area(rectangle(at.length, at.length + thick, 0.0, at.outside), shield),
-            Area(rectangle(-out, end, 0.0, at.shaft), shaft, cut=False),
-        ]
-        items += [
-            Item(shield, "Bearing shield", 2, "light metal", "a full disc, as its mass is computed", Hatch.LEFT),
-            Item(shaft, "Shaft", 1, "steel", "ends of equal length assumed"),
-        ]
-        balloons += [
-            Balloon((-thick / 2, -(at.shaft + 0.7 * (at.outside - at.shaft))), shield, "bottom"),
-            Balloon((-(out + thick) / 2, -at.shaft / 2), shaft, "bottom"),
-        ]
-        weights += [
-            Weight((shield,), ("shields_mass",), "shield_density"),
-            Weight((shaft,), ("shaft_mass",), "steel_density"),
-        ]
-        dimensions += [
-            Dimension((-thick, at.outside), (at.length + thick, at.outside), "length", "top"),
-            Dimension((-thick, at.outside), (0.0, at.outside), "shield_thickness", "top"),
-            Dimension((-out, -at.shaft), (end, -at.shaft), "shaft_length", "top"),
-            diameter(-out, at.shaft, "shaft_radius", side="left", factor=2.0),
-        ]
-    else:
-        shapes += shaft_end(at.web[0], 0.0, at.shaft, broken=2 * at.shaft * SHAFT_OUT)
-        shapes += shaft_end(at.web[1], at.length, at.shaft, broken=2 * at.shaft * SHAFT_OUT)
-        omitted.insert(0, "shields and shaft: mass and length are those of rotor, drum, body, coil and powder")
-        dimensions.append(diameter(-2 * at.shaft * SHAFT_OUT, at.shaft, "shaft_radius", side="left", factor=2.0))
+    section = _Section(shapes, items, balloons, dimensions, weights, omitted)
+    add_around(section, size, at)
     view = View(
         "Section", tuple(shapes), tuple(dimensions), tuple(balloons), (_detail(size, at, still=still),), revolved=True
     )
@@ -135,6 +118,50 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -
         ),
         weights=tuple(weights),
     )
+
+
+def _add_neighbours(section: _Section, size: Sizes, at: _Places) -> None:
+    """Add the shaft as a neighbour."""
+    broken = 2 * at.shaft * SHAFT_OUT
+    section.shapes += shaft_end(at.web[0], 0.0, at.shaft, broken=broken)
+    section.shapes += shaft_end(at.web[1], at.length, at.shaft, broken=broken)
+    section.omitted.insert(0, "shields and shaft: mass and length are those of rotor, drum, body, coil and powder")
+    section.dimensions.append(diameter(-broken, at.shaft, "shaft_radius", side="left", factor=2.0))
+
+
+def _add_shields(section: _Section, size: Sizes, at: _Places) -> None:
+    """Add shields and shaft."""
+    shield = len(section.items) + 1
+    shaft = shield + 1
+    thick, out = size("shield_thickness"), (size("shaft_length") - at.length) / 2
+    end = at.length + out
+    section.shapes += [
+        Area(rectangle(-thick, 0.0, 0.0, at.outside), shield),
+        Area(rectangle(at.length, at.length + thick, 0.0, at.outside), shield),
+        Area(rectangle(-out, end, 0.0, at.shaft), shaft, cut=False),
+    ]
+    section.items += [
+        Item(shield, "Bearing shield", 2, "light metal", "a full disc, as its mass is computed", Hatch.LEFT),
+        Item(shaft, "Shaft", 1, "steel", "ends of equal length assumed"),
+    ]
+    section.balloons += [
+        Balloon((-thick / 2, -(at.shaft + 0.7 * (at.outside - at.shaft))), shield, "bottom"),
+        Balloon((-(out + thick) / 2, -at.shaft / 2), shaft, "bottom"),
+    ]
+    section.weights += [
+        Weight((shield,), ("shields_mass",), "shield_density"),
+        Weight((shaft,), ("shaft_mass",), "steel_density"),
+    ]
+    section.dimensions += [
+        Dimension((-thick, at.outside), (at.length + thick, at.outside), "length", "top"),
+        Dimension((-thick, at.outside), (0.0, at.outside), "shield_thickness", "top"),
+        Dimension((-out, -at.shaft), (end, -at.shaft), "shaft_length", "top"),
+        diameter(-out, at.shaft, "shaft_radius", side="left", factor=2.0),
+    ]
+
+
+# Length of the body, and what adds the parts around it, by what mass and length are those of.
+_AROUND = {"parts": ("length", _add_neighbours), "complete": ("pack_length", _add_shields)}
 
 
 def _parts(size: Sizes, at: _Places, *, still: bool) -> tuple[list[Drawable], list[Item], list[Balloon]]:

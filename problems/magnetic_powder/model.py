@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,21 +10,19 @@ import numpy as np
 from synth import Design, DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
 
-from .. import cost, practice
+from .. import practice
 from ..magnet import coil as coil_blocks
 from ..mechanics import magnetics
-from ..practice import UNSOURCED
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
 from . import formulas as powder
+from .layers import LAYERS, Bore, Built, Sized, Sources
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from synth.drawing import Drawing
 
-PARTS = 7  # rotor, drum or slip rings, body, coil, two shields and shaft
-GRAVITY = 9.80665  # [m/s2]
 SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
 
 
@@ -190,74 +187,6 @@ class Wants(Block):
     )
 
 
-class Bore(Block):
-    """What the rotor is bored for, in SI."""
-
-    group = "envelope"
-
-    shaft_radius = Requirement(
-        "mm",
-        12,
-        lower=1,
-        upper=200,
-        symbol="r_shaft",
-        text=f"Shaft with hub inside the rotor ({TYPICAL})",
-        source=f"{S4}, section 6.1",
-    )
-
-
-class PowderRules(coil_blocks.CoilRules):
-    """Rules for powder clutches, all in SI."""
-
-    group = "practice"
-
-    rise_time_limit = Requirement(
-        "s",
-        0.2,
-        lower=0.001,
-        upper=60,
-        symbol="t_rise_max",
-        text="Longest rise of the current (ten units; a maker's torque rises in 0.17 to 0.26 s)",
-        source=f"{UNSOURCED}; {S4}, check X11",
-    )
-    spread_acceleration = Requirement(
-        "-",
-        5,
-        lower=0,
-        upper=1000,
-        symbol="k_spread",
-        text=f"Least centrifugal acceleration in the gap over gravity: the powder must be thrown out ({UNSOURCED})",
-        source=f"{UNSOURCED}; {S4}, check X11",
-    )
-    powder_per_torque_max = Requirement(
-        "g/(N*m)",
-        5,
-        lower=0.01,
-        upper=1000,
-        symbol="k_pow",
-        text="Largest mass of powder over required torque (makers take 1.2 to 2.5)",
-        source=UNSOURCED,
-    )
-    powder_load_limit = Requirement(
-        "W/kg",
-        1500,
-        lower=1,
-        upper=1e6,
-        symbol="k_load",
-        text="Slip heat over mass of powder above which a remark comes; with forced air five units stand 10 000",
-        source=f"{UNSOURCED}; {S4} [P9]",
-    )
-
-
-@dataclass(frozen=True)
-class Sized:
-    """Mass of a powder clutch as its formulas size it, and of copper and powder in it [kg]."""
-
-    mass: Any
-    copper: Any
-    powder: Any
-
-
 class MagneticPowderClutch(DesignProblem):
     """Magnetic-powder clutch with a stationary coil, or with a coil that rotates and has slip rings.
 
@@ -285,16 +214,9 @@ class MagneticPowderClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         wants = d.block(Wants)
-        if scope.rules:
-            torque = wants.torque_reserve * wants.required_torque
-            shaft = d.block(practice.ShaftSize, shaft_diameter=practice.shaft_for(torque))
-            bore = d.block(Bore, shaft_radius=shaft.shaft_diameter / 2)
-            thinnest = np.minimum(shaft.shaft_diameter, 2 * bore.shaft_radius)
-            practice.declare_shaft(d, shaft, diameter=thinnest, torque=torque)
-        else:
-            bore = d.block(Bore)
+        layer = layer_of(d, wants)
         iron = coil_blocks.declare_coil_requirements(d)
         radius = d.variable(
             "gap_radius",
@@ -357,7 +279,7 @@ class MagneticPowderClutch(DesignProblem):
         )
         _name_layout(d, layout=layout, rim=rim)
         ampere_turns = _declare_circuit(
-            d, bore=bore, iron=iron, circuit=circuit, flux_density=unknowns.flux_density, layout=layout
+            d, bore=layer.bore, iron=iron, circuit=circuit, flux_density=unknowns.flux_density, layout=layout
         )
         slip_heat = d.derive(
             "slip_heat",
@@ -387,29 +309,11 @@ class MagneticPowderClutch(DesignProblem):
             d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=layout.bore, around=around
         )
         sized = _declare_size(
-            d,
-            scope=scope,
-            wants=wants,
-            bore=bore,
-            part=part,
-            coil=coil,
-            layout=layout,
-            rim=rim,
-            copper_section=winding.copper_section,
+            d, layer=layer, part=part, coil=coil, layout=layout, rim=rim, copper_section=winding.copper_section
         )
         _declare_remarks(d, wants=wants, coil=coil, part=part, layout=layout)
-        if scope.rules:
-            _declare_rules(
-                d,
-                wants=wants,
-                iron=iron,
-                unknowns=unknowns,
-                layout=layout,
-                sized=sized,
-                winding=winding,
-                linkage=circuit.linkage(unknowns.flux_density),
-                slip_heat=slip_heat,
-            )
+        built = Built(iron, unknowns, part, circuit, sized, winding, slip_heat)
+        layer.declare_rules(d, built)
         d.headline(
             "mass",
             "outer_diameter",
@@ -419,29 +323,15 @@ class MagneticPowderClutch(DesignProblem):
             "coil_temperature_rise",
             sized_by="torque_capacity",
         )
-        # Least power asks for ever larger bodies; with the rules of practice the supply limits it, and mass counts.
-        d.objective("coil_power", default=not scope.rules)
-        d.objective("input_inertia")
-        d.objective("mass", default=scope.rules)
-        d.objective("outer_diameter", default=False)
-        if scope.rules or scope.complete:
-            d.objective("length", default=False)
-            wire = unknowns.winding_wire
-            cost.declare_cost(
-                d,
-                mass=sized.mass + _around(wants, bore, layout),
-                parts=PARTS,
-                special=[
-                    cost.Special("copper", wire, amount=sized.copper, mass=sized.copper, pieces=1, factor=cost.COPPER),
-                    cost.Special("powder", part, amount=sized.powder, mass=sized.powder, factor=cost.POWDER),
-                ],
-            )
+        for name in ("coil_power", "input_inertia", "mass", "outer_diameter"):
+            d.objective(name, default=name in layer.objectives)
+        layer.declare_cost(d, built)
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through rotor, gaps, body and coil; of a complete clutch shields and shaft as well."""
         from . import drawing as powder_drawing  # costly to import; searches do without
 
-        return powder_drawing.powder_drawing(spec, design, complete=self.option("mass_scope") == "complete")
+        return powder_drawing.powder_drawing(spec, design, scope=self.option("mass_scope"))
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Return the shear stress that a torque needs; of a design torque over current and temperature, heat balance.
@@ -575,45 +465,17 @@ def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
         d.step(name, unit, value, symbol=symbol, text=text, source=f"geometry; {S4} [P4]")
 
 
-def _around(wants: Wants, bore: Bore, layout: powder.Layout) -> Any:
-    """Return the mass of shields and shaft [kg]."""
-    shields = powder.shields_mass(layout.outer_radius)
-    return shields + powder.shaft_mass(wants.steel_density, bore.shaft_radius, layout.length)
-
-
-def _name_around(d: Declaration, *, scope: practice.Scope, wants: Wants, bore: Bore, layout: powder.Layout) -> None:
-    """Name shields and shaft, and the proportions that they go by."""
-    shields = powder.shields_mass(layout.outer_radius)
-    shaft = powder.shaft_mass(wants.steel_density, bore.shaft_radius, layout.length)
-    d.step("shields_mass", "kg", shields, symbol="m_sh", text="Both bearing shields", source=UNSOURCED)
-    d.step("shaft_mass", "kg", shaft, symbol="m_shaft", text="Shaft with its ends", source=UNSOURCED)
-    load = 2 * powder.SHIELD_DENSITY * powder.SHIELD_THICKNESS
-    text = "Both shields over their area: light metal of 8 mm each"
-    d.constant("shields_area_mass", "kg/m2", load, symbol="q_sh", text=text, source=UNSOURCED)
-    text = "What the shaft is longer than the body"
-    d.constant("shaft_ends", "mm", 1000 * powder.SHAFT_ENDS, symbol="l_ends", text=text, source=UNSOURCED)
-    if scope.complete:
-        long, thick = layout.length + powder.SHAFT_ENDS, powder.SHIELD_THICKNESS
-        d.step("shaft_length", "mm", long, symbol="L_shaft", text="Shaft with its ends", source=UNSOURCED)
-        d.step("shield_thickness", "mm", thick, symbol="t_sh", text="One shield along the shaft", source=UNSOURCED)
-        text = "Light metal of the shields"
-        d.step("shield_density", "kg/m3", powder.SHIELD_DENSITY, symbol="rho_sh", text=text, source=UNSOURCED)
-        both = 1000 * 2 * powder.SHIELD_THICKNESS
-        d.constant("shields_length", "mm", both, symbol="l_sh", text="Both shields along the shaft", source=UNSOURCED)
-
-
 def _declare_size(
     d: Declaration,
     *,
-    scope: practice.Scope,
-    wants: Wants,
-    bore: Bore,
+    layer: Sources,
     part: Part,
     coil: Choice,
     layout: powder.Layout,
     rim: Any,
     copper_section: Any,
 ) -> Sized:
+    wants = layer.wants
     filling = d.derive(
         "powder_mass",
         "kg",
@@ -669,44 +531,10 @@ def _declare_size(
         text="Outside of the yoke",
         source="geometry",
     )
-    parts = rotor + drum + body + copper + filling
-    if scope.rules or scope.complete:
-        _name_around(d, scope=scope, wants=wants, bore=bore, layout=layout)
-    if scope.rules or scope.complete:
-        d.derive(
-            "part_mass",
-            "kg",
-            parts,
-            symbol="m_part",
-            text="Rotor without shaft, drum of a stationary coil, body, copper and powder",
-            source=f"{S4} [P10]",
-        )
-        d.derive(
-            "pack_length",
-            "mm",
-            layout.length,
-            symbol="L_pk",
-            text="Length of the body",
-            source="geometry",
-        )
-    length = d.derive(
-        "length",
-        "mm",
-        layout.length + (2 * powder.SHIELD_THICKNESS if scope.complete else 0.0),
-        symbol="L",
-        text="Length of the body with its shields" if scope.complete else "Length of the body",
-        source="geometry",
-    )
-    d.derive(
-        "mass",
-        "kg",
-        parts + _around(wants, bore, layout) if scope.complete else parts,
-        symbol="m",
-        text="The whole clutch, with shields and shaft"
-        if scope.complete
-        else "Rotor without shaft, drum of a stationary coil, body, copper and powder",
-        source=f"{S4} [P10]",
-    )
+    sized = Sized(mass=rotor + drum + body + copper + filling, copper=copper, powder=filling)
+    weight, extent = layer.declare_around(d, sized, layout)
+    length = d.derive("length", "mm", extent, symbol="L", text=layer.along, source="geometry")
+    d.derive("mass", "kg", weight, symbol="m", text=layer.mass_of, source=f"{S4} [P10]")
     asked = "requirement of the drive"
     if wants.outer_diameter_limit is not None:
         d.at_most(
@@ -719,71 +547,7 @@ def _declare_size(
         )
     if wants.length_limit is not None:
         d.at_most("length", length, wants.length_limit, "mm", text="The clutch fits the room along", source=asked)
-    return Sized(mass=parts, copper=copper, powder=filling)
-
-
-def _declare_rules(
-    d: Declaration,
-    *,
-    wants: Wants,
-    iron: coil_blocks.CoilRequirements,
-    unknowns: coil_blocks.CoilUnknowns,
-    layout: powder.Layout,
-    sized: Sized,
-    winding: coil_blocks.Winding,
-    linkage: Any,
-    slip_heat: Any,
-) -> None:
-    """Declare the limits that an engineer adds to a powder clutch."""
-    rules = d.block(PowderRules)
-    coil_blocks.refuse_bad_window(d, rules)
-    coil_blocks.limit_coil(d, rules=rules, wants=iron, unknowns=unknowns)
-    d.at_most(
-        "rise_time",
-        coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage),
-        rules.rise_time_limit,
-        "s",
-        text="The torque follows what is asked of it",
-        source=f"{UNSOURCED}; {S4}, check X11",
-    )
-    d.at_least(
-        "powder_spread",
-        wants.driver_speed**2 * layout.gap_radius,
-        rules.spread_acceleration * GRAVITY,
-        "m/s2",
-        text="The powder is thrown out all around the gap",
-        source=f"{UNSOURCED}; {S4}, check X11",
-    )
-    per_torque = d.derive(
-        "powder_per_torque",
-        "g/(N*m)",
-        sized.powder / wants.required_torque,
-        symbol="q_pow",
-        text="Powder over required torque",
-        source="definition",
-    )
-    d.at_most(
-        "powder_per_torque",
-        per_torque,
-        rules.powder_per_torque_max,
-        "g/(N*m)",
-        text="As much powder as the torque needs",
-        source=UNSOURCED,
-    )
-    load = d.derive(
-        "powder_load",
-        "W/kg",
-        slip_heat / sized.powder,
-        symbol="p_pow",
-        text="Heat of continuous slip over mass of powder",
-        source="definition",
-    )
-    d.advise(
-        "powder_load",
-        load > rules.powder_load_limit,
-        "the slip heats the powder more than powder load limit: its life is short, unless forced air cools the clutch",
-        source=f"{UNSOURCED}; {S4} [P9]",
-    )
+    return sized
 
 
 def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, layout: powder.Layout) -> None:
@@ -804,7 +568,7 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
     warning = SURFACE_WARNING - 273.15
     text = "Surface temperature that one maker names as the limit of powder clutches"
     d.constant("surface_warning", "degC", warning, symbol="T_warn", text=text, source=f"{S4} [P9]")
-    d.constant("gravity", "m/s2", GRAVITY, symbol="g_n", text="Standard gravity", source="CGPM 1901")
+    d.constant("gravity", "m/s2", powder.GRAVITY, symbol="g_n", text="Standard gravity", source="CGPM 1901")
     d.advise(
         "hot_surface",
         rise + wants.ambient_temperature > SURFACE_WARNING,
@@ -814,7 +578,7 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
     )
     d.advise(
         "powder_not_spread",
-        wants.driver_speed**2 * layout.gap_radius < 10 * GRAVITY,
+        wants.driver_speed**2 * layout.gap_radius < 10 * powder.GRAVITY,
         "the centrifugal acceleration in the gap is below 10 g: the powder may lie at the bottom instead of all around",
         source=f"{S4}, checks X6 and X11",
     )

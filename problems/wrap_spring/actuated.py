@@ -12,6 +12,7 @@ from .. import practice
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, TYPICAL
 from . import blocks, body, curves, formulas
+from .layers import Fit, layers_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -109,6 +110,7 @@ class CollarRequirements(body.BodyRequirements):
     """Shaft, bosses and control collar of a complete clutch, all in SI."""
 
     group = "practice"
+    parts = 4  # hubs, spring and collar
 
     collar_wall = Requirement(
         "mm",
@@ -120,18 +122,32 @@ class CollarRequirements(body.BodyRequirements):
         source=UNSOURCED,
     )
 
-    def collar_mass(self, *, duty: blocks.Duty, spring: blocks.Size, clearance: Any) -> Any:
+    def collar_mass(self, built: blocks.Built) -> Any:
         """Return the mass of the control collar [kg]."""
-        return formulas.collar_mass(duty.hub_density, spring.diameter, clearance, self.collar_wall, spring.length)
+        density, spring = built.duty.hub_density, built.spring
+        return formulas.collar_mass(density, spring.diameter, built.clearance, self.collar_wall, spring.length)
 
-    def with_collar(self, *, duty: blocks.Duty, spring: blocks.Size, clearance: Any) -> blocks.Size:
+    def complete_size(self, built: blocks.Built) -> blocks.Size:
         """Return the size of the clutch with its bosses and the collar around the spring."""
-        whole = self.whole_size(duty=duty, spring=spring)
-        return blocks.Size(
-            mass=whole.mass + self.collar_mass(duty=duty, spring=spring, clearance=clearance),
-            length=whole.length,
-            diameter=formulas.collar_diameter(spring.diameter, clearance, self.collar_wall),
+        size = super().complete_size(built)
+        return replace(
+            size,
+            mass=size.mass + self.collar_mass(built),
+            diameter=formulas.collar_diameter(built.spring.diameter, built.clearance, self.collar_wall),
+            outside="Outside of the collar",
         )
+
+    def declare(self, d: Declaration, built: blocks.Built) -> None:
+        """Declare the complete clutch and its collar."""
+        super().declare(d, built)
+        mass, text = self.collar_mass(built), "Control collar around the spring"
+        d.derive("collar_mass", "kg", mass, symbol="m_col", text=text, source="geometry")
+        inside = built.spring.diameter
+        for name, value, symbol, text in (
+            ("spring_diameter", inside, "D_sp", "Outside of the closed coils"),
+            ("collar_bore", inside + 4 * built.clearance, "d_col", "Inside of the control collar"),
+        ):
+            d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
 
 
 class Rules(body.SpringRules):
@@ -149,6 +165,31 @@ class Rules(body.SpringRules):
         source=UNSOURCED,
     )
 
+    def limit(self, d: Declaration, built: blocks.Built) -> None:
+        """Declare the limits that an engineer adds to this fit."""
+        super().limit(d, built)
+        actuator = d.variables["actuator_torque"].sx
+        stress = d.derive(
+            "tang_stress",
+            "N/mm2",
+            formulas.tang_stress(actuator, built.coils.mean_radius, built.wire.thickness, self.tang_length_ratio),
+            symbol="sigma_t",
+            text="Bending stress of the tang under the energising torque",
+            source=f"bending of a cantilever; {NOT_IN_S2}",
+        )
+        d.at_most(
+            "tang",
+            stress,
+            built.wire.bending_allow,
+            "N/mm2",
+            text="The tang that holds the free end does not yield",
+            source=f"bending of a cantilever; {NOT_IN_S2}",
+        )
+
+
+FIT = Fit("actuator_torque", ClearanceDuty, PracticeClearanceDuty, Wants, PracticeWants, Rules, CollarRequirements)
+LAYERS = layers_of(FIT)
+
 
 class ActuatedWrapSpringClutch(DesignProblem):
     """Wrap spring clutch, clearance fit, engaged by a torque on the free end of the spring (tang, control collar).
@@ -163,20 +204,11 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         options = d.block(blocks.Options)
-        body_wants = d.block(CollarRequirements) if scope.rules or scope.complete else None
-        duty = blocks.declare_duty(
-            d,
-            kind=PracticeClearanceDuty if scope.rules else ClearanceDuty,
-            bore=None if body_wants is None else body_wants.bore,
-        )
-        wants = (
-            d.block(PracticeWants, actuator_torque_limit=body.FREE_SHARE * duty.required_torque)
-            if scope.rules
-            else d.block(Wants)
-        )
-        rules = d.block(Rules) if scope.rules else None
+        layer = layer_of(d)
+        duty = layer.declare_duty(d)
+        wants: Wants = layer.declare_wants(d, duty)
         clearance = d.variable(
             "clearance",
             "mm",
@@ -203,13 +235,13 @@ class ActuatedWrapSpringClutch(DesignProblem):
         widest, narrowest = clearance + tolerance, clearance - tolerance
 
         def moment(fit: Any) -> Any:
-            free = formulas.free_radius(-fit, coils.mean_radius, options.model)
+            free = coils.model.free_radius(-fit, coils.mean_radius)
             return blocks.fitted_moment(wire, coils, -fit, free)
 
         loose, tight = moment(widest), moment(narrowest)
-        spinning = blocks.centrifugal_moment(options, duty, wire, coils)
+        spinning = blocks.centrifugal_moment(duty, wire, coils)
         effective = loose - spinning
-        self._name_fit(d, options=options, wire=wire, coils=coils, widest=widest, loose=loose, spinning=spinning)
+        self._name_fit(d, coils=coils, widest=widest, loose=loose, spinning=spinning)
         d.at_least(
             "grip",
             actuator,
@@ -252,32 +284,9 @@ class ActuatedWrapSpringClutch(DesignProblem):
             source="geometry",
         )
         spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils, fixed_coils=wants.fixed_coils)
-        size = spring
-        if body_wants is not None and scope.complete:
-            size = body_wants.with_collar(duty=duty, spring=spring, clearance=clearance)
-        blocks.declare_size(
-            d, duty=duty, size=size, whole=scope.complete, outside="collar" if scope.complete else "coils"
-        )
-        if body_wants is not None:
-            body.declare_parts(d, duty=duty, wants=body_wants, spring=spring)
-            whole = body_wants.with_collar(duty=duty, spring=spring, clearance=clearance)
-            body.declare_cost(d, wire=wire, spring=spring, mass=whole.mass, parts=4)
-            d.derive(
-                "collar_mass",
-                "kg",
-                body_wants.collar_mass(duty=duty, spring=spring, clearance=clearance),
-                symbol="m_col",
-                text="Control collar around the spring",
-                source="geometry",
-            )
-            for name, value, symbol, text in (
-                ("spring_diameter", spring.diameter, "D_sp", "Outside of the closed coils"),
-                ("collar_bore", spring.diameter + 4 * clearance, "d_col", "Inside of the control collar"),
-            ):
-                d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
-        if rules is not None:
-            body.limit_spring(d, rules=rules, wire=wire, coils=coils)
-            self._declare_tang(d, rules=rules, wire=wire, coils=coils, actuator=actuator)
+        built = blocks.Built(duty, wants, wire, coils, friction, spring, clearance)
+        blocks.declare_size(d, duty=duty, size=layer.size(built))
+        layer.extend(d, built)
         tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
         d.advise(
             "fatigue_of_the_wire",
@@ -296,13 +305,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             "wrap_angle",
             sized_by="closing_torque",
         )
-        # By the rules of practice the energising torque is bounded, and what is left to ask for is a small clutch.
-        d.objective("mass")
-        d.objective("actuator_torque", default=rules is None)
-        for name in ("wrap_angle", "outer_diameter"):
-            d.objective(name, default=False)
-        if rules is not None:
-            d.objective("length")
+        layer.declare_objectives(d, "wrap_angle", "outer_diameter")
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, Any]:
         """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
@@ -317,60 +320,22 @@ class ActuatedWrapSpringClutch(DesignProblem):
         return wrap_spring.clearance_drawing(
             spec,
             design,
-            complete=self.option("mass_scope") == "complete",
+            scope=self.option("mass_scope"),
             seed=self.option("model") == "seed",
         )
 
-    def _name_fit(
-        self,
-        d: Declaration,
-        *,
-        options: blocks.Options,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        widest: Any,
-        loose: Any,
-        spinning: Any,
-    ) -> None:
+    def _name_fit(self, d: Declaration, *, coils: blocks.Coils, widest: Any, loose: Any, spinning: Any) -> None:
         """Name what the moment of the widest clearance is made of."""
+        text, source = "Clearance at its widest, c + tol", NOT_IN_S2
+        d.step("greatest_clearance", "mm", widest, symbol="c_hi", text=text, source=source)
+        text = "Bending moment that closes the widest clearance"
+        d.step("closing_moment", "N*m", -loose, symbol="M_close", text=text, source=source)
+        free = coils.model.free_radius(-widest, coils.mean_radius)
         named = [
-            ("greatest_clearance", "mm", widest, "c_hi", "Clearance at its widest, c + tol"),
-            (
-                "closing_moment",
-                "N*m",
-                -loose,
-                "M_close",
-                "Bending moment that closes the widest clearance",
-            ),
+            ("greatest_free_radius", "mm", free, "r_free_hi", "Mean radius of the free spring, widest clearance"),
+            ("centrifugal_moment", "N*m", spinning, "M_cf", "What the spinning wire adds to that moment"),
         ]
-        if options.model != "seed":
-            free = formulas.free_radius(-widest, coils.mean_radius, options.model)
-            named += [
-                ("greatest_free_radius", "mm", free, "r_free_hi", "Mean radius of the free spring, widest clearance"),
-                ("centrifugal_moment", "N*m", spinning, "M_cf", "What the spinning wire adds to that moment"),
-            ]
-        for name, unit, value, symbol, text in named:
-            d.step(name, unit, value, symbol=symbol, text=text, source=NOT_IN_S2)
-
-    def _declare_tang(
-        self, d: Declaration, *, rules: Rules, wire: blocks.Wire, coils: blocks.Coils, actuator: Any
-    ) -> None:
-        stress = d.derive(
-            "tang_stress",
-            "N/mm2",
-            formulas.tang_stress(actuator, coils.mean_radius, wire.thickness, rules.tang_length_ratio),
-            symbol="sigma_t",
-            text="Bending stress of the tang under the energising torque",
-            source=f"bending of a cantilever; {NOT_IN_S2}",
-        )
-        d.at_most(
-            "tang",
-            stress,
-            wire.bending_allow,
-            "N/mm2",
-            text="The tang that holds the free end does not yield",
-            source=f"bending of a cantilever; {NOT_IN_S2}",
-        )
+        coils.model.declare_steps(d, named, source)
 
     def _declare_actuation(
         self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any

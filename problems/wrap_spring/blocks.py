@@ -14,6 +14,7 @@ from synth.text.numbers import typed_number
 
 from ..sources import ARCHARD, DRIVE, NOT_IN_S2, S2, SHAFT, TYPICAL
 from . import formulas
+from .models import MODELS, Refined
 
 SOURCES = (
     "S2: M. Kozma, G. Molnar, K. Varadi, R. Oroszvary, Preloaded force-locking clutch with a helical spring "
@@ -58,7 +59,7 @@ class Options(Block):
     group = "model"
 
     model = Option(
-        formulas.MODELS,
+        tuple(MODELS),
         "refined",
         symbol="mdl",
         text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source, "
@@ -343,8 +344,9 @@ def declare_wire(d: Declaration, *, options: Options) -> Wire:
 
 @dataclass(frozen=True)
 class Coils:
-    """Hub and coils as they are when fitted."""
+    """Hub and coils as they are when fitted, by a model."""
 
+    model: Refined
     hub_diameter: Any
     hub_radius: Any
     mean_radius: Any
@@ -411,10 +413,11 @@ def declare_coils(d: Declaration, *, options: Options, duty: Duty, wire: Wire) -
         text="Coils on one hub",
         source=f"{S2}, n",
     )
+    model = MODELS[options.model]
     mean = d.derive(
         "mean_coil_radius",
         "mm",
-        formulas.mean_radius(diameter, wire.thickness, options.model),
+        model.mean_radius(diameter, wire.thickness),
         symbol="r_m",
         text="Mean radius of the fitted coils; model seed: the hub radius",
         source=f"{S2}, r",
@@ -440,10 +443,11 @@ def declare_coils(d: Declaration, *, options: Options, duty: Duty, wire: Wire) -
         source="anticlastic bending",
     )
     return Coils(
+        model=model,
         hub_diameter=diameter,
         hub_radius=diameter / 2,
         mean_radius=mean,
-        radius_ratio=formulas.radius_ratio(diameter, wire.thickness, options.model),
+        radius_ratio=model.radius_ratio(diameter, wire.thickness),
         per_hub=per_hub,
     )
 
@@ -540,11 +544,10 @@ def fitted_moment(wire: Wire, coils: Coils, interference: Any, free_radius: Any)
     return formulas.bending_moment(wire.modulus, wire.width, wire.thickness, curvature)
 
 
-def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -> Any:
-    """Share of its bending moment that the spinning wire carries itself [N m]; 0 in the model of the source."""
-    if options.model == "seed":
-        return 0.0
-    return formulas.centrifugal_moment(wire.density, wire.width, wire.thickness, coils.mean_radius, duty.spring_speed)
+def centrifugal_moment(duty: Duty, wire: Wire, coils: Coils) -> Any:
+    """Share of its bending moment that the spinning wire carries itself [N m]."""
+    section = wire.density, wire.width, wire.thickness
+    return coils.model.centrifugal_moment(*section, coils.mean_radius, duty.spring_speed)
 
 
 def declare_closing(d: Declaration, *, duty: Duty, torque: Any, needs: str | tuple[str, ...] = ()) -> None:
@@ -663,12 +666,28 @@ def declare_load(
 
 @dataclass(frozen=True)
 class Size:
-    """Mass and outside of the spring with the hubs under it, or of the clutch."""
+    """Mass and outside of the spring with the hubs under it, or of the clutch, and what they are of."""
 
     mass: Any
     length: Any
     diameter: Any
-    spring_mass: Any = None
+    spring_mass: Any
+    mass_of: str = "Spring and both hubs under it"
+    along: str = "Length of the spring"
+    outside: str = "Outside of the coils"
+
+
+@dataclass(frozen=True)
+class Built:
+    """Spring and hubs that are declared, with the requirements of their fit; clearance of released coils [m]."""
+
+    duty: Duty
+    wants: Any
+    wire: Wire
+    coils: Coils
+    friction: Friction
+    spring: Size
+    clearance: Any = 0.0
 
 
 def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
@@ -723,46 +742,11 @@ def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_c
     )
 
 
-def declare_size(d: Declaration, *, duty: Duty, size: Size, whole: bool, outside: str) -> None:
-    """Declare length, diameter and mass, and the limits of the room there is.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Requirements.
-    size : Size
-        What is meant by them.
-    whole : bool
-        Whether that is the whole clutch.
-    outside : str
-        What the diameter is that of.
-    """
-    d.derive(
-        "length",
-        "mm",
-        size.length,
-        symbol="L",
-        text="The whole clutch, with the bosses beyond the spring" if whole else "Length of the spring",
-        source="geometry",
-    )
-    d.derive(
-        "outer_diameter",
-        "mm",
-        size.diameter,
-        symbol="D_o",
-        text=f"Outside of the {outside}",
-        source="geometry",
-    )
-    d.derive(
-        "mass",
-        "kg",
-        size.mass,
-        symbol="m",
-        text="The whole clutch" if whole else "Spring and both hubs under it",
-        source="geometry",
-    )
+def declare_size(d: Declaration, *, duty: Duty, size: Size) -> None:
+    """Declare length, diameter and mass that count, and the limits of the room there is."""
+    d.derive("length", "mm", size.length, symbol="L", text=size.along, source="geometry")
+    d.derive("outer_diameter", "mm", size.diameter, symbol="D_o", text=size.outside, source="geometry")
+    d.derive("mass", "kg", size.mass, symbol="m", text=size.mass_of, source="geometry")
     if duty.outer_diameter_limit is not None:
         d.at_most(
             "outer_diameter",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from synth.declaration import Block, Declaration, Requirement
 
@@ -12,17 +12,16 @@ from ..mechanics import shaft as shaft_formulas
 from ..practice import UNSOURCED, ShaftRequirements, ShaftStress, declare_shaft
 
 if TYPE_CHECKING:
-    from .blocks import Coils, Duty, Size, Wire
+    from .blocks import Built, Duty, Size
 
 SHAFT_RESERVE = 1.5  # torque that the shaft stands over required_torque
-# Of required_torque: largest drag of an interference fit, largest energising torque of a clearance fit.
-FREE_SHARE = 0.1
 
 
 class BodyRequirements(ShaftStress):
     """Shaft and bosses of a complete clutch, all in SI."""
 
     group = "practice"
+    parts: ClassVar[int] = 3  # hubs and spring
 
     shaft_shear_allow = replace(
         ShaftStress.shaft_shear_allow,
@@ -35,14 +34,33 @@ class BodyRequirements(ShaftStress):
         """Return the bore of hubs on a shaft that stands what is asked [m]."""
         return shaft_formulas.shaft_diameter(SHAFT_RESERVE * duty.required_torque, self.shaft_shear_allow)
 
-    def whole_size(self, *, duty: Duty, spring: Size) -> Size:
+    def complete_size(self, built: Built) -> Size:
         """Return the size of a clutch whose hubs go on beyond the spring as bosses on their shafts."""
-        bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, self.hub_factor)
+        duty, spring = built.duty, built.spring
         return replace(
             spring,
-            mass=spring.mass + bosses,
+            mass=spring.mass + 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, self.hub_factor),
             length=spring.length + 2 * shaft_formulas.BOSS_LENGTH * duty.bore_diameter,
+            mass_of="The whole clutch",
+            along="The whole clutch, with the bosses beyond the spring",
         )
+
+    def declare(self, d: Declaration, built: Built) -> None:
+        """Declare parts of the mass, shaft and cost of a complete clutch."""
+        duty, spring = built.duty, built.spring
+        d.derive("part_mass", "kg", spring.mass, symbol="m_part", text=spring.mass_of, source="geometry")
+        d.derive("spring_length", "mm", spring.length, symbol="L_sp", text=spring.along, source="geometry")
+        declare_shaft(d, self, diameter=duty.bore_diameter, torque=SHAFT_RESERVE * duty.required_torque)
+        bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, self.hub_factor)
+        d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Both bosses beyond the spring", source="geometry")
+        for name, value, symbol, text in (
+            ("boss_diameter", self.hub_factor * duty.bore_diameter, "d_boss", "Outside of a boss"),
+            ("boss_length", shaft_formulas.BOSS_LENGTH * duty.bore_diameter, "L_boss", "Length of a boss"),
+        ):
+            d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
+        wire, mass = built.wire.row, spring.spring_mass
+        coiled = cost.Special("spring", wire, amount=mass, mass=mass, pieces=1, factor=cost.SPRING_WIRE)
+        cost.declare_cost(d, mass=self.complete_size(built).mass, parts=self.parts, special=[coiled])
 
 
 class SpringRules(Block):
@@ -69,77 +87,16 @@ class SpringRules(Block):
         source=UNSOURCED,
     )
 
-
-def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring: Size) -> None:
-    """Name what of a complete clutch its formulas know, and remark a bore that is thin for the torque.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Requirements.
-    wants : BodyRequirements
-        Shaft and bosses.
-    spring : Size
-        Mass and room of the spring and the hubs under it.
-    """
-    d.derive("part_mass", "kg", spring.mass, symbol="m_part", text="Spring and both hubs under it", source="geometry")
-    d.derive("spring_length", "mm", spring.length, symbol="L_sp", text="Length of the spring", source="geometry")
-    declare_shaft(d, wants, diameter=duty.bore_diameter, torque=SHAFT_RESERVE * duty.required_torque)
-    bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, wants.hub_factor)
-    d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Both bosses beyond the spring", source="geometry")
-    for name, value, symbol, text in (
-        ("boss_diameter", wants.hub_factor * duty.bore_diameter, "d_boss", "Outside of a boss"),
-        ("boss_length", shaft_formulas.BOSS_LENGTH * duty.bore_diameter, "L_boss", "Length of a boss"),
-    ):
-        d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
-
-
-def declare_cost(d: Declaration, *, wire: Wire, spring: Size, mass: Any, parts: float) -> None:
-    """Declare the relative cost of a clutch.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    wire : Wire
-        Wire of the spring; ``unit_cost`` of its row is for a kilogram.
-    spring : Size
-        Size of spring and hubs, with the mass of the spring alone.
-    mass : symbol
-        Mass of the whole clutch [kg].
-    parts : float
-        Parts: hubs, spring, and a collar.
-    """
-    coiled = cost.Special(
-        "spring", wire.row, amount=spring.spring_mass, mass=spring.spring_mass, pieces=1, factor=cost.SPRING_WIRE
-    )
-    cost.declare_cost(d, mass=mass, parts=parts, special=[coiled])
-
-
-def limit_spring(d: Declaration, *, rules: SpringRules, wire: Wire, coils: Coils) -> None:
-    """Declare the limits that an engineer adds to the spring of both fits.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : SpringRules
-        What the limits go by.
-    wire : Wire
-        Wire of the spring.
-    coils : Coils
-        Hub and coils.
-    """
-    d.at_most(
-        "coils_practice", coils.per_hub, rules.coils_per_hub_max, "-", text="So many coils are built", source=UNSOURCED
-    )
-    d.at_most(
-        "spring_index_max",
-        2 * coils.mean_radius / wire.thickness,
-        rules.spring_index_max,
-        "-",
-        text="The spring can be coiled and handled",
-        source=UNSOURCED,
-    )
+    def limit(self, d: Declaration, built: Built) -> None:
+        """Declare the limits that an engineer adds to the spring of both fits."""
+        coils = built.coils
+        text, most = "So many coils are built", self.coils_per_hub_max
+        d.at_most("coils_practice", coils.per_hub, most, "-", text=text, source=UNSOURCED)
+        d.at_most(
+            "spring_index_max",
+            2 * coils.mean_radius / built.wire.thickness,
+            self.spring_index_max,
+            "-",
+            text="The spring can be coiled and handled",
+            source=UNSOURCED,
+        )

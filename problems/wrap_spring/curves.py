@@ -11,6 +11,7 @@ import numpy as np
 
 from ..sources import S2
 from . import formulas
+from .models import MODELS, Refined
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +31,7 @@ SPEED_AXIS = "spring speed [1/min]"
 class Fitted:
     """Figures of one design, all in SI."""
 
-    model: str
+    model: Refined
     thickness: float
     width: float
     modulus: float
@@ -45,12 +46,12 @@ class Fitted:
     @property
     def mean_radius(self) -> float:
         """Mean radius of the fitted coils [m]."""
-        return float(formulas.mean_radius(self.hub_diameter, self.thickness, self.model))
+        return float(self.model.mean_radius(self.hub_diameter, self.thickness))
 
     @property
     def radius_ratio(self) -> float:
         """Hub radius over mean radius [-]."""
-        return float(formulas.radius_ratio(self.hub_diameter, self.thickness, self.model))
+        return float(self.model.radius_ratio(self.hub_diameter, self.thickness))
 
     def belt_exponent(self, mu: Any) -> Any:
         """Belt exponent of one hub [-]."""
@@ -58,15 +59,13 @@ class Fitted:
 
     def moment(self, interference: Any) -> Any:
         """Bending moment of the fitted wire [N m]; below 0 for a clearance."""
-        free = formulas.free_radius(interference, self.mean_radius, self.model)
+        free = self.model.free_radius(interference, self.mean_radius)
         curvature = formulas.curvature_change(interference, self.mean_radius, free)
         return formulas.bending_moment(self.modulus, self.width, self.thickness, curvature)
 
     def centrifugal_moment(self, speed: Any) -> Any:
         """Return the part of the moment that the spinning wire carries itself [N m]."""
-        if self.model == "seed":
-            return 0.0 * speed
-        return formulas.centrifugal_moment(self.density, self.width, self.thickness, self.mean_radius, speed)
+        return self.model.centrifugal_moment(self.density, self.width, self.thickness, self.mean_radius, speed)
 
     def stress(self, moment: Any, section_moment: Any) -> Any:
         """Stress of the wire that is bent by one moment and pulled by another [Pa]."""
@@ -90,7 +89,7 @@ def fitted(problem: DesignProblem, spec: Mapping[str, Any], design: Design) -> F
     custom = problem.option("wire_choice") == "custom"
     wire, pair = {} if custom else design.parts["wire"], design.parts["friction_pair"]
     return Fitted(
-        model=problem.option("model"),
+        model=MODELS[problem.option("model")],
         thickness=design.values["wire_thickness"] if custom else wire["radial_thickness_a"],
         width=design.values["wire_width"] if custom else wire["axial_width_b"],
         modulus=spec["wire_modulus"] if custom else wire["E"],
@@ -273,7 +272,7 @@ def interference_curves(clutch: Fitted, spec: Mapping[str, Any], values: Mapping
         "windup": _windup(clutch, spec, low, high),
         "overrun": _overrun(clutch, spec, values, high),
     }
-    if clutch.model == "refined":
+    if not clutch.model.at_rest:
         result["torque_over_speed"] = _torque_over_speed(clutch, spec, low)
     return result
 

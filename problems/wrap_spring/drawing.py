@@ -129,7 +129,97 @@ class _Spring:
         return Detail("X", window, tuple(dimensions), side="bottom")
 
 
-def interference_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, seed: bool) -> Drawing:
+@dataclass(frozen=True)
+class _Outside:
+    """The collar around the spring [mm], if there is one."""
+
+    clearance: float = 0.0
+    bore: float = 0.0
+    radius: float = 0.0
+
+
+class _Alone:
+    """Hubs that end where the spring ends [mm]."""
+
+    masses: tuple[str, ...] = ("hub_mass",)
+    omitted = "bosses of the hubs, shafts and their keys: mass and length are those of the spring"
+    collar = "control collar"  # omitted of a clearance fit
+    remarks: tuple[str, ...] = ()
+
+    def __init__(self, size: Sizes, spring: _Spring) -> None:
+        self.size, self.spring = size, spring
+        self.bore, self.boss = size("bore_diameter") / 2, spring.inside
+
+    def hubs(self) -> list[Drawable]:
+        """Sections of both hubs, and what they sit on."""
+        hub, meeting, end = self.spring.inside, self.spring.meeting, self.spring.length
+        return [ring(0.0, meeting, self.bore, hub, FIRST), ring(meeting, end, self.bore, hub, SECOND)]
+
+    def places(self) -> tuple[float, float]:
+        """Places along the axis where balloons point at the hubs."""
+        return self.spring.meeting / 2, (self.spring.meeting + self.spring.length) / 2
+
+    def dimensions(self) -> list[Dimension]:
+        """Extent along the axis, and bore."""
+        over = self.spring.outside
+        return [
+            Dimension((0.0, over), (self.spring.length, over), "length", "top"),
+            diameter(0.0, self.bore, "bore_diameter", side="left"),
+        ]
+
+    def outside(self) -> _Outside:
+        """What is around the spring of a clearance fit."""
+        return _Outside()
+
+
+class _Complete(_Alone):
+    """Hubs that go on as bosses on their shafts [mm]."""
+
+    masses = ("hub_mass", "boss_mass")
+    omitted = "keys and keyways, bearing of the hubs against each other, housing"
+    collar = "what guides the collar and takes the tang in it"
+    remarks = (SHAFTS,)
+
+    def __init__(self, size: Sizes, spring: _Spring) -> None:
+        super().__init__(size, spring)
+        self.out, self.boss = size("boss_length"), size("boss_diameter") / 2
+
+    def hubs(self) -> list[Drawable]:
+        """Sections of both hubs with their bosses, and ends of the shafts."""
+        bore, boss, out, hub = self.bore, self.boss, self.out, self.spring.inside
+        meeting, end = self.spring.meeting, self.spring.length
+        first = ((-out, bore), (meeting, bore), (meeting, hub), (0.0, hub), (0.0, boss), (-out, boss))
+        second = ((meeting, bore), (end + out, bore), (end + out, boss), (end, boss), (end, hub), (meeting, hub))
+        left, right = (shaft_end(meeting, x, bore, broken=2 * bore * SHAFT_OUT) for x in (-out, end + out))
+        return [*left, *right, Area(first, FIRST), Area(second, SECOND)]
+
+    def places(self) -> tuple[float, float]:
+        """Places along the axis where balloons point at the bosses."""
+        return -self.out / 2, self.spring.length + self.out / 2
+
+    def dimensions(self) -> list[Dimension]:
+        """Extent along the axis, bosses and bore."""
+        out, boss, over, end = self.out, self.boss, self.spring.outside, self.spring.length
+        return [
+            Dimension((-out, boss), (end + out, boss), "length", "top"),
+            Dimension((-out, boss), (0.0, boss), "boss_length", "top"),
+            Dimension((end, boss), (end + out, boss), "boss_length", "top"),
+            Dimension((0.0, over), (end, over), "spring_length", "top"),
+            diameter(-out, self.bore, "bore_diameter", side="left"),
+            diameter(-out, boss, "boss_diameter", side="left"),
+        ]
+
+    def outside(self) -> _Outside:
+        """The control collar."""
+        size = self.size
+        return _Outside(size("clearance"), size("collar_bore") / 2, size("outer_diameter") / 2)
+
+
+# By what mass and length are those of.
+_AROUND: dict[str, type[_Alone]] = {"parts": _Alone, "complete": _Complete}
+
+
+def interference_drawing(spec: Mapping[str, Any], design: Design, *, scope: str, seed: bool) -> Drawing:
     """Return the drawing of a clutch with interference fit.
 
     Parameters
@@ -138,8 +228,8 @@ def interference_drawing(spec: Mapping[str, Any], design: Design, *, complete: b
         What the hook is told.
     design : Design
         The design.
-    complete : bool
-        Whether mass and length are those of the whole clutch, so that the hubs go on as bosses.
+    scope : {"parts", "complete"}
+        What mass and length are those of; the hubs of a complete clutch go on as bosses.
     seed : bool
         Whether the model is that of the source, in which mean radius of the coils and radius of the hub are one.
     """
@@ -152,15 +242,15 @@ def interference_drawing(spec: Mapping[str, Any], design: Design, *, complete: b
         f"interference of {number_text(size('interference'))} mm on the radius."
     )
     return _drawn(
-        size, spring, _Outside(), title="longitudinal section", complete=complete, seed=seed, told=(fit, coils),
+        _AROUND[scope](size, spring), _Outside(), title="longitudinal section", seed=seed, told=(fit, coils),
         omitted=("tangs and other ends of the spring",),
     )  # fmt: skip
 
 
-def clearance_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, seed: bool) -> Drawing:
+def clearance_drawing(spec: Mapping[str, Any], design: Design, *, scope: str, seed: bool) -> Drawing:
     """Return the drawing of a clutch with clearance fit, engaged; parameters as for the other one.
 
-    What is complete has its control collar.
+    A complete clutch has its control collar.
     """
     size = Sizes(spec, design)
     spring = _Spring(size, fixed=True)
@@ -173,54 +263,24 @@ def clearance_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool
         f"The clutch is drawn engaged, its coils closed. Released, they stand "
         f"{number_text(size('clearance'), 3)} mm clear of the first hub on the radius."
     )
-    omitted = ["tang at the free end, anchor of the other end", "stop and actuator that hold the free end"]
-    if complete:
-        outside = _Outside(size("clearance"), size("collar_bore") / 2, size("outer_diameter") / 2)
-        omitted.append("what guides the collar and takes the tang in it")
-    else:
-        outside = _Outside()
-        omitted.append("control collar")
+    around = _AROUND[scope](size, spring)
+    ends = ("tang at the free end, anchor of the other end", "stop and actuator that hold the free end")
     return _drawn(
-        size, spring, outside, title="longitudinal section, engaged", complete=complete, seed=seed, told=(fit, coils),
-        omitted=tuple(omitted),
+        around, around.outside(), title="longitudinal section, engaged", seed=seed, told=(fit, coils),
+        omitted=(*ends, around.collar),
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class _Outside:
-    """The collar around the spring [mm], if there is one."""
-
-    clearance: float = 0.0
-    bore: float = 0.0
-    radius: float = 0.0
-
-
 def _drawn(
-    size: Sizes,
-    spring: _Spring,
-    outside: _Outside,
-    *,
-    title: str,
-    complete: bool,
-    seed: bool,
-    told: tuple[str, ...],
-    omitted: tuple[str, ...],
+    around: _Alone, outside: _Outside, *, title: str, seed: bool, told: tuple[str, ...], omitted: tuple[str, ...]
 ) -> Drawing:
-    bore, hub = size("bore_diameter") / 2, spring.inside
-    out, boss = (size("boss_length"), size("boss_diameter") / 2) if complete else (0.0, hub)
-    end, meeting = spring.length, spring.meeting
-    first, second = _hubs(spring, bore=bore, boss=boss, out=out)
-    shapes: list[Drawable] = []
-    if complete:
-        broken = 2 * bore * SHAFT_OUT
-        shapes += shaft_end(meeting, -out, bore, broken=broken)
-        shapes += shaft_end(meeting, end + out, bore, broken=broken)
-    shapes += [first, second, *spring.coils()]
+    size, spring = around.size, around.spring
+    bore, hub, end = around.bore, spring.inside, spring.length
+    shapes = [*around.hubs(), *spring.coils()]
     over = spring.outside
     dimensions = spring.lengths()
     balloons = [Balloon((spring.middle(0.3), -(hub + over) / 2), SPRING, "bottom")]
-    masses = ("hub_mass", "boss_mass") if complete else ("hub_mass",)
-    weights = [Weight((FIRST, SECOND), masses, "hub_density")]
+    weights = [Weight((FIRST, SECOND), around.masses, "hub_density")]
     surface, note = size.part("friction_pair"), "surface under the spring"
     items = [
         Item(FIRST, "First hub", 1, surface, note, Hatch.RIGHT),
@@ -235,54 +295,20 @@ def _drawn(
         dimensions += [diameter(end, over, "spring_diameter"), diameter(end, outside.bore, "collar_bore")]
     across = outside.radius or over
     dimensions += [diameter(end, hub, "hub_diameter"), diameter(end, across, "outer_diameter")]
-    if complete:
-        dimensions += [
-            Dimension((-out, boss), (end + out, boss), "length", "top"),
-            Dimension((-out, boss), (0.0, boss), "boss_length", "top"),
-            Dimension((end, boss), (end + out, boss), "boss_length", "top"),
-            Dimension((0.0, over), (end, over), "spring_length", "top"),
-            diameter(-out, bore, "bore_diameter", side="left"),
-            diameter(-out, boss, "boss_diameter", side="left"),
-        ]
-        places = (-out / 2, end + out / 2)
-        omitted = (*omitted, "keys and keyways, bearing of the hubs against each other, housing")
-    else:
-        dimensions += [
-            Dimension((0.0, over), (end, over), "length", "top"),
-            diameter(0.0, bore, "bore_diameter", side="left"),
-        ]
-        places = (meeting / 2, (meeting + end) / 2)
-        omitted = (*omitted, "bosses of the hubs, shafts and their keys: mass and length are those of the spring")
-    low = -(bore + min(hub, boss)) / 2
+    dimensions += around.dimensions()
+    low, places = -(bore + min(hub, around.boss)) / 2, around.places()
     balloons += [Balloon((places[0], low), FIRST, "bottom"), Balloon((places[1], low), SECOND, "bottom")]
     remarks = [
         *told,
         "The hubs are drawn meeting under the middle of the coils over the gap, as their mass is counted: how wide "
         "the gap is there is not known.",
         ENDS,
+        *around.remarks,
     ]
-    if complete:
-        remarks.append(SHAFTS)
     if seed:
         remarks.append("Model seed counts the radius of the hub as mean radius of the coils: its spring is lighter.")
     else:
         weights.append(spring.weight())
     detail = spring.detail(clearance=outside.clearance, wall=outside.radius - outside.bore)
     view = View("Section", tuple(shapes), tuple(dimensions), tuple(balloons), (detail,), revolved=True)
-    return Drawing(title, (view,), tuple(items), omitted, tuple(remarks), tuple(weights))
-
-
-def _hubs(spring: _Spring, *, bore: float, boss: float, out: float) -> tuple[Area, Area]:
-    """Return both hubs, which go on as bosses of a radius beyond the spring [mm]."""
-    hub, meeting, end = spring.inside, spring.meeting, spring.length
-    if not out:
-        return ring(0.0, meeting, bore, hub, FIRST), ring(meeting, end, bore, hub, SECOND)
-    first = Area(
-        ((-out, bore), (meeting, bore), (meeting, hub), (0.0, hub), (0.0, boss), (-out, boss)),
-        FIRST,
-    )
-    second = Area(
-        ((meeting, bore), (end + out, bore), (end + out, boss), (end, boss), (end, hub), (meeting, hub)),
-        SECOND,
-    )
-    return first, second
+    return Drawing(title, (view,), tuple(items), (*omitted, around.omitted), tuple(remarks), tuple(weights))

@@ -1,8 +1,7 @@
 """Wrap spring clutch: a helical spring across two hubs that grips them by belt friction.
 
-Every function takes floats, arrays or CasADi symbols. Two models: ``seed`` is the source as printed (hub radius and
-mean coil radius are one, the curvature change is linear, the spring has no weight); ``refined`` tells the radii apart,
-takes the exact curvature change and the centrifugal force. An interference below 0 is a clearance.
+Every function takes floats, arrays or CasADi symbols. An interference below 0 is a clearance. Hub radius and mean coil
+radius are apart here; module ``models`` has the source as printed too.
 
 Source: S2 (Kozma, Molnar, Varadi, Oroszvary, wrap spring clutch), eq. (1)-(22); "derived" marks what is not in it.
 """
@@ -15,7 +14,6 @@ import numpy as np
 
 from ..mechanics import Quantity
 
-MODELS = ("refined", "seed")
 # Beyond this exponent the clutch is locked for any practical purpose, and exp() would sooner or later overflow.
 LOCKED_BELT_EXPONENT = 50.0
 # Arc at a free end that lifts off a rigid hub: root of psi/2 + sin(2 psi)/4 - sin(psi) = 0 [rad].
@@ -25,8 +23,8 @@ TIP_ARC = 2.1391821738
 # -- geometry --------------------------------------------------------------------------------------
 
 
-def mean_radius(hub_diameter: Quantity, thickness: Quantity, model: str = "refined") -> Quantity:
-    """Mean radius of the fitted coils, r_m = (d_h + a)/2; seed: the hub radius.
+def mean_radius(hub_diameter: Quantity, thickness: Quantity) -> Quantity:
+    """Mean radius of the fitted coils, r_m = (d_h + a)/2.
 
     Parameters
     ----------
@@ -34,8 +32,6 @@ def mean_radius(hub_diameter: Quantity, thickness: Quantity, model: str = "refin
         d_h [m].
     thickness : scalar, array or symbol
         Radial wire thickness a [m].
-    model : {"refined", "seed"}
-        Model.
 
     Returns
     -------
@@ -44,18 +40,18 @@ def mean_radius(hub_diameter: Quantity, thickness: Quantity, model: str = "refin
 
     References
     ----------
-    Geometry. S2 calls r the mean radius in (1) and the radius of the drum in (14) and neglects the difference.
+    Geometry.
 
     Examples
     --------
-    >>> mean_radius(0.040, 0.003), mean_radius(0.040, 0.003, "seed")
-    (0.0215, 0.02)
+    >>> mean_radius(0.040, 0.003)
+    0.0215
     """
-    return hub_diameter / 2 if model == "seed" else (hub_diameter + thickness) / 2
+    return (hub_diameter + thickness) / 2
 
 
-def radius_ratio(hub_diameter: Quantity, thickness: Quantity, model: str = "refined") -> Quantity:
-    """Hub radius over mean coil radius, r_h/r_m = 1/(1 + a/d_h); seed: 1.
+def radius_ratio(hub_diameter: Quantity, thickness: Quantity) -> Quantity:
+    """Hub radius over mean coil radius, r_h/r_m = 1/(1 + a/d_h).
 
     Parameters
     ----------
@@ -63,8 +59,6 @@ def radius_ratio(hub_diameter: Quantity, thickness: Quantity, model: str = "refi
         d_h [m].
     thickness : scalar, array or symbol
         Radial wire thickness a [m].
-    model : {"refined", "seed"}
-        Model.
 
     Returns
     -------
@@ -80,7 +74,7 @@ def radius_ratio(hub_diameter: Quantity, thickness: Quantity, model: str = "refi
     >>> radius_ratio(0.040, 0.003)
     0.93023
     """
-    return 1.0 if model == "seed" else 1 / (1 + thickness / hub_diameter)
+    return 1 / (1 + thickness / hub_diameter)
 
 
 def second_moment(width: Quantity, thickness: Quantity) -> Quantity:
@@ -306,8 +300,8 @@ def collar_diameter(spring_diameter: Quantity, clearance: Quantity, wall: Quanti
 # -- the fitted spring -----------------------------------------------------------------------------
 
 
-def free_radius(interference: Quantity, mean_radius: Quantity, model: str = "refined") -> Quantity:
-    """Mean radius of the free spring as it enters the curvature, r_m - dr; seed: r_m, as if dr were nothing.
+def free_radius(interference: Quantity, mean_radius: Quantity) -> Quantity:
+    """Mean radius of the free spring as it enters the curvature, r_m - dr.
 
     Parameters
     ----------
@@ -315,8 +309,6 @@ def free_radius(interference: Quantity, mean_radius: Quantity, model: str = "ref
         dr at the mean radius, below 0 for a clearance [m].
     mean_radius : scalar, array or symbol
         r_m of the fitted spring [m]; above dr.
-    model : {"refined", "seed"}
-        Model.
 
     Returns
     -------
@@ -329,11 +321,11 @@ def free_radius(interference: Quantity, mean_radius: Quantity, model: str = "ref
 
     Examples
     --------
-    >>> 1000 * free_radius(0.00025, 0.0215), 1000 * free_radius(0.00025, 0.0215, "seed")
-    (21.25, 21.5)
+    >>> 1000 * free_radius(0.00025, 0.0215)
+    21.25
     """
     # Through the ratio dr/r_m, which a limit bounds: so the search knows the free radius to be positive.
-    return mean_radius if model == "seed" else mean_radius * (1 - interference / mean_radius)
+    return mean_radius * (1 - interference / mean_radius)
 
 
 def curvature_change(interference: Quantity, mean_radius: Quantity, free_radius: Quantity) -> Quantity:
@@ -365,8 +357,8 @@ def curvature_change(interference: Quantity, mean_radius: Quantity, free_radius:
     return interference / (mean_radius * free_radius)
 
 
-def interference_for(curvature: Quantity, mean_radius: Quantity, model: str = "refined") -> Quantity:
-    """Interference that gives a curvature change, dr = dk r_m**2/(1 + dk r_m); seed: dk r**2.
+def interference_for(curvature: Quantity, mean_radius: Quantity) -> Quantity:
+    """Interference that gives a curvature change, dr = dk r_m**2/(1 + dk r_m).
 
     Parameters
     ----------
@@ -374,8 +366,6 @@ def interference_for(curvature: Quantity, mean_radius: Quantity, model: str = "r
         dk [1/m].
     mean_radius : scalar, array or symbol
         r_m [m].
-    model : {"refined", "seed"}
-        Model.
 
     Returns
     -------
@@ -391,8 +381,7 @@ def interference_for(curvature: Quantity, mean_radius: Quantity, model: str = "r
     >>> 1000 * interference_for(curvature_change(0.00025, 0.0215, 0.02125), 0.0215)
     0.25
     """
-    linear = curvature * mean_radius * mean_radius
-    return linear if model == "seed" else linear / (1 + curvature * mean_radius)
+    return curvature * mean_radius * mean_radius / (1 + curvature * mean_radius)
 
 
 def bending_moment(elastic_modulus: Quantity, width: Quantity, thickness: Quantity, curvature: Quantity) -> Quantity:

@@ -14,6 +14,7 @@ from .. import practice, wear
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from . import blocks, body, curves, formulas
+from .layers import Fit, layers_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -127,6 +128,11 @@ class Wants(Block):
         group="material",
     )
 
+    @property
+    def lubricated(self) -> bool:
+        """True if dry friction pairs are left out."""
+        return False
+
 
 class PracticeWants(Wants):
     """Requirements of the interference fit by the rules of practice."""
@@ -151,6 +157,11 @@ class PracticeWants(Wants):
         text="Largest interference, with its tolerance, over mean coil radius: the spring must be opened over its hub",
         source=f"tinyclutch.com, spring clutches: slightly smaller; {UNSOURCED}",
     )
+
+    @property
+    def lubricated(self) -> bool:
+        """True if dry friction pairs are left out: where the clutch overruns."""
+        return self.overrun_speed is not None
 
 
 class Rules(body.SpringRules):
@@ -177,6 +188,45 @@ class Rules(body.SpringRules):
         source=UNSOURCED,
     )
 
+    def limit(self, d: Declaration, built: blocks.Built) -> None:
+        """Declare the limits that an engineer adds to this fit."""
+        super().limit(d, built)
+        wants: Wants = built.wants
+        d.at_least(
+            "hub_wall",
+            built.coils.hub_diameter,
+            self.hub_wall_ratio * built.duty.bore_diameter,
+            "mm",
+            text="The hub has a wall around its bore",
+            source=UNSOURCED,
+        )
+        if wants.overrun_speed is None:
+            return
+        pair, needed = built.friction.part, (wear.DEPTH, wear.RATE)
+        if pair.known.issuperset(needed):
+            life = d.derive(
+                "overrun_life",
+                "h",
+                formulas.overrun_life(
+                    pair.wearable_depth,
+                    pair.wear_rate,
+                    pair.mu_max,
+                    d.derived["overrun_pv"].sx,
+                    wants.overrun_duty,
+                ),
+                symbol="t_wear",
+                text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",
+                source=WEAR,
+            )
+        else:
+            life = pair.optional(next(column for column in needed if column not in pair.known))
+            wear.remark_no_wear(d, pair, "overrun_life is not told", needed)
+        d.at_least("overrun_life", life, self.overrun_life_min, "h", text="The hubs last long enough", source=WEAR)
+
+
+FIT = Fit("drag_torque", InterferenceDuty, PracticeInterferenceDuty, Wants, PracticeWants, Rules, body.BodyRequirements)
+LAYERS = layers_of(FIT)
+
 
 class WrapSpringClutch(DesignProblem):
     """Wrap spring clutch, interference fit; also a freewheel.
@@ -191,7 +241,7 @@ class WrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         options = d.block(blocks.Options)
         overload = d.option(
             "overload",
@@ -203,18 +253,9 @@ class WrapSpringClutch(DesignProblem):
             source=NOT_IN_S2,
             group="duty",
         )
-        body_wants = d.block(body.BodyRequirements) if scope.rules or scope.complete else None
-        duty = blocks.declare_duty(
-            d,
-            kind=PracticeInterferenceDuty if scope.rules else InterferenceDuty,
-            bore=None if body_wants is None else body_wants.bore,
-        )
-        wants = (
-            d.block(PracticeWants, drag_torque_limit=body.FREE_SHARE * duty.required_torque)
-            if scope.rules
-            else d.block(Wants)
-        )
-        rules = d.block(Rules) if scope.rules else None
+        layer = layer_of(d)
+        duty = layer.declare_duty(d)
+        wants: Wants = layer.declare_wants(d, duty)
         interference = d.variable(
             "interference",
             "mm",
@@ -226,22 +267,18 @@ class WrapSpringClutch(DesignProblem):
         )
         wire = blocks.declare_wire(d, options=options)
         coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
-        friction = blocks.declare_friction(
-            d,
-            duty=duty,
-            coils=coils,
-            lubricated=rules is not None and wants.overrun_speed is not None,
-        )
+        friction = blocks.declare_friction(d, duty=duty, coils=coils, lubricated=wants.lubricated)
         if wants.drag_torque_limit is not None:
             self._refuse_drag(d, duty=duty, wants=wants, friction=friction)
 
         self._declare_fit(d, duty=duty, wants=wants, coils=coils, interference=interference)
-        low, high = self._fitted_moments(options, duty, wire, coils, interference)
-        self._name_fit(d, options=options, duty=duty, wire=wire, coils=coils, interference=interference)
+        low, high = self._fitted_moments(duty, wire, coils, interference)
+        self._name_fit(d, duty=duty, wire=wire, coils=coils, interference=interference)
         text = "Bending moment of the loosest fit"
         d.step("least_moment", "N*m", low, symbol="M_lo", text=text, source=f"{S2}, eq. (4)")
-        effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
-        guards = self._declare_grip(d, options=options, duty=duty, wire=wire, coils=coils, low=low)
+        spinning = blocks.centrifugal_moment(duty, wire, coils)
+        effective = low - spinning
+        guards = coils.model.declare_grip(d, low, spinning)
         blocks.declare_closing(
             d, duty=duty, torque=formulas.closing_torque(effective, friction.exponent_low), needs=guards
         )
@@ -261,35 +298,15 @@ class WrapSpringClutch(DesignProblem):
         self._declare_fatigue(d, duty=duty, wants=wants, wire=wire, coils=coils, bending=bending, high=high)
         self._declare_hub(d, duty=duty, wants=wants, coils=coils, load=load)
         spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils)
-        size = spring
-        if body_wants is not None and scope.complete:
-            size = body_wants.whole_size(duty=duty, spring=spring)
-        blocks.declare_size(d, duty=duty, size=size, whole=scope.complete, outside="coils")
+        built = blocks.Built(duty, wants, wire, coils, friction, spring)
+        blocks.declare_size(d, duty=duty, size=layer.size(built))
         drag = self._declare_drag(d, wants=wants, friction=friction, high=high)
         if wants.overrun_speed is not None:
-            self._declare_overrun(
-                d, wants=wants, wire=wire, coils=coils, friction=friction, spring=spring, high=high, drag=drag
-            )
-        if body_wants is not None:
-            body.declare_parts(d, duty=duty, wants=body_wants, spring=spring)
-            whole = body_wants.whole_size(duty=duty, spring=spring)
-            body.declare_cost(d, wire=wire, spring=spring, mass=whole.mass, parts=3)
-        if rules is not None:
-            body.limit_spring(d, rules=rules, wire=wire, coils=coils)
-            self._declare_rules(d, rules=rules, duty=duty, wants=wants, coils=coils, friction=friction)
-        self._declare_windup(d, duty=duty, wire=wire, coils=coils, friction=friction, low=low)
-        self._declare_utilisation(d, wire=wire, friction=friction, stress=stress, pressure=pressure)
-        self._declare_remarks(
-            d,
-            duty=duty,
-            wants=wants,
-            wire=wire,
-            coils=coils,
-            friction=friction,
-            effective=effective,
-            bending=bending,
-            stress=stress,
-        )
+            self._declare_overrun(d, built, high=high, drag=drag)
+        layer.extend(d, built)
+        self._declare_windup(d, built, low=low)
+        self._declare_utilisation(d, built, stress=stress, pressure=pressure)
+        self._declare_remarks(d, built, effective=effective, bending=bending, stress=stress)
         d.headline(
             "mass",
             "outer_diameter",
@@ -300,15 +317,9 @@ class WrapSpringClutch(DesignProblem):
             "temperature_rise",
             sized_by="closing_torque",
         )
-        # By the rules of practice the drag is bounded, and what is left to ask for is a small clutch.
-        d.objective("mass")
-        d.objective("drag_torque", default=rules is None)
-        for name in ("stress_utilisation", "pressure_utilisation", "outer_diameter"):
-            d.objective(name, default=False)
-        if rules is not None:
-            d.objective("length")
-            if "overrun_life" in d.derived:
-                d.objective("overrun_life", "max", default=False)
+        layer.declare_objectives(d, "stress_utilisation", "pressure_utilisation", "outer_diameter")
+        if "overrun_life" in d.derived:
+            d.objective("overrun_life", "max", default=False)
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, Any]:
         """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
@@ -323,7 +334,7 @@ class WrapSpringClutch(DesignProblem):
         return wrap_spring.interference_drawing(
             spec,
             design,
-            complete=self.option("mass_scope") == "complete",
+            scope=self.option("mass_scope"),
             seed=self.option("model") == "seed",
         )
 
@@ -342,14 +353,14 @@ class WrapSpringClutch(DesignProblem):
         )
 
     def _fitted_moments(
-        self, options: blocks.Options, duty: blocks.Duty, wire: blocks.Wire, coils: blocks.Coils, interference: Any
+        self, duty: blocks.Duty, wire: blocks.Wire, coils: blocks.Coils, interference: Any
     ) -> tuple[Any, Any]:
         """Return the bending moments of the loosest and the tightest fit [N m]."""
         tolerance, mean = duty.interference_tolerance, coils.mean_radius
         loosest = interference - tolerance
         # The tightest fit is bounded by interference_range; what is built on it is known to be positive.
-        small = formulas.free_radius(interference + tolerance, mean, options.model)
-        large = small if options.model == "seed" else small + 2 * tolerance
+        small = coils.model.free_radius(interference + tolerance, mean)
+        large = coils.model.loosened(small, 2 * tolerance)
         low = blocks.fitted_moment(wire, coils, loosest, large)
         return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
 
@@ -357,7 +368,6 @@ class WrapSpringClutch(DesignProblem):
         self,
         d: Declaration,
         *,
-        options: blocks.Options,
         duty: blocks.Duty,
         wire: blocks.Wire,
         coils: blocks.Coils,
@@ -365,30 +375,25 @@ class WrapSpringClutch(DesignProblem):
     ) -> None:
         """Name what the moments of the loosest and the tightest fit are made of."""
         tolerance, mean = duty.interference_tolerance, coils.mean_radius
-        small = formulas.free_radius(interference + tolerance, mean, options.model)
-        large = small if options.model == "seed" else small + 2 * tolerance
+        small = coils.model.free_radius(interference + tolerance, mean)
+        large = coils.model.loosened(small, 2 * tolerance)
         loosest = interference - tolerance
         inside = coils.hub_diameter - 2 * interference
         curvature = formulas.curvature_change(loosest, mean, large)
-        named = [
+        source = f"{S2}, Delta r; {NOT_IN_S2}"
+        for name, unit, value, symbol, text in (
             ("least_interference", "mm", loosest, "dr_lo", "Interference of the loosest fit, dr - tol"),
             ("curvature_change", "1/m", curvature, "kappa", "Curvature change of the wire, loosest fit"),
             ("free_inside_diameter", "mm", inside, "d_free", "Inside of the free spring"),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source=source)
+        text = "What the spinning wire carries of its bending moment itself"
+        named = [
+            ("least_free_radius", "mm", small, "r_free_lo", "Mean radius of the free spring, tightest fit"),
+            ("greatest_free_radius", "mm", large, "r_free_hi", "Mean radius of the free spring, loosest fit"),
+            ("centrifugal_moment", "N*m", blocks.centrifugal_moment(duty, wire, coils), "M_cf", text),
         ]
-        if options.model != "seed":
-            named += [
-                ("least_free_radius", "mm", small, "r_free_lo", "Mean radius of the free spring, tightest fit"),
-                ("greatest_free_radius", "mm", large, "r_free_hi", "Mean radius of the free spring, loosest fit"),
-                (
-                    "centrifugal_moment",
-                    "N*m",
-                    blocks.centrifugal_moment(options, duty, wire, coils),
-                    "M_cf",
-                    "What the spinning wire carries of its bending moment itself",
-                ),
-            ]
-        for name, unit, value, symbol, text in named:
-            d.step(name, unit, value, symbol=symbol, text=text, source=f"{S2}, Delta r; {NOT_IN_S2}")
+        coils.model.declare_steps(d, named, source)
 
     def _declare_fit(
         self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
@@ -418,34 +423,6 @@ class WrapSpringClutch(DesignProblem):
             "nothing",
             source=S2,
         )
-
-    def _declare_grip(
-        self,
-        d: Declaration,
-        *,
-        options: blocks.Options,
-        duty: blocks.Duty,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        low: Any,
-    ) -> tuple[str, ...]:
-        """Declare that something grips at all, and return the guards without which there is no closing torque.
-
-        Model ``seed`` counts the torque at rest, as its source does: there the preload alone decides, and what the
-        speed does is told by the limit ``liftoff`` in both models.
-        """
-        if options.model == "seed":
-            return ("interference_positive",)
-        d.at_least(
-            "grip",
-            low,
-            blocks.centrifugal_moment(options, duty, wire, coils),
-            "N*m",
-            guard=True,
-            text="At spring speed the loosest spring is below its lift-off; otherwise nothing grips",
-            source=NOT_IN_S2,
-        )
-        return ("grip",)  # without interference there is no preload either
 
     def _declare_liftoff(
         self, d: Declaration, *, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
@@ -589,19 +566,9 @@ class WrapSpringClutch(DesignProblem):
             )
         return drag
 
-    def _declare_overrun(
-        self,
-        d: Declaration,
-        *,
-        wants: Wants,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        friction: blocks.Friction,
-        spring: blocks.Size,
-        high: Any,
-        drag: Any,
-    ) -> None:
-        preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
+    def _declare_overrun(self, d: Declaration, built: blocks.Built, *, high: Any, drag: Any) -> None:
+        wants, coils, spring = built.wants, built.coils, built.spring
+        preload = formulas.contact_pressure(high, built.wire.width, coils.hub_radius, coils.mean_radius)
         rubbing = d.derive(
             "overrun_pv",
             "W/mm2",
@@ -613,7 +580,7 @@ class WrapSpringClutch(DesignProblem):
         d.at_most(
             "overrun_pv",
             rubbing,
-            friction.part.pv_allow,
+            built.friction.part.pv_allow,
             "W/mm2",
             text="Wire and hub stand the rubbing",
             source=NOT_IN_S2,
@@ -637,59 +604,9 @@ class WrapSpringClutch(DesignProblem):
             source=f"lumped heat balance; {NOT_IN_S2}",
         )
 
-    def _declare_rules(
-        self,
-        d: Declaration,
-        *,
-        rules: Rules,
-        duty: blocks.Duty,
-        wants: Wants,
-        coils: blocks.Coils,
-        friction: blocks.Friction,
-    ) -> None:
-        """Declare the limits that an engineer adds to this fit."""
-        d.at_least(
-            "hub_wall",
-            coils.hub_diameter,
-            rules.hub_wall_ratio * duty.bore_diameter,
-            "mm",
-            text="The hub has a wall around its bore",
-            source=UNSOURCED,
-        )
-        if wants.overrun_speed is None:
-            return
-        pair, needed = friction.part, (wear.DEPTH, wear.RATE)
-        if pair.known.issuperset(needed):
-            life = d.derive(
-                "overrun_life",
-                "h",
-                formulas.overrun_life(
-                    pair.wearable_depth,
-                    pair.wear_rate,
-                    pair.mu_max,
-                    d.derived["overrun_pv"].sx,
-                    wants.overrun_duty,
-                ),
-                symbol="t_wear",
-                text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",
-                source=WEAR,
-            )
-        else:
-            life = pair.optional(next(column for column in needed if column not in pair.known))
-            wear.remark_no_wear(d, pair, "overrun_life is not told", needed)
-        d.at_least("overrun_life", life, rules.overrun_life_min, "h", text="The hubs last long enough", source=WEAR)
-
-    def _declare_windup(
-        self,
-        d: Declaration,
-        *,
-        duty: blocks.Duty,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        friction: blocks.Friction,
-        low: Any,
-    ) -> None:
-        slope = friction.part.mu_min * coils.radius_ratio
+    def _declare_windup(self, d: Declaration, built: blocks.Built, *, low: Any) -> None:
+        duty, wire, coils = built.duty, built.wire, built.coils
+        slope = built.friction.part.mu_min * coils.radius_ratio
         stiffness = wire.modulus * wire.thickness * wire.width
         angle = formulas.windup_angle(duty.required_torque, low, slope, coils.mean_radius, stiffness, duty.gap_coils)
         for name, unit, value, symbol, text in (
@@ -713,13 +630,11 @@ class WrapSpringClutch(DesignProblem):
             source=NOT_IN_S2,
         )
 
-    def _declare_utilisation(
-        self, d: Declaration, *, wire: blocks.Wire, friction: blocks.Friction, stress: Any, pressure: Any
-    ) -> None:
+    def _declare_utilisation(self, d: Declaration, built: blocks.Built, *, stress: Any, pressure: Any) -> None:
         d.derive(
             "stress_utilisation",
             "-",
-            stress / wire.bending_allow,
+            stress / built.wire.bending_allow,
             symbol="u_s",
             text="wire stress over its limit",
             source=f"{S2}, eq. (8) and (18)",
@@ -727,25 +642,16 @@ class WrapSpringClutch(DesignProblem):
         d.derive(
             "pressure_utilisation",
             "-",
-            pressure / friction.part.p_allow,
+            pressure / built.friction.part.p_allow,
             symbol="u_p",
             text="contact pressure over its limit",
             source=f"{S2}, eq. (22), corrected",
         )
 
     def _declare_remarks(
-        self,
-        d: Declaration,
-        *,
-        duty: blocks.Duty,
-        wants: Wants,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        friction: blocks.Friction,
-        effective: Any,
-        bending: Any,
-        stress: Any,
+        self, d: Declaration, built: blocks.Built, *, effective: Any, bending: Any, stress: Any
     ) -> None:
+        wants, wire, coils, friction = built.wants, built.wire, built.coils, built.friction
         d.advise(
             "weak_belt",
             friction.exponent_low < 2,
@@ -765,7 +671,7 @@ class WrapSpringClutch(DesignProblem):
         )
         d.advise(
             "tip_lifts_off",
-            formulas.closing_torque(effective, tips) < duty.required_torque,
+            formulas.closing_torque(effective, tips) < built.duty.required_torque,
             "the tip of a free end lifts off and about 0.05 coils there do not grip; counting that, the least closing "
             "torque is below required torque: raise slip safety",
             source=NOT_IN_S2,

@@ -2,7 +2,6 @@
 
 import inspect
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from synth.problems.wrap_spring import formulas as ws
+from synth.problems.wrap_spring.models import MODELS
 
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of
 
@@ -20,10 +20,11 @@ HUB, INTERFERENCE, COILS, MU = 0.040, 0.25e-3, 4, 0.10
 
 def figures(model):
     """Everything of the worked example, with the formulas of one model."""
-    mean = ws.mean_radius(HUB, A, model)
-    curvature = ws.curvature_change(INTERFERENCE, mean, ws.free_radius(INTERFERENCE, mean, model))
+    formulas = MODELS[model]
+    mean = formulas.mean_radius(HUB, A)
+    curvature = ws.curvature_change(INTERFERENCE, mean, formulas.free_radius(INTERFERENCE, mean))
     moment = ws.bending_moment(E, B, A, curvature)
-    beta = ws.belt_exponent(MU, COILS, ws.radius_ratio(HUB, A, model))
+    beta = ws.belt_exponent(MU, COILS, formulas.radius_ratio(HUB, A))
     closing = ws.closing_torque(moment, beta)
     return {
         "M": moment,
@@ -63,7 +64,7 @@ def test_worked_example(model, name, value):
     assert float(figures(model)[name]) == pytest.approx(value, rel=6e-6)
 
 
-@pytest.mark.parametrize("model", ws.MODELS)
+@pytest.mark.parametrize("model", MODELS)
 def test_every_multiple_of_one_figure_is_one(model):
     """Pressure, torques and stress hang together by M and beta alone, whatever the model."""
     f = figures(model)
@@ -257,21 +258,24 @@ def test_energising_torque_is_the_inverse_of_the_closing_torque(beta, torque, mo
 
 
 @given(st.floats(1e-6, 3e-3), st.floats(0.004, 0.1))
-@pytest.mark.parametrize("model", ws.MODELS)
+@pytest.mark.parametrize("model", MODELS)
 def test_interference_is_the_inverse_of_the_curvature(model, interference, mean):
-    curvature = ws.curvature_change(interference, mean, ws.free_radius(interference, mean, model))
-    assert ws.interference_for(curvature, mean, model) == pytest.approx(interference, rel=1e-9)
+    formulas = MODELS[model]
+    curvature = ws.curvature_change(interference, mean, formulas.free_radius(interference, mean))
+    assert formulas.interference_for(curvature, mean) == pytest.approx(interference, rel=1e-9)
     if model == "refined":
         assert curvature == pytest.approx(1 / (mean - interference) - 1 / mean, rel=1e-6)
 
 
 @given(st.floats(1e-5, 1e-3), st.floats(1e-6, 2e-4), st.floats(0.004, 0.1))
-@pytest.mark.parametrize("model", ws.MODELS)
+@pytest.mark.parametrize("model", MODELS)
 def test_tightened_moment_is_that_of_the_larger_interference(model, interference, growth, mean):
-    def moment(dr):
-        return ws.bending_moment(E, B, A, ws.curvature_change(dr, mean, ws.free_radius(dr, mean, model)))
+    free_radius = MODELS[model].free_radius
 
-    radii = [ws.free_radius(dr, mean, model) for dr in (interference, interference + growth)]
+    def moment(dr):
+        return ws.bending_moment(E, B, A, ws.curvature_change(dr, mean, free_radius(dr, mean)))
+
+    radii = [free_radius(dr, mean) for dr in (interference, interference + growth)]
     tightened = ws.tightened_moment(moment(interference), interference, growth, *radii)
     assert tightened == pytest.approx(moment(interference + growth), rel=1e-9)
 
@@ -291,16 +295,16 @@ def test_a_locked_clutch_has_a_finite_torque():
 BELT = {"moment": "N m", "belt_exponent": "-"}
 WIRE = {"width": "m", "thickness": "m"}
 CASES = [
-    *((partial(ws.mean_radius, model=m), {"hub_diameter": "m", "thickness": "m"}, "m") for m in ws.MODELS),
+    *((m.mean_radius, {"hub_diameter": "m", "thickness": "m"}, "m") for m in MODELS.values()),
     (ws.radius_ratio, {"hub_diameter": "m", "thickness": "m"}, "-"),
     (ws.second_moment, WIRE, "m4"),
     (ws.total_coils, {"coils_per_hub": "-", "gap_coils": "-", "fixed_coils": "-"}, "-"),
     (ws.spring_length, {"coils": "-", "width": "m", "coil_gap": "m"}, "m"),
     (ws.spring_mass, {"density": "kg/m3", **WIRE, "mean_radius": "m", "coils": "-"}, "kg"),
     (ws.hub_mass, {"density": "kg/m3", "hub_diameter": "m", "bore_diameter": "m", "length": "m"}, "kg"),
-    *((partial(ws.free_radius, model=m), {"interference": "m", "mean_radius": "m"}, "m") for m in ws.MODELS),
+    *((m.free_radius, {"interference": "m", "mean_radius": "m"}, "m") for m in MODELS.values()),
     (ws.curvature_change, {"interference": "m", "mean_radius": "m", "free_radius": "m"}, "1/m"),
-    *((partial(ws.interference_for, model=m), {"curvature": "1/m", "mean_radius": "m"}, "m") for m in ws.MODELS),
+    *((m.interference_for, {"curvature": "1/m", "mean_radius": "m"}, "m") for m in MODELS.values()),
     (ws.bending_moment, {"elastic_modulus": "Pa", **WIRE, "curvature": "1/m"}, "N m"),
     (
         ws.tightened_moment,
