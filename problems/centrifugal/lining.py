@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..mechanics import centrifugal, heat, ring
-from ..practice import lining_conditions
+from ..practice import current_linings
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
@@ -95,7 +95,7 @@ def declare_lining(d: Declaration, *, duty: Duty, rules: Rules | None) -> Lining
     )
     conditions = ["'disc facing' in surfaces or 'plate pack' in surfaces", "long_slip == 1"]
     if rules is not None:
-        conditions += lining_conditions(d, rules.allow_obsolete, rules=True)
+        conditions += current_linings(d, rules.allow_obsolete)
     pair = d.part(
         "friction_pair",
         "friction_materials",

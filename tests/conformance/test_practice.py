@@ -175,7 +175,13 @@ def test_practice_is_asked_by_the_layer_alone(family: str, monkeypatch: pytest.M
 
 
 def test_families_with_a_layer_get_no_fewer() -> None:
-    assert {*LAYERED} >= {"cone_clutch", "disc_clutch", "roller_coupling"}
+    assert {*LAYERED} >= {
+        "cone_clutch",
+        "disc_clutch",
+        "electromagnetic_clutch",
+        "multi_plate_clutch",
+        "roller_coupling",
+    }
 
 
 # -- tables of linings of one's own ------------------------------------------------------------------
