@@ -176,6 +176,10 @@ def test_practice_is_asked_by_the_layer_alone(family: str, monkeypatch: pytest.M
 
 def test_families_with_a_layer_get_no_fewer() -> None:
     assert {*LAYERED} >= {
+        "centrifugal_ball_ramp",
+        "centrifugal_lever",
+        "centrifugal_reversed",
+        "centrifugal_two_spring",
         "cone_clutch",
         "disc_clutch",
         "electromagnetic_clutch",
