@@ -15,6 +15,7 @@ from .mechanics.plates import shaft_shear_stress
 
 UNSOURCED = "practice, unsourced"
 SHAFT_STRENGTH = f"DIN 743-2, from memory; notch and pulsating share: {UNSOURCED}"
+COUNTED = {"on": "complete", "off": "parts"}  # default of mass_scope by practice
 THIN = 0.95  # of the diameter that shaft_shear_allow needs: a shaft of a series may lie a little below it
 MEGA = 1e6
 SHAFT_STEEL = 315e6  # Pa: fatigue strength of C45 in reversed bending, table metals
@@ -56,7 +57,7 @@ def declare_scope(d: Declaration) -> Scope:
     scope = d.option(
         "mass_scope",
         ("complete", "parts"),
-        "complete" if rules == "on" else "parts",
+        COUNTED[rules],
         symbol="scope",
         text="complete: mass, length and volume are those of the whole clutch; parts: of what its formulas size",
         source="geometry",
@@ -65,20 +66,15 @@ def declare_scope(d: Declaration) -> Scope:
     return Scope(rules=rules == "on", complete=scope == "complete")
 
 
-def lining_conditions(d: Declaration, allow_obsolete: str, *, rules: bool) -> list[str]:
-    """Return the conditions on rows of friction_materials that leave out what is built no more.
+def allowed_linings(d: Declaration, allow_obsolete: str) -> list[str]:
+    """Conditions on rows of friction_materials that leave out what new designs may not have."""
+    return [] if allow_obsolete == "yes" else ["new_design_allowed == 1"]
 
-    Parameters
-    ----------
-    d : Declaration
-        Knows the tables.
-    allow_obsolete : {"no", "historical", "yes"}
-        What the user accepts.
-    rules : bool
-        Whether the rules of practice count: then historical linings are left out too, where a table tells.
-    """
-    conditions = [] if allow_obsolete == "yes" else ["new_design_allowed == 1"]
-    if rules and allow_obsolete == "no" and d.has_column("friction_materials", "status"):
+
+def current_linings(d: Declaration, allow_obsolete: str) -> list[str]:
+    """Conditions on rows of friction_materials that leave out historical linings too, where the table has a status."""
+    conditions = allowed_linings(d, allow_obsolete)
+    if allow_obsolete == "no" and d.has_column("friction_materials", "status"):
         conditions.append("status in ('current', '')")  # a row of one's own need not say that it is current
     return conditions
 

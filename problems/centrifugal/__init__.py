@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from .body import (
-    Surroundings,
-    limit_discs,
-    limit_set,
-    limit_spring_circle,
-)
-from .duty import COMMON, SOURCES, Duty, declare_duty
+from .body import Built
+from .duty import COMMON, SOURCES, Duty
 from .engagement import (
     Contact,
-    advise_stop_load,
     declare_band,
     declare_clamp,
     declare_contact,
@@ -27,8 +21,7 @@ from .flyweights import (
     limit_weight_room,
 )
 from .lining import Lining, advise_release_gap, declare_lining, declare_wear
-from .rules import LeverRules, Rules, declare_rules
-from .size import declare_objectives, declare_size
+from .rules import LeverRules, Rules
 from .springs import (
     SpringSet,
     advise_springs,
@@ -41,6 +34,7 @@ from .springs import (
 __all__ = [
     "COMMON",
     "SOURCES",
+    "Built",
     "Contact",
     "Duty",
     "Flyweights",
@@ -48,30 +42,21 @@ __all__ = [
     "Lining",
     "Rules",
     "SpringSet",
-    "Surroundings",
     "Weights",
     "advise_gravity",
     "advise_release_gap",
     "advise_springs",
-    "advise_stop_load",
     "declare_band",
     "declare_clamp",
     "declare_contact",
-    "declare_duty",
     "declare_full_clamp",
     "declare_lining",
-    "declare_objectives",
     "declare_rest_radius",
-    "declare_rules",
-    "declare_size",
     "declare_springs",
     "declare_stop_force",
     "declare_wear",
     "declare_weights",
-    "limit_discs",
-    "limit_set",
     "limit_share_of_force",
-    "limit_spring_circle",
     "limit_spring_force",
     "limit_weight_room",
     "name_spring_lengths",

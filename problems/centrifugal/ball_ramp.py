@@ -15,6 +15,7 @@ from ..sources import NOT_IN_S4, S4
 from . import balls as ball_blocks
 from . import curves
 from . import state as states
+from .layers import LAYERS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,10 +37,8 @@ class CentrifugalBallRamp(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
-        duty = blocks.declare_duty(d, scope=scope)
-        rules = blocks.declare_rules(d, blocks.Rules, scope=scope)
-        wear = blocks.declare_wear(d) if scope.whole else None
+        layer = LAYERS[practice.declare_scope(d)](d, blocks.Rules)
+        duty, wear = layer.duty, layer.declare_wear(d)
         wants = ball_blocks.declare_force_limits(d, duty=duty)
         rest = blocks.declare_rest_radius(d)
         gap = d.variable(
@@ -67,7 +66,7 @@ class CentrifugalBallRamp(DesignProblem):
         )
         # All four make the spring force at contact, and hardly anything else.
         d.split_last("return_spring", "return_springs", "spring_preload_deflection", "plate_gap")
-        lining = blocks.declare_lining(d, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, linings=layer.linings(d))
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)
@@ -143,25 +142,27 @@ class CentrifugalBallRamp(DesignProblem):
         )
         ball_blocks.declare_ball_pressure(d, duty=duty, balls=balls, end_radius=end)
         ball_blocks.limit_circle_room(d, wants=wants, rest_radius=rest, balls=balls, springs=[springs])
-        blocks.declare_size(
+        layer.declare_size(
             d,
-            duty=duty,
-            lining=lining,
-            rest_radius=rest,
-            flyweights=blocks.Flyweights(balls.mass, end, balls.radius, balls.part.diameter, balls.count),
-            springs=[springs],
-            around=blocks.Surroundings(scope, wear, gap, balls.part),
+            blocks.Built(
+                lining,
+                rest,
+                blocks.Flyweights(balls.mass, end, balls.radius, balls.part.diameter, balls.count),
+                [springs],
+                wear=wear,
+                gap=gap,
+                travel=gap,
+                ball=balls.part,
+            ),
         )
-        if rules is not None:
-            blocks.limit_discs(d, rules=rules, lining=lining, travel=gap)
-            blocks.limit_set(d, rules=rules, springs=springs, deflection=deflection)
+        layer.limit_set(d, springs=springs, deflection=deflection)
         start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
         blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
         blocks.advise_release_gap(d, gap=gap, lining=lining)
         blocks.advise_springs(
             d, duty=duty, springs=springs, radius=rest, preload=deflection, travel=gap, what="the return springs"
         )
-        blocks.declare_objectives(d, scope=scope)
+        layer.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Friction at the balls and the force that the torque demands; of a design forces and travel over speed.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import cost, wear
 from ..mechanics import centrifugal
-from ..practice import UNSOURCED, Scope, name_boss
+from ..practice import UNSOURCED, name_boss
 from ..sources import DRIVE
 
 if TYPE_CHECKING:
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from .duty import WholeDuty
     from .flyweights import Flyweights
     from .lining import Lining
-    from .rules import LeverRules, Rules
+    from .rules import Rules
+    from .size import Parts
     from .springs import SpringSet
 
 LEAST_WORK = 1e-3  # friction work with which a driven side without inertia counts [J]
@@ -31,15 +32,18 @@ DISC_PLATES = 2  # flywheel and pressure plate
 
 
 @dataclass(frozen=True)
-class Surroundings:
-    """What a clutch has around the parts that its formulas know.
+class Built:
+    """Parts of a clutch that are declared.
 
     Attributes
     ----------
-    scope : Scope
-        What is counted.
+    lining, rest_radius, flyweights, springs
+        Lining, radius of the flyweights at rest, on which the springs stand too [m], flyweights at the end of their
+        way, and all springs.
     wear : symbol
-        Wear of all linings together [m]; None where nothing around the parts is counted.
+        Wear of all linings together [m].
+    gap : symbol
+        Travel of the plate to contact [m].
     travel : symbol
         Way along the axis for which there must be room [m].
     ball : Part or None
@@ -48,45 +52,20 @@ class Surroundings:
         Plates beside flywheel and pressure plate.
     """
 
-    scope: Scope
+    lining: Lining
+    rest_radius: Any
+    flyweights: Flyweights
+    springs: Sequence[SpringSet]
     wear: Any
+    gap: Any
     travel: Any
     ball: Part | None = None
     discs: int = 0
 
 
-def declare_body(
-    d: Declaration,
-    *,
-    duty: WholeDuty,
-    lining: Lining,
-    flyweights: Flyweights,
-    springs: Sequence[SpringSet],
-    around: Surroundings,
-    part_mass: Any,
-    counted: str,
-) -> None:
-    """Declare mass, length, wear and cost of the whole clutch: further discs and a boss on either shaft.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : WholeDuty
-        Requirements.
-    lining : Lining
-        Lining.
-    flyweights : Flyweights
-        Flyweights.
-    springs : sequence of SpringSet
-        All springs.
-    around : Surroundings
-        What is around them.
-    part_mass : symbol
-        Mass that the formulas know [kg].
-    counted : str
-        What it is of.
-    """
+def declare_bosses(d: Declaration, built: Built, duty: WholeDuty, parts: Parts) -> Parts:
+    """Name further discs and a boss on either shaft; the parts with their mass."""
+    lining = built.lining
     pair, rho = lining.pair, duty.steel_density
     discs = centrifugal.further_discs_mass(
         rho,
@@ -98,7 +77,6 @@ def declare_body(
         pair.lining_thickness,
     )
     bosses = 2 * duty.boss_mass(rho)
-    whole = part_mass + discs + bosses
     for name, value, symbol, text in (
         ("further_plate", centrifugal.FURTHER_PLATE, "t_fp", "Plate between two friction discs"),
         ("further_core", centrifugal.FURTHER_CORE, "t_fc", "Core of a friction disc"),
@@ -118,23 +96,18 @@ def declare_body(
     d.step("further_discs_mass", "kg", discs, symbol="m_fd", text=text, source="geometry")
     d.step("boss_mass", "kg", bosses, symbol="m_boss", text="A boss on either shaft", source="geometry")
     name_boss(d, duty)
-    d.derive("part_mass", "kg", part_mass, symbol="m_part", text=counted, source="geometry")
-    d.derive(
-        "mass",
-        "kg",
-        whole if around.scope.complete else part_mass,
-        symbol="m",
-        text="The whole clutch: its parts, the friction discs beyond the first with a plate for each, and a boss on "
-        "either shaft; the cover is among the plates of equivalent plate thickness"
-        if around.scope.complete
-        else counted,
-        source="geometry",
-    )
+    return replace(parts, mass=parts.mass + discs + bosses)
+
+
+def declare_body(d: Declaration, built: Built, duty: WholeDuty, complete: Parts) -> None:
+    """Declare length, wear and cost of the whole clutch."""
+    lining, flyweights = built.lining, built.flyweights
+    pair = lining.pair
     length = d.derive(
         "length",
         "mm",
         centrifugal.overall_length(
-            duty.equivalent_plate_thickness, lining.surfaces, pair.lining_thickness, around.travel, flyweights.width
+            duty.equivalent_plate_thickness, lining.surfaces, pair.lining_thickness, built.travel, flyweights.width
         ),
         symbol="L",
         text="Plates, friction discs, their travel, flyweights and cover",
@@ -154,23 +127,16 @@ def declare_body(
         d,
         pair,
         area=lining.area,
-        depth=wear.depth(pair, around.wear / lining.surfaces),
+        depth=wear.depth(pair, built.wear / lining.surfaces),
         work=np.maximum(duty.engagement_energy, LEAST_WORK),
         text="Engagements, each of the heat of engagement heat, until the linings are worn by lining wear together or "
         "by wearable depth each",
     )
-    _declare_cost(d, lining=lining, flyweights=flyweights, springs=springs, around=around, mass=whole)
+    _declare_cost(d, built, complete)
 
 
-def _declare_cost(
-    d: Declaration,
-    *,
-    lining: Lining,
-    flyweights: Flyweights,
-    springs: Sequence[SpringSet],
-    around: Surroundings,
-    mass: Any,
-) -> None:
+def _declare_cost(d: Declaration, built: Built, complete: Parts) -> None:
+    lining, flyweights, springs = built.lining, built.flyweights, built.springs
     special = [
         cost.Special(
             one.part.slot + "s",
@@ -182,15 +148,15 @@ def _declare_cost(
         )
         for one in springs
     ]
-    if around.ball is not None:
+    if built.ball is not None:
         special.append(
-            cost.Special("balls", around.ball, amount=flyweights.count, mass=flyweights.mass, pieces=flyweights.count)
+            cost.Special("balls", built.ball, amount=flyweights.count, mass=flyweights.mass, pieces=flyweights.count)
         )
     pieces: Any = sum(one.count for one in springs)
     cost.declare_cost(
         d,
-        mass=mass,
-        parts=lining.surfaces + DISC_PLATES + around.discs + flyweights.count + pieces,
+        mass=complete.mass,
+        parts=lining.surfaces + DISC_PLATES + built.discs + flyweights.count + pieces,
         lining=(lining.pair, lining.area),
         special=special,
     )
@@ -282,30 +248,5 @@ def limit_set(d: Declaration, *, rules: Rules, springs: SpringSet, deflection: A
         rules.wire_diameter_min,
         "mm",
         text=f"The {which} stand turning with the clutch",
-        source=UNSOURCED,
-    )
-
-
-def limit_spring_circle(d: Declaration, *, rules: LeverRules, rest_radius: Any, springs: Sequence[SpringSet]) -> None:
-    """Declare the limit that all springs stand beside each other on the circle of the weights.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : LeverRules
-        What the limit goes by.
-    rest_radius : symbol
-        Radius of the circle [m].
-    springs : sequence of SpringSet
-        All springs.
-    """
-    taken: Any = sum(one.share_of_circle(rules.spring_gap) for one in springs)
-    d.at_most(
-        "spring_circle",
-        taken,
-        rules.spring_circles * 2 * np.pi * rest_radius,
-        "mm",
-        text="The springs have room on the circle of the weights",
         source=UNSOURCED,
     )

@@ -80,6 +80,19 @@ class Flyweight:
         return tuple((centre[0] + x * c - y * s, centre[1] + x * s + y * c) for x, y in corners)
 
 
+@dataclass(frozen=True)
+class Along:
+    """What a design knows along its shaft, and what it does not."""
+
+    omitted: str
+    views: tuple[View, ...] = ()
+    items: tuple[Item, ...] = ()
+    weights: tuple[Weight, ...] = ()
+
+
+PARTS_ALONE = Along("shaft, bosses and length: mass is that of plates, flyweights and springs")
+
+
 def clutch_drawing(
     size: Sizes,
     flyweight: Flyweight,
@@ -104,10 +117,10 @@ def clutch_drawing(
     springs_behind : bool
         Whether springs may stand behind flyweights: they have their circle to themselves.
     """
-    whole = "length" in size.design.values
     boss = FIRST_SPRING + len(springs)
+    along = _with_room(size, boss) if "length" in size.design.values else PARTS_ALONE
     front = _front_view(size, flyweight, springs, springs_behind=springs_behind)
-    views = [*([_room_view(size, boss)] if whole else []), front, mechanism]
+    views = [*along.views, front, mechanism]
     views += [spring_view(size, spring, FIRST_SPRING + k) for k, spring in enumerate(springs)]
     items = [
         Item(PLATES, "Plates", 1, "steel", "together as one ring"),
@@ -122,30 +135,35 @@ def clutch_drawing(
         Weight((PLATES,), ("plates_mass",), "steel_density"),
         Weight((FLYWEIGHT,), ("flyweight_mass",), flyweight.density, FRONT),
     ]
-    told = [
+    omitted = (
         "each of the plates: thickness, place along the shaft and shape; the model knows a thickness that they amount "
         "to together",
         "carrier of the linings and their thickness, cover, guides and seats of the springs",
         *omitted,
-    ]
-    if whole:
-        items.append(Item(boss, "Boss on either shaft", 2, "steel", "places assumed"))
-        weights.append(Weight((boss,), ("boss_mass",), "steel_density"))
-        told.append("bores, keys and bearings")
-    else:
-        told.append("shaft, bosses and length: mass is that of plates, flyweights and springs")
+        along.omitted,
+    )
     return Drawing(
         "front view and mechanism, released",
         tuple(views),
-        tuple(items),
-        omitted=tuple(told),
+        (*items, *along.items),
+        omitted=omitted,
         remarks=(
             "Flyweights and springs are drawn at rest; where they stand around their circle is assumed. "
             "Double-dot-dash lines show the end of the way, and room that the model reckons with.",
             *remarks,
             *_crowded(size, springs, () if springs_behind else (flyweight,)),
         ),
-        weights=tuple(weights),
+        weights=(*weights, *along.weights),
+    )
+
+
+def _with_room(size: Sizes, boss: int) -> Along:
+    """Room along the shaft and bosses of a number in the parts list."""
+    return Along(
+        "bores, keys and bearings",
+        (_room_view(size, boss),),
+        (Item(boss, "Boss on either shaft", 2, "steel", "places assumed"),),
+        (Weight((boss,), ("boss_mass",), "steel_density"),),
     )
 
 

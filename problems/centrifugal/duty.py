@@ -9,7 +9,7 @@ from synth.declaration import Block, Declaration, Requirement
 
 from ..mechanics import centrifugal
 from ..mechanics.shaft import shaft_diameter
-from ..practice import UNSOURCED, Scope, ShaftRequirements, declare_shaft
+from ..practice import UNSOURCED, ShaftRequirements, declare_shaft
 from ..sources import ARCHARD, DRIVE, ISO_76, JOHNSON, SHAFT, SPRINGS, STANDARD_GRAVITY, TYPICAL, UNIFORM_WEAR
 
 SOURCES = (
@@ -224,27 +224,17 @@ class WholeDuty(Duty, Shaft):
     )
 
 
-def declare_duty(d: Declaration, *, scope: Scope) -> Duty:
-    """Declare the requirements that all centrifugal clutches have, and the refusals that concern them alone.
+def declare_duty(d: Declaration) -> Duty:
+    """Declare the requirements that all centrifugal clutches have, and the refusals that concern them alone."""
+    duty = d.block(Duty)
+    _refuse_contradictions(d, duty=duty)
+    return duty
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    scope : Scope
-        Whether shaft and hub of the whole clutch are asked for.
 
-    Returns
-    -------
-    Duty
-        Symbols of the block; a WholeDuty where the scope asks for one.
-    """
-    if scope.whole:
-        whole = d.block(WholeDuty)
-        declare_shaft(d, whole, diameter=whole.shaft_diameter, torque=whole.torque_to_carry)
-        duty: Duty = whole
-    else:
-        duty = d.block(Duty)
+def declare_whole_duty(d: Declaration) -> WholeDuty:
+    """Declare the requirements of a whole clutch, shaft and hub included, and the refusals that concern them alone."""
+    duty = d.block(WholeDuty)
+    declare_shaft(d, duty, diameter=duty.shaft_diameter, torque=duty.torque_to_carry)
     _refuse_contradictions(d, duty=duty)
     return duty
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from .duty import Duty
     from .lining import Lining
-    from .rules import Rules
 
 # Remarks only.
 STOP_RATIO = 3.0  # force on the stop over clamp force that is worth a word where stops are sized for what they bear
@@ -200,31 +199,21 @@ def declare_stop_force(d: Declaration, *, force: Any, text: str, source: str) ->
     return d.derive("stop_force", "N", force, symbol="F_stop", text=text, source=source)
 
 
-def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any, rules: Rules | None) -> None:
-    """Remark where the stop bears more than the lining at top speed; by the rules of practice three times as much.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    stop_force : symbol
-        Force on the stop at top speed [N].
-    clamp_force : symbol
-        Largest clamp force [N].
-    rules : Rules or None
-        Rules of practice, where they count.
-    """
-    if rules is not None:
-        d.advise(
-            "stop_force_high",
-            stop_force > STOP_RATIO * clamp_force,
-            "at top speed stop force is more than three times clamp force: stop, flyweights and pins carry it",
-            source=UNSOURCED,
-        )
-        return
+def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any) -> None:
+    """Remark where the stop bears more than the lining at top speed, of both forces [N]."""
     d.advise(
         "stop_bears_more_than_lining",
         stop_force > clamp_force,
         "at top speed stop force is larger than clamp force: stop, plates and bearings must be sized for it",
         source=NOT_IN_S4,
+    )
+
+
+def advise_high_stop_force(d: Declaration, *, stop_force: Any, clamp_force: Any) -> None:
+    """Remark where the stop bears far more than the lining at top speed, of both forces [N]."""
+    d.advise(
+        "stop_force_high",
+        stop_force > STOP_RATIO * clamp_force,
+        "at top speed stop force is more than three times clamp force: stop, flyweights and pins carry it",
+        source=UNSOURCED,
     )

@@ -12,6 +12,7 @@ from .. import practice
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4, S4
 from . import levers as lever_blocks
+from .layers import LAYERS
 from .lever_clutch import LeverClutch
 from .lever_curves import ROD
 from .levers import LOADED, RECONSTRUCTED
@@ -84,15 +85,14 @@ class CentrifugalLever(LeverClutch):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
-        duty = blocks.declare_duty(d, scope=scope)
-        rules = blocks.declare_rules(d, blocks.LeverRules, scope=scope)
+        layer = LAYERS[practice.declare_scope(d)](d, blocks.LeverRules)
+        duty = layer.duty
         lever = lever_blocks.declare_lever(d, duty=duty, stop_text="beyond contact, so that the clamp force is capped")
         rods = d.block(Rods)
         springs = blocks.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
         )
-        lining = blocks.declare_lining(d, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, linings=layer.linings(d))
         lever_blocks.limit_contact(d, lever=lever, plate_arm=rods.rod_arm, longest=ROD_ARM[1], name="rod_arm")
         shortest = lever.worn_travel / (rods.rod_ratio_max * lever.weights.angle_limit)
         lever_blocks.refuse_room(d, duty=duty, least_leg=shortest, name="spring_arm")
@@ -128,23 +128,21 @@ class CentrifugalLever(LeverClutch):
         blocks.limit_weight_room(
             d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=rods.spring_arm
         )
-        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs], scope=scope, rules=rules)
-        if rules is not None:
-            blocks.limit_set(d, rules=rules, springs=springs, deflection=lever.deflection)
+        layer.declare_size(d, lever_blocks.built(lining, lever, [springs]))
+        layer.limit_set(d, springs=springs, deflection=lever.deflection)
         at_stop = formulas.clamp_flyweight_force(full, rods.spring_arm, lever.weights.arm)
         at_start = formulas.travel_flyweight_force(
             springs.force(lever.deflection), rods.spring_arm, rods.rod_arm, lever.weights.arm
         )
-        lever_blocks.advise_lever(
+        stop_force = lever_blocks.advise_lever(
             d,
             duty=duty,
             lining=lining,
             lever=lever,
             start_pull=at_start,
             stop_pull=at_stop,
-            clamp=full,
-            rules=rules,
         )
+        layer.judge_stop(d, stop_force=stop_force, clamp_force=full)
         blocks.advise_springs(
             d,
             duty=duty,
@@ -154,7 +152,7 @@ class CentrifugalLever(LeverClutch):
             travel=travel,
             what="the clamp springs",
         )
-        blocks.declare_objectives(d, scope=scope)
+        layer.declare_objectives(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, lever and spring.

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from synth.declaration import Declaration
 
-    from ..practice import Scope
-
 RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
 # Range of the stop angle [rad] and of the rest radius [mm]; refusals reason with them.
 STOP_ANGLE_MIN, STOP_ANGLE_MAX = 0.05, 0.35
@@ -244,53 +242,19 @@ def refuse_room(d: Declaration, *, duty: blocks.Duty, least_leg: Any, name: str)
         )
 
 
-def declare_size(
-    d: Declaration,
-    *,
-    duty: blocks.Duty,
-    lining: blocks.Lining,
-    lever: Lever,
-    springs: Sequence[blocks.SpringSet],
-    scope: Scope,
-    rules: blocks.LeverRules | None,
-    discs: int = 0,
-) -> None:
-    """Declare outside diameter, mass and inertia with the weights of the lever, and the rules that go by the gap.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Requirements.
-    lining : Lining
-        Lining.
-    lever : Lever
-        Lever.
-    springs : sequence of SpringSet
-        All springs.
-    scope : Scope
-        What is counted.
-    rules : LeverRules or None
-        Rules of practice, where they count.
-    discs : int
-        Plates beside flywheel and pressure plate.
-    """
+def built(lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet], discs: int = 0) -> blocks.Built:
+    """Parts of a clutch with levers, and a number of plates beside flywheel and pressure plate."""
     weights = lever.weights
-    blocks.declare_size(
-        d,
-        duty=duty,
-        lining=lining,
-        rest_radius=lever.rest_radius,
-        flyweights=blocks.Flyweights(
-            weights.mass, lever.end_radius, weights.thickness / 2, weights.width, weights.count
-        ),
-        springs=springs,
-        around=blocks.Surroundings(scope, lever.wear, lever.contact_travel, discs=discs),
+    return blocks.Built(
+        lining,
+        lever.rest_radius,
+        blocks.Flyweights(weights.mass, lever.end_radius, weights.thickness / 2, weights.width, weights.count),
+        springs,
+        wear=lever.wear,
+        gap=lever.contact_travel,
+        travel=lever.contact_travel,
+        discs=discs,
     )
-    if rules is not None:
-        blocks.limit_discs(d, rules=rules, lining=lining, travel=lever.contact_travel)
-        blocks.limit_spring_circle(d, rules=rules, rest_radius=lever.rest_radius, springs=springs)
 
 
 def advise_lever(
@@ -301,10 +265,8 @@ def advise_lever(
     lever: Lever,
     start_pull: Any,
     stop_pull: Any,
-    clamp: Any,
-    rules: blocks.Rules | None,
-) -> None:
-    """Declare the force on the stop, and remark what rests on assumptions and what must be watched for.
+) -> Any:
+    """Declare the force on the stop [N], and remark what rests on assumptions and what must be watched for.
 
     Parameters
     ----------
@@ -318,10 +280,6 @@ def advise_lever(
         Lever.
     start_pull, stop_pull : symbol
         Centrifugal force of all flyweights where the lever leaves its rest, and where it meets its stop [N].
-    clamp : symbol
-        Largest clamp force [N].
-    rules : Rules or None
-        Rules of practice, where they count.
     """
     pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
     stop_force = blocks.declare_stop_force(
@@ -341,4 +299,4 @@ def advise_lever(
     )
     blocks.advise_release_gap(d, gap=lever.contact_travel, lining=lining)
     blocks.advise_gravity(d, rest_radius=lever.rest_radius, start_speed=lever.speed(start_pull, 0.0))
-    blocks.advise_stop_load(d, stop_force=stop_force, clamp_force=clamp, rules=rules)
+    return stop_force

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..mechanics import centrifugal, heat, ring
-from ..practice import lining_conditions
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from synth.declaration import Declaration, Part
 
     from .duty import Duty
-    from .rules import Rules
 
+SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "long_slip == 1")
 # Remarks only.
 RELEASE_GAP_MIN = 0.3e-3  # clearance that a released friction surface wants [m]
 
@@ -47,7 +48,7 @@ class Lining:
         return centrifugal.force_for_torque(torque, self.pair.mu_dynamic, self.surfaces, self.friction_radius)
 
 
-def declare_lining(d: Declaration, *, duty: Duty, rules: Rules | None) -> Lining:
+def declare_lining(d: Declaration, *, duty: Duty, linings: Sequence[str]) -> Lining:
     """Declare lining and slot friction_pair, with the limits of its shape and of the heat of an engagement.
 
     Parameters
@@ -56,8 +57,8 @@ def declare_lining(d: Declaration, *, duty: Duty, rules: Rules | None) -> Lining
         Takes the declarations.
     duty : Duty
         Requirements.
-    rules : Rules or None
-        Rules of practice, where they count: what is built no more is then left out.
+    linings : sequence of str
+        Further conditions on the rows of linings.
 
     Returns
     -------
@@ -93,13 +94,10 @@ def declare_lining(d: Declaration, *, duty: Duty, rules: Rules | None) -> Lining
         text="Friction surfaces, two per friction disc",
         source="geometry",
     )
-    conditions = ["'disc facing' in surfaces or 'plate pack' in surfaces", "long_slip == 1"]
-    if rules is not None:
-        conditions += lining_conditions(d, rules.allow_obsolete, rules=True)
     pair = d.part(
         "friction_pair",
         "friction_materials",
-        where=tuple(conditions),
+        where=(*SUITED, *linings),
         symbol="pair",
         text="Lining and the plate it rubs on",
         source="table friction_materials",

@@ -14,6 +14,7 @@ from .. import practice
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4
 from . import levers as lever_blocks
+from .layers import LAYERS
 from .lever_clutch import LeverClutch
 from .lever_curves import REVERSED
 from .levers import LOADED, RECONSTRUCTED
@@ -55,9 +56,8 @@ class CentrifugalReversed(LeverClutch):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
-        duty = blocks.declare_duty(d, scope=scope)
-        rules = blocks.declare_rules(d, blocks.LeverRules, scope=scope)
+        layer = LAYERS[practice.declare_scope(d)](d, blocks.LeverRules)
+        duty = layer.duty
         lever = lever_blocks.declare_lever(
             d, duty=duty, stop_text="the window of disc 1, so that the clamp force is capped"
         )
@@ -73,7 +73,7 @@ class CentrifugalReversed(LeverClutch):
             "spring_preload_deflection",
             unless=("engagement_band", "idle_margin"),
         )
-        lining = blocks.declare_lining(d, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, linings=layer.linings(d))
         lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
         lever_blocks.refuse_room(
             d, duty=duty, least_leg=lever.worn_travel / lever.weights.angle_limit, name="plate_arm"
@@ -101,32 +101,21 @@ class CentrifugalReversed(LeverClutch):
                 d, springs=one, rest=deflection, most=deflection + most, symbol=symbol, when=when
             )
         blocks.limit_weight_room(d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=leg.arm)
-        lever_blocks.declare_size(
-            d,
-            duty=duty,
-            lining=lining,
-            lever=lever,
-            springs=[springs, leg.springs],
-            scope=scope,
-            rules=rules,
-            discs=DISC_1,
-        )
-        if rules is not None:
-            blocks.limit_set(d, rules=rules, springs=springs, deflection=lever.deflection)
-            blocks.limit_set(d, rules=rules, springs=leg.springs, deflection=leg.deflection, prefix="return_")
+        layer.declare_size(d, lever_blocks.built(lining, lever, [springs, leg.springs], DISC_1))
+        layer.limit_set(d, springs=springs, deflection=lever.deflection)
+        layer.limit_set(d, springs=leg.springs, deflection=leg.deflection, prefix="return_")
         at_stop, at_start = (
             formulas.clamp_flyweight_force(force, leg.arm, lever.weights.arm) for force in (push, leg.force(0.0))
         )
-        lever_blocks.advise_lever(
+        stop_force = lever_blocks.advise_lever(
             d,
             duty=duty,
             lining=lining,
             lever=lever,
             start_pull=at_start,
             stop_pull=at_stop,
-            clamp=clamp,
-            rules=rules,
         )
+        layer.judge_stop(d, stop_force=stop_force, clamp_force=clamp)
         blocks.advise_springs(
             d,
             duty=duty,
@@ -145,7 +134,7 @@ class CentrifugalReversed(LeverClutch):
             travel=lever.contact_travel,
             what="the return springs",
         )
-        blocks.declare_objectives(d, scope=scope)
+        layer.declare_objectives(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return front view, lever and springs.

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from synth.declaration import Block, Requirement
 
 from .. import wear
 from ..friction.duty import Duty as FrictionDuty
-from ..practice import UNSOURCED, Scope
+from ..practice import UNSOURCED
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration
+
+    from .body import Built
 
 
 class Rules(Block):
@@ -73,6 +77,9 @@ class Rules(Block):
     )
     wear_life_min = wear.LEAST_LIFE
 
+    def limit_circle(self, d: Declaration, built: Built) -> None:
+        """Declare limits of the circle on which springs stand, beside those of the formulas."""
+
 
 class LeverRules(Rules):
     """Rules for centrifugal clutches with levers, whose springs stand on the circle of the weights; all in SI."""
@@ -99,10 +106,14 @@ class LeverRules(Rules):
         source=UNSOURCED,
     )
 
-
-AnyRules = TypeVar("AnyRules", bound=Rules)
-
-
-def declare_rules(d: Declaration, kind: type[AnyRules], *, scope: Scope) -> AnyRules | None:
-    """Declare the requirements that the rules of practice go by, where they count."""
-    return d.block(kind) if scope.rules else None
+    def limit_circle(self, d: Declaration, built: Built) -> None:
+        """Declare that all springs stand beside each other on the circle of the weights."""
+        taken: Any = sum(one.share_of_circle(self.spring_gap) for one in built.springs)
+        d.at_most(
+            "spring_circle",
+            taken,
+            self.spring_circles * 2 * np.pi * built.rest_radius,
+            "mm",
+            text="The springs have room on the circle of the weights",
+            source=UNSOURCED,
+        )

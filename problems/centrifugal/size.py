@@ -1,59 +1,36 @@
-"""Outside diameter, mass and inertia of a centrifugal clutch, and its objectives."""
+"""Outside diameter, mass and inertia of a centrifugal clutch."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .. import wear
 from ..mechanics import centrifugal
 from ..sources import DRIVE
-from .body import Surroundings, declare_body
-from .duty import WholeDuty
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from synth.declaration import Declaration
 
-    from ..practice import Scope
+    from .body import Built
     from .duty import Duty
-    from .flyweights import Flyweights
-    from .lining import Lining
-    from .springs import SpringSet
 
 # Remarks only.
 RIM_STRESS_MAX = 100e6  # hoop stress from which on the bursting of a rim is worth a calculation [Pa]
 
 
-def declare_size(
-    d: Declaration,
-    *,
-    duty: Duty,
-    lining: Lining,
-    rest_radius: Any,
-    flyweights: Flyweights,
-    springs: Sequence[SpringSet],
-    around: Surroundings,
-) -> None:
-    """Declare outside diameter, mass and inertia, the limit of the room there is, and what a whole clutch has beside.
+@dataclass(frozen=True)
+class Parts:
+    """Outside diameter [m], and masses of all plates, of all springs and of all parts [kg]."""
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Requirements.
-    lining : Lining
-        Lining.
-    rest_radius : symbol
-        Radius of the flyweights at rest, on which the springs stand too [m].
-    flyweights : Flyweights
-        Flyweights at the end of their way.
-    springs : sequence of SpringSet
-        All springs.
-    around : Surroundings
-        What the whole clutch adds to plates, flyweights and springs.
-    """
+    diameter: Any
+    plates: Any
+    springs: Any
+    mass: Any
+
+
+def declare_parts(d: Declaration, *, duty: Duty, built: Built) -> Parts:
+    """Declare the outside diameter, and name the masses of the parts."""
+    lining, flyweights = built.lining, built.flyweights
     diameter = d.derive(
         "outer_diameter",
         "mm",
@@ -65,32 +42,29 @@ def declare_size(
         text="Outside diameter over lining and flyweights, whichever reaches further",
         source="geometry",
     )
-    spring_mass: Any = sum(spring_set.mass for spring_set in springs)
+    spring_mass: Any = sum(spring_set.mass for spring_set in built.springs)
     plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.equivalent_plate_thickness)
-    mass = plates + flyweights.mass + spring_mass
     end_text = "Radius of the flyweights at the end of their way"
     d.step("end_radius", "mm", flyweights.end_radius, symbol="r_end", text=end_text, source="geometry")
     d.step("plates_mass", "kg", plates, symbol="m_d", text="All plates as one steel ring", source="geometry")
     d.step("spring_mass", "kg", spring_mass, symbol="m_s", text="All springs", source="geometry")
-    counted = "Plates (as a steel ring of equivalent plate thickness), flyweights and springs"
-    if isinstance(duty, WholeDuty):
-        declare_body(
-            d,
-            duty=duty,
-            lining=lining,
-            flyweights=flyweights,
-            springs=springs,
-            around=around,
-            part_mass=mass,
-            counted=counted,
-        )
-    else:
-        d.derive("mass", "kg", mass, symbol="m", text=counted, source="geometry")
+    return Parts(diameter, plates, spring_mass, plates + flyweights.mass + spring_mass)
+
+
+def declare_inertia(d: Declaration, *, duty: Duty, built: Built, parts: Parts) -> None:
+    """Declare the inertia, the limit of the room there is, and the remark on a fast rim."""
+    flyweights, diameter = built.flyweights, parts.diameter
     d.derive(
         "inertia",
         "kg*m2",
         centrifugal.clutch_inertia(
-            plates, diameter, duty.hub_radius, flyweights.mass, flyweights.end_radius, spring_mass, rest_radius
+            parts.plates,
+            diameter,
+            duty.hub_radius,
+            flyweights.mass,
+            flyweights.end_radius,
+            parts.springs,
+            built.rest_radius,
         ),
         symbol="J",
         text="Inertia of plates, flyweights at the end of their way, and springs",
@@ -120,25 +94,3 @@ def declare_size(
         "at top speed the hoop stress of the rim is above 100 N/mm2: calculate the speed at which it bursts",
         source="hoop stress of a thin ring",
     )
-
-
-def declare_objectives(d: Declaration, *, scope: Scope) -> None:
-    """Declare the objectives of all centrifugal clutches, and those of what is around them where the scope asks."""
-    d.headline(
-        "outer_diameter",
-        "mass",
-        "length",
-        "friction_surfaces",
-        "contact_speed",
-        "engagement_band",
-        "clamp_force",
-        "lining_pressure",
-        sized_by="torque_worn" if "torque_worn" in d.limits else "torque_at_full_speed",
-    )
-    d.objective("outer_diameter")
-    d.objective("mass")
-    if scope.whole:
-        d.objective("length", default=False)
-        wear.offer_wear_life(d)
-    d.objective("engagement_band", default=False)
-    d.objective("idle_margin", "max", default=False)

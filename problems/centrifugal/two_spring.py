@@ -16,6 +16,7 @@ from ..sources import NOT_IN_S4, S4, TYPICAL
 from . import balls as ball_blocks
 from . import curves
 from . import state as states
+from .layers import LAYERS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -87,7 +88,7 @@ class CentrifugalTwoSpring(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         mechanism = d.option(
             "mechanism",
             MECHANISMS,
@@ -97,8 +98,8 @@ class CentrifugalTwoSpring(DesignProblem):
             source=f"{S4}, analysis 2; practice 2",
             group="model",
         )
-        duty = blocks.declare_duty(d, scope=scope)
-        rules = blocks.declare_rules(d, blocks.Rules, scope=scope)
+        layer = layer_of(d, blocks.Rules)
+        duty = layer.duty
         wants = ball_blocks.declare_force_limits(d, duty=duty)
         wear = blocks.declare_wear(d)
         rest = blocks.declare_rest_radius(d)
@@ -108,7 +109,7 @@ class CentrifugalTwoSpring(DesignProblem):
             if mechanism == "ball_ramp"
             else self._declare_levers(d, duty=duty, rest=rest, way=way)
         )
-        lining = blocks.declare_lining(d, duty=duty, rules=rules)
+        lining = blocks.declare_lining(d, duty=duty, linings=layer.linings(d))
 
         def radius(travel: Any) -> Any:
             return centrifugal.orbit_radius(rest, drive.ratio, travel)
@@ -163,25 +164,25 @@ class CentrifugalTwoSpring(DesignProblem):
             text="Force on the stop of the tension disc at top speed",
             source=ANALYSIS,
         )
-        blocks.declare_size(
+        layer.declare_size(
             d,
-            duty=duty,
-            lining=lining,
-            rest_radius=rest,
-            flyweights=blocks.Flyweights(drive.mass, end, drive.half_height, drive.width, drive.count),
-            springs=[way.returning, way.clamping],
-            # The tension disc goes the whole way to its stop, the plate a part of it.
-            around=blocks.Surroundings(
-                scope, wear, way.stop_travel, None if drive.balls is None else drive.balls.part, TENSION_DISC
+            blocks.Built(
+                lining,
+                rest,
+                blocks.Flyweights(drive.mass, end, drive.half_height, drive.width, drive.count),
+                [way.returning, way.clamping],
+                wear=wear,
+                gap=way.plate_travel,
+                travel=way.stop_travel,  # the tension disc goes the whole way to its stop, the plate a part of it
+                ball=None if drive.balls is None else drive.balls.part,
+                discs=TENSION_DISC,
             ),
         )
-        if rules is not None:
-            blocks.limit_discs(d, rules=rules, lining=lining, travel=way.plate_travel)
-            blocks.limit_set(d, rules=rules, springs=way.clamping, deflection=way.clamp_deflection)
-            blocks.limit_set(d, rules=rules, springs=way.returning, deflection=way.return_deflection, prefix="return_")
+        layer.limit_set(d, springs=way.clamping, deflection=way.clamp_deflection)
+        layer.limit_set(d, springs=way.returning, deflection=way.return_deflection, prefix="return_")
         self._declare_remarks(d, duty=duty, drive=drive, way=way, lining=lining, rest=rest)
-        blocks.advise_stop_load(d, stop_force=load, clamp_force=clamp, rules=rules)
-        blocks.declare_objectives(d, scope=scope)
+        layer.judge_stop(d, stop_force=load, clamp_force=clamp)
+        layer.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
         """Curves that the torque demands; of a design forces and travel over speed, both branches.

@@ -19,7 +19,7 @@ from .body import DERIVED, Cone, ConeBody, Cones
 class Sources:
     """The cones by the formulas of their sources, with nothing around them."""
 
-    rules: ClassVar[bool] = False
+    linings = staticmethod(practice.allowed_linings)
     mass_of: ClassVar[str] = "Both shells and the lining, times the mass factor of the layout"
     along: ClassVar[str] = "Length of the cone and what the layout adds to it"
     pull_max: Any = None  # pull over spring force; None where the cones must come apart by themselves
@@ -85,7 +85,7 @@ class Complete(WithBody):
 class Ruled(WithBody):
     """Cones by rules of practice."""
 
-    rules = True
+    linings = staticmethod(practice.current_linings)
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
         super().__init__(d, duty)

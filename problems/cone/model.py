@@ -138,7 +138,7 @@ class ConeClutch(DesignProblem):
         shape = self._declare_cone(d, wants=wants, layer=layer)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(
-            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, rules=layer.rules
+            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, linings=layer.linings
         )
         layout = d.part(
             "cone_layout",

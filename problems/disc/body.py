@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -101,52 +101,46 @@ class DiscBody:
     spring: Any = None
 
 
-def declare_body_requirements(d: Declaration, *, required: Any, wear_depth_limit: float = 1.0) -> DiscBodyRequirements:
-    """Declare the requirements of the complete clutch.
+class DiscHousing:
+    """Hubs and cover around discs that an armature presses."""
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    required : symbol
-        Sizing torque M_req [N m], which the shaft carries.
-    wear_depth_limit : float
-        Default of the requirement [mm].
+    # Default [mm]; a magnet does not reach over more wear.
+    wear_depth_limit: ClassVar[float] = 0.3
 
-    Returns
-    -------
-    DiscBodyRequirements
-        Symbols of the block.
-    """
-    wants = d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=wear_depth_limit)
-    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=required)
-    return wants
+    def __init__(self, d: Declaration, required: Any) -> None:
+        """Declare the requirements of the complete clutch, whose shaft carries the sizing torque [N m]."""
+        self.wants = d.block(
+            DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=self.wear_depth_limit
+        )
+        declare_shaft(d, self.wants, diameter=self.wants.shaft_diameter, torque=required)
 
+    def declare_disc_requirements(self, d: Declaration) -> DiscRequirements:
+        """Declare the requirements of discs whose hub follows from the shaft."""
+        return d.block(DiscRequirements, disc_hub_radius=self.wants.hub_diameter / 2)
 
-def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> DiscRequirements:
-    """Declare the requirements of discs whose hub follows from the shaft."""
-    return d.block(DiscRequirements, disc_hub_radius=body.hub_diameter / 2)
-
-
-def complete_body(discs: Discs, wants: DiscBodyRequirements) -> DiscBody:
-    """Parts around the discs: hub, cover and diaphragm spring; the flywheel stays outside."""
-    rho, pack, size, radius = discs.duty.steel_density, discs.pack, discs.size, discs.ring.outer_radius
-    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter)
-    cover = disc.cover_mass(rho, size.diameter, size.length)
-    spring = disc.diaphragm_spring_mass(rho, radius)
-    length = size.length + disc.cover_thickness(size.diameter) + disc.SPRING_ROOM * 2 * radius
-    complete = Size(mass=size.mass + (hub + cover + spring), diameter=size.diameter, length=length)
-    return DiscBody(wants, complete, hub, cover, spring)
+    def complete(self, discs: Discs) -> DiscBody:
+        """Parts around the discs: hub and cover; the size is without magnet."""
+        rho, pack, size = discs.duty.steel_density, discs.pack, discs.size
+        hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, self.wants.shaft_diameter)
+        cover = disc.cover_mass(rho, size.diameter, size.length)
+        length = size.length + disc.cover_thickness(size.diameter)
+        return DiscBody(
+            self.wants, Size(mass=size.mass + (hub + cover), diameter=size.diameter, length=length), hub, cover
+        )
 
 
-def body_at_magnet(discs: Discs, wants: DiscBodyRequirements) -> DiscBody:
-    """Parts around discs that an armature presses: hub and cover, no diaphragm spring; the size is without magnet."""
-    rho, pack, size = discs.duty.steel_density, discs.pack, discs.size
-    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter)
-    cover = disc.cover_mass(rho, size.diameter, size.length)
-    length = size.length + disc.cover_thickness(size.diameter)
-    complete = Size(mass=size.mass + (hub + cover), diameter=size.diameter, length=length)
-    return DiscBody(wants, complete, hub, cover)
+class SpringHousing(DiscHousing):
+    """Hubs and cover around discs that a diaphragm spring presses."""
+
+    wear_depth_limit = 1.0
+
+    def complete(self, discs: Discs) -> DiscBody:
+        """Parts around the discs: hub, cover and diaphragm spring; the flywheel stays outside."""
+        bare, radius = super().complete(discs), discs.ring.outer_radius
+        spring = disc.diaphragm_spring_mass(discs.duty.steel_density, radius)
+        mass = discs.size.mass + (bare.hub + bare.cover + spring)
+        length = bare.size.length + disc.SPRING_ROOM * 2 * radius
+        return replace(bare, size=replace(bare.size, mass=mass, length=length), spring=spring)
 
 
 def wear_depth(wants: DiscBodyRequirements, discs: Discs) -> Any:

@@ -5,14 +5,15 @@ The discs themselves do not know which: they are declared alike below every laye
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from synth.declaration import Declaration
 
-from .. import cost
+from .. import cost, practice
 from ..friction.duty import Duty, DutyOfDiscs, Size, sizing_torque
+from ..practice import ShaftRequirements
 from . import body
-from .body import DiscRules
+from .body import DiscHousing, DiscRules
 from .pack import DiscRequirements, Discs
 
 
@@ -20,12 +21,14 @@ class Sources:
     """The discs by the formulas of their sources, with nothing around them."""
 
     kind: ClassVar[type[Duty]] = Duty
-    rules: ClassVar[bool] = False
+    linings = staticmethod(practice.allowed_linings)
     ring_ratios: ClassVar[tuple[float, float]] = (0.11, 0.13)
     mass_of: ClassVar[str] = "Pressure plates, linings and cores, without flywheel, springs and cover"
     along: ClassVar[str] = "Length of the released discs and pressure plates, without flywheel, springs and cover"
 
-    def __init__(self, d: Declaration, duty: Duty) -> None:
+    shaft: ShaftRequirements | None = None
+
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
         """Declare requirements of what is around the discs."""
         self.required = sizing_torque(duty)
 
@@ -37,32 +40,54 @@ class Sources:
         """Size that counts."""
         return discs.size
 
-    def extend(self, d: Declaration, discs: Discs) -> None:
-        """Declare what stands on the discs."""
+    def full_size(self, discs: Discs) -> Size:
+        """Size with all that is known to be around the discs."""
+        return discs.size
+
+    def wear_depth(self, discs: Discs) -> Any:
+        """Wear of one lining that is reckoned with [m]."""
+        return 0.0
+
+    def declare_body(self, d: Declaration, discs: Discs) -> None:
+        """Declare what is around the discs."""
+
+    def declare_cost(self, d: Declaration, discs: Discs) -> None:
+        """Declare the relative cost."""
+
+    def declare_rules(self, d: Declaration, discs: Discs) -> None:
+        """Declare limits by rules."""
 
 
 class WithBody(Sources):
     """Discs with hub, cover and spring, whose mass and length are known beside those of the discs."""
 
-    def __init__(self, d: Declaration, duty: Duty) -> None:
-        super().__init__(d, duty)
-        self._body = body.declare_body_requirements(d, required=self.required)
-        self._discs = body.declare_disc_requirements(d, body=self._body)
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
+        super().__init__(d, housing, duty)
+        self.housing = housing(d, self.required)
+        self.shaft = self.housing.wants
+        self._discs = self.housing.declare_disc_requirements(d)
 
     def requirements(self, d: Declaration) -> DiscRequirements:
         """Requirements of discs whose hub follows from the shaft."""
         return self._discs
 
-    def complete(self, discs: Discs) -> body.DiscBody:
-        """The parts around the discs."""
-        return body.complete_body(discs, self._body)
+    def full_size(self, discs: Discs) -> Size:
+        """Size of the clutch."""
+        return self.housing.complete(discs).size
 
-    def extend(self, d: Declaration, discs: Discs) -> None:
-        """Declare parts of the mass, wear and cost."""
-        around, pack = self.complete(discs), discs.pack
-        body.declare_body(d, discs, around)
+    def wear_depth(self, discs: Discs) -> Any:
+        """Wear of one lining before it is replaced [m]."""
+        return body.wear_depth(self.housing.wants, discs)
+
+    def declare_body(self, d: Declaration, discs: Discs) -> None:
+        """Declare parts of the mass, and wear."""
+        body.declare_body(d, discs, self.housing.complete(discs))
+
+    def declare_cost(self, d: Declaration, discs: Discs) -> None:
+        """Declare the relative cost of the complete clutch."""
+        pack, mass = discs.pack, self.full_size(discs).mass
         lining = (discs.pair.part, pack.surfaces * discs.ring.area)
-        cost.declare_cost(d, mass=around.size.mass, parts=2 * pack.discs + 2, lining=lining)
+        cost.declare_cost(d, mass=mass, parts=2 * pack.discs + 2, lining=lining)
 
 
 class Complete(WithBody):
@@ -73,23 +98,22 @@ class Complete(WithBody):
 
     def size(self, discs: Discs) -> Size:
         """Size of the clutch."""
-        return self.complete(discs).size
+        return self.full_size(discs)
 
 
 class Ruled(WithBody):
     """Discs by rules of practice."""
 
     kind = DutyOfDiscs
-    rules = True
+    linings = staticmethod(practice.current_linings)
     ring_ratios = (0.17, 0.28)
 
-    def __init__(self, d: Declaration, duty: Duty) -> None:
-        super().__init__(d, duty)
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
+        super().__init__(d, housing, duty)
         self._rules = d.block(DiscRules)
 
-    def extend(self, d: Declaration, discs: Discs) -> None:
-        """Declare the complete clutch, and limits by the rules."""
-        super().extend(d, discs)
+    def declare_rules(self, d: Declaration, discs: Discs) -> None:
+        """Declare limits by the rules."""
         body.declare_rules(d, discs, self._rules)
 
 

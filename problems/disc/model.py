@@ -15,6 +15,7 @@ from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE,
 from . import curves as disc_curves
 from . import facing_sets
 from . import pack as disc_pack
+from .body import SpringHousing
 from .layers import LAYERS
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class DiscClutch(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
         duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry", kind=layer_of.kind)
-        layer = layer_of(d, duty)
+        layer = layer_of(d, SpringHousing, duty)
         least, most = layer.ring_ratios
         facings = facing_sets.declare_facing_set(d)
         ring = friction.declare_ring(
@@ -70,7 +71,7 @@ class DiscClutch(DesignProblem):
         )
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(
-            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", rules=layer.rules
+            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings
         )
 
         def torque(mu: Any) -> Any:
@@ -104,7 +105,9 @@ class DiscClutch(DesignProblem):
         discs = disc_pack.Discs(duty, ring, pair, pack, start, disc_pack.disc_size(duty, ring, pair, pack))
         size = layer.size(discs)
         friction.declare_size(d, size=size, mass_of=layer.mass_of, outside="Outside of the cover", along=layer.along)
-        layer.extend(d, discs)
+        layer.declare_body(d, discs)
+        layer.declare_cost(d, discs)
+        layer.declare_rules(d, discs)
         disc_pack.declare_disc_inertia(d, discs)
         disc_pack.declare_disc_temperature(d, discs)
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)

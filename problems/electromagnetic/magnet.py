@@ -7,7 +7,8 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
-from ..friction.duty import Duty
+from ..friction.duty import Duty, Size
+from ..friction.engagement import Pair, Startup
 from ..magnet import coil as coil_blocks
 from ..mechanics import heat, magnetics, plates
 from ..practice import UNSOURCED
@@ -101,15 +102,6 @@ class MagnetRules(coil_blocks.CoilRules):
 
 
 @dataclass(frozen=True)
-class Practice:
-    """What rules for magnets go by: the block, wear of a lining [m], and the ramp that the current must follow [s]."""
-
-    rules: MagnetRules
-    wear_depth: Any
-    ramp_time: Any
-
-
-@dataclass(frozen=True)
 class Seat:
     """What defaults of a magnet follow from where rules of practice count: sizing torque [N m], shaft and hub [m]."""
 
@@ -132,6 +124,45 @@ class Seat:
     def residual_gap(self) -> Any:
         """Gap that a magnet of this size needs against sticking [m]."""
         return pot_magnet.gap_against_sticking(self.shaft_diameter)
+
+    @property
+    def sticking_gap(self) -> Any:
+        """Gap below which it may hold without current [m]."""
+        return STICKING_SHARE * self.residual_gap
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Pack that a magnet presses, with all that is known around it.
+
+    ``gap`` is that of each surface when released [m], ``wear_depth`` what a lining wears until the gap is set again
+    [m]. ``size`` counts, ``full_size`` is that of the complete pack. ``objective`` is offered of every such pack,
+    ``offered`` are further objectives.
+    """
+
+    duty: Duty
+    pair: Pair
+    start: Startup
+    ramp_time: Any
+    surfaces: Any
+    gap: Any
+    wear_depth: Any
+    size: Size
+    full_size: Size
+    parts: Any
+    area: Any
+    objective: str
+    offered: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Pull:
+    """What the magnet needs to draw its armature in: circuit, ampere-turns, pull and what holds it back [N]."""
+
+    circuit: pot_magnet.Circuit
+    ampere_turns: Any
+    force: Any
+    springs: Any
 
 
 @dataclass(frozen=True)
@@ -161,22 +192,24 @@ def declare_magnet_rules(d: Declaration) -> MagnetRules:
     return rules
 
 
-def declare_magnet(d: Declaration, *, seat: Seat | None = None) -> Magnet:
+def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Magnet:
     """Declare requirements and unknowns of the magnet, its force, and what is left for the pack.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    seat : Seat, optional
-        What defaults follow from where rules of practice count.
+    sticking_gap : float or symbol
+        Gap below which it may hold without current [m].
+    defaults : symbols
+        Defaults of MagnetRequirements, in SI.
 
     Returns
     -------
     Magnet
         Symbols of the block.
     """
-    wants = d.block(MagnetRequirements, **({} if seat is None else seat.defaults))
+    wants = d.block(MagnetRequirements, **defaults)
     iron = coil_blocks.declare_coil_requirements(d)
     pole_width = d.variable(
         "inner_pole_width",
@@ -223,44 +256,11 @@ def declare_magnet(d: Declaration, *, seat: Seat | None = None) -> Magnet:
         text="Axial force on the pack: magnet less return springs",
         source=f"{S4}, section 6.6",
     )
-    sticking_gap = STICKING_GAP if seat is None else STICKING_SHARE * seat.residual_gap
     return Magnet(wants, iron, unknowns, shape, force, sticking_gap)
 
 
-def declare_magnet_coil(
-    d: Declaration,
-    *,
-    duty: Duty,
-    magnet: Magnet,
-    surfaces: Any,
-    gap: Any,
-    friction_work: Any,
-    practice: Practice | None = None,
-) -> MagnetSize:
-    """Declare the circuit, the pull on the released armature and the coil with their limits.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Block duty.
-    magnet : Magnet
-        The magnet.
-    surfaces : symbol
-        Friction surfaces of the pack [-].
-    gap : symbol
-        Gap of each of them when released [m].
-    friction_work : symbol
-        Per engagement; it heats the magnet too [J].
-    practice : Practice, optional
-        What the rules of practice go by, where they count.
-
-    Returns
-    -------
-    MagnetSize
-        Its mass.
-    """
+def declare_pull(d: Declaration, pressed: Pressed, magnet: Magnet) -> Pull:
+    """Declare the circuit with its limits, and the pull on the released armature."""
     wants, iron, unknowns, shape = magnet.wants, magnet.iron, magnet.unknowns, magnet.shape
     circuit = pot_magnet.Circuit(shape, iron.leakage_factor, iron.iron_reluctance, iron.iron_saturation)
     flux_density = unknowns.flux_density
@@ -282,7 +282,7 @@ def declare_magnet_coil(
         source=f"{S4}, section 6.6",
     )
     ampere_turns = circuit.ampere_turns(flux_density)
-    released, springs = _name_release(d, wants=wants, surfaces=surfaces, gap=gap)
+    released, springs = _name_release(d, wants=wants, surfaces=pressed.surfaces, gap=pressed.gap)
     pull_in = d.derive(
         "pull_in_force",
         "N",
@@ -292,15 +292,24 @@ def declare_magnet_coil(
         text="Pull on the released armature, across all gaps of the pack",
         source=f"{S4}, section 6.6",
     )
-    if practice is None or practice.rules.wear_adjust == "yes":
-        d.at_least(
-            "pull_in",
-            pull_in,
-            wants.pull_in_margin * springs,
-            "N",
-            text="The magnet draws the released armature in",
-            source=f"{S4}, section 6.6",
-        )
+    return Pull(circuit, ampere_turns, pull_in, springs)
+
+
+def limit_pull_in(d: Declaration, magnet: Magnet, pull: Pull) -> None:
+    """Declare that the magnet draws the released armature in."""
+    d.at_least(
+        "pull_in",
+        pull.force,
+        magnet.wants.pull_in_margin * pull.springs,
+        "N",
+        text="The magnet draws the released armature in",
+        source=f"{S4}, section 6.6",
+    )
+
+
+def declare_coil(d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull) -> coil_blocks.Winding:
+    """Declare the coil with its limits, and the remarks on the magnet."""
+    duty, iron, unknowns, shape = pressed.duty, magnet.iron, magnet.unknowns, magnet.shape
     d.derive(
         "magnet_diameter",
         "mm",
@@ -314,32 +323,30 @@ def declare_magnet_coil(
         temperature_limit=unknowns.winding_wire.insulation_temperature,
         heat_transfer=iron.still_heat_transfer,
         surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
-        other_heat=heat.hourly_heat(friction_work, duty.engagements_per_hour),
+        other_heat=heat.hourly_heat(pressed.start.friction_work, duty.engagements_per_hour),
     )
     winding = coil_blocks.declare_winding(
-        d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=shape.inner_pole_radius, around=around
+        d,
+        wants=iron,
+        unknowns=unknowns,
+        ampere_turns=pull.ampere_turns,
+        bore_radius=shape.inner_pole_radius,
+        around=around,
     )
     _declare_remarks(d, magnet=magnet)
-    if practice is not None:
-        coil_blocks.limit_coil(d, rules=practice.rules, wants=iron, unknowns=unknowns)
-        rise = coil_blocks.declare_rise_time(
-            d, rules=practice.rules, winding=winding, linkage=circuit.linkage(flux_density)
-        )
-        worn = wants.residual_gap + plates.stroke(surfaces, gap, practice.wear_depth)
-        _limit_magnet(
-            d,
-            wants=wants,
-            practice=practice,
-            springs=springs,
-            rise=rise,
-            worn_gap=worn,
-            worn_pull=pot_magnet.pull_in_force(ampere_turns, worn, shape.pole_area),
-        )
+    return winding
+
+
+def declare_magnet_size(
+    d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull, winding: coil_blocks.Winding
+) -> MagnetSize:
+    """Declare the masses of the magnet, and name its shape."""
+    unknowns, shape, density = magnet.unknowns, magnet.shape, pressed.duty.steel_density
     copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, winding.copper_section)
-    _name_shape(d, shape=shape, circuit=circuit, flux_density=flux_density)
-    mass = pot_magnet.magnet_mass(duty.steel_density, shape, copper)
+    _name_shape(d, shape=shape, circuit=pull.circuit, flux_density=unknowns.flux_density)
+    mass = pot_magnet.magnet_mass(density, shape, copper)
     d.step("copper_mass", "kg", copper, symbol="m_cu", text="Copper of the coil", source="geometry")
-    iron_mass = pot_magnet.magnet_mass(duty.steel_density, shape, 0.0)
+    iron_mass = pot_magnet.magnet_mass(density, shape, 0.0)
     d.step("magnet_iron_mass", "kg", iron_mass, symbol="m_fe", text="Pot and armature", source="geometry")
     d.step("magnet_mass", "kg", mass, symbol="m_mag", text="Pot, armature and coil", source="geometry")
     return MagnetSize(mass=mass, copper=copper)
@@ -371,17 +378,15 @@ def _name_shape(d: Declaration, *, shape: pot_magnet.PotMagnet, circuit: pot_mag
         d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4}, section 6.6")
 
 
-def _limit_magnet(
-    d: Declaration,
-    *,
-    wants: MagnetRequirements,
-    practice: Practice,
-    springs: Any,
-    rise: Any,
-    worn_gap: Any,
-    worn_pull: Any,
+def limit_magnet(
+    d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull, winding: coil_blocks.Winding, rules: MagnetRules
 ) -> None:
-    """Declare the limits that an engineer adds to a magnet that presses a pack."""
+    """Declare the limits that an engineer adds to a magnet that presses a pack, and to its coil."""
+    wants, unknowns = magnet.wants, magnet.unknowns
+    coil_blocks.limit_coil(d, rules=rules, wants=magnet.iron, unknowns=unknowns)
+    linkage = pull.circuit.linkage(unknowns.flux_density)
+    rise = coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage)
+    worn_gap = wants.residual_gap + plates.stroke(pressed.surfaces, pressed.gap, pressed.wear_depth)
     d.step(
         "worn_gap",
         "mm",
@@ -390,20 +395,20 @@ def _limit_magnet(
         text="Gap at each pole of the released magnet over worn linings",
         source="the armature follows the wear; derived",
     )
-    pull = d.derive(
+    worn_pull = d.derive(
         "worn_pull_in_force",
         "N",
-        worn_pull,
+        pot_magnet.pull_in_force(pull.ampere_turns, worn_gap, magnet.shape.pole_area),
         symbol="F_in_worn",
         needs="iron_saturation",
         text="Pull on the released armature over worn linings",
         source=f"{S4}, section 6.6; the armature follows the wear",
     )
-    if practice.rules.wear_adjust == "no":
+    if rules.wear_adjust == "no":
         d.at_least(
             "pull_in_worn",
-            pull,
-            wants.pull_in_margin * springs,
+            worn_pull,
+            wants.pull_in_margin * pull.springs,
             "N",
             text="The magnet draws the armature in over worn linings as well",
             source=f"{S4}, section 6.6; the armature follows the wear",
@@ -411,15 +416,15 @@ def _limit_magnet(
     d.at_most(
         "rise_time",
         rise,
-        practice.ramp_time,
+        pressed.ramp_time,
         "s",
         text="The current rises within the ramp that is counted on",
         source="L/R of the circuit; derived",
     )
     d.at_least(
         "ramp_time",
-        practice.ramp_time,
-        practice.rules.ramp_time_min,
+        pressed.ramp_time,
+        rules.ramp_time_min,
         "s",
         text="An armature needs its time",
         source=UNSOURCED,

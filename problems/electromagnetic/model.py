@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
-from .. import cost, friction, practice, wear
-from ..disc import body as disc_body
+from .. import friction, practice, wear
 from ..disc import curves as disc_curves
 from ..disc import pack as disc_pack
+from ..disc.body import DiscHousing
 from ..friction import startup_curves
 from ..mechanics import magnetics
 from ..mechanics import ring as ring_formulas
-from ..multi_plate import body as plate_body
 from ..multi_plate import curves as pack_curves
 from ..multi_plate import pack as plate_pack
-from ..multi_plate.requirements import MadePackOptions, PackBodyRequirements, PackRules
+from ..multi_plate.body import PackHousing
+from ..multi_plate.requirements import MadePackOptions
 from ..sources import (
     ARCHARD,
     DISC_RUN_OUT,
@@ -34,6 +34,8 @@ from ..sources import (
 )
 from . import curves as magnet_curves
 from . import magnet as magnet_blocks
+from .layers import LAYERS, Sources
+from .magnet import Magnet, MagnetSize, Pressed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,10 +43,8 @@ if TYPE_CHECKING:
     from synth.drawing import Drawing
 
 
-MAGNET_PARTS = 3  # pot, armature and coil
 # Pairs on a flat face, as built today; no bare cast iron.
 SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "status in ('current', '')", "lining != 'cast iron'")
-WEAR_AT_MAGNET = 0.3  # mm, default of wear_depth_limit of dry linings: a magnet does not reach over more
 
 
 class ElectromagneticClutch(DesignProblem):
@@ -83,34 +83,11 @@ class ElectromagneticClutch(DesignProblem):
             source=f"{S4}, section 6.6",
             group="model",
         )
-        scope = practice.declare_scope(d)
+        layer_of = LAYERS[practice.declare_scope(d)]
         if pack == "disc":
-            self._declare_disc(d, scope=scope)
+            self._declare_disc(d, layer_of)
         else:
-            self._declare_multi_plate(d, scope=scope)
-        d.headline(
-            "mass",
-            "outer_diameter",
-            "length",
-            "friction_surfaces",
-            "coil_power",
-            "surface_pressure",
-            "peak_temperature_rise",
-            "coil_temperature_rise",
-            sized_by="torque_capacity",
-        )
-        # Least power asks for ever larger magnets; with the rules of practice the supply limits it, and size counts.
-        d.objective("coil_power", default=not scope.rules)
-        d.objective("mass")
-        d.objective("outer_diameter", default=scope.rules)
-        extra = "disc_inertia" if pack == "disc" else "drag_torque"
-        for name in ("volume", "friction_work", extra):
-            d.objective(name, default=False)
-        if scope.rules or scope.complete:
-            wear.offer_wear_life(d)
-            d.objective("length", default=False)
-            if pack == "multi_plate":
-                d.objective("inner_inertia", default=False)
+            self._declare_multi_plate(d, layer_of)
 
     def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pack over repeated engagements.
@@ -150,138 +127,74 @@ class ElectromagneticClutch(DesignProblem):
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
         """Return the section through pack, armature and pot, with details of a lining and of the gap."""
-        from . import drawing as magnet_drawing  # costly to import; searches do without
+        # Costly to import; searches do without.
+        from ..drawing_parts import Sizes
+        from . import drawing as magnet_drawing
 
-        complete = self.option("mass_scope") == "complete"
-        if self.option("pack") == "disc":
-            return magnet_drawing.disc_magnet_drawing(spec, design, complete=complete)
-        return magnet_drawing.plate_magnet_drawing(spec, design, complete=complete)
+        return magnet_drawing.DRAWINGS[self.option("pack"), self.option("mass_scope")](Sizes(spec, design))
 
-    def _declare_multi_plate(self, d: Declaration, *, scope: practice.Scope) -> None:
+    def _declare_multi_plate(self, d: Declaration, layer_of: type[Sources]) -> None:
         lubrication = plate_pack.declare_lubrication(d)
         duty = friction.declare_duty(
             d,
             cooling_default="oil_bath" if lubrication == "oil" else "still_air",
             lubrication=lubrication,
-            kind=friction.DutyOfPack if scope.rules else friction.Duty,
+            kind=layer_of.plates.kind,
         )
         options = d.block(MadePackOptions)
         wants = plate_pack.declare_pack_requirements(
-            d, duty=duty, options=options, lubrication=lubrication, rules=scope.rules
+            d, duty=duty, options=options, lubrication=lubrication, kind=layer_of.plates.pack
         )
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        body_wants = rules = coil_rules = seat = None
-        if scope.rules or scope.complete:
-            body_wants = d.block(
-                PackBodyRequirements,
-                shaft_diameter=practice.shaft_for(required),
-                wear_depth_limit=0.2 if lubrication == "oil" else WEAR_AT_MAGNET,
-            )
-            practice.declare_shaft(d, body_wants, diameter=body_wants.shaft_diameter, torque=required)
-        if scope.rules:
-            oil = lubrication == "oil"
-            rules = d.block(PackRules, friction_surfaces_max=12 if oil else 8, release_gap_min=0.05 if oil else 0.3)
-            coil_rules = magnet_blocks.declare_magnet_rules(d)
-            if body_wants is not None:
-                seat = magnet_blocks.Seat(required, body_wants.shaft_diameter, body_wants.hub_diameter)
-        ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
-        magnet = magnet_blocks.declare_magnet(d, seat=seat)
+        pack_layer = layer_of.plates(d, PackHousing, lubrication, required)
+        layer = layer_of(d, required, pack_layer.shaft)
+        ring = friction.declare_ring(d, ratio_min=pack_layer.ratio_min, ratio_max=0.25)
+        magnet = layer.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication=lubrication, rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=SUITED, duty=duty, lubrication=lubrication, linings=pack_layer.linings
+        )
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
+        stack = plate_pack.Stack(duty, options, wants, ring, pair, pack)
         torque, torques = plate_pack.declare_pack_torques(
-            d,
+            d, stack, required=required, force=magnet.actuation_force, needs=(magnet_blocks.HOLDS,)
+        )
+        built = plate_pack.declare_pack_start(d, stack, torque=torque, torques=torques, ramp_time=ramp_time)
+        plate_pack.declare_pack_temperature(d, built)
+        pack_layer.judge_temperature(d, built)
+        plate_pack.declare_drag(d, built)
+        pack_layer.declare_body(d, built)
+        pressed = Pressed(
             duty=duty,
-            options=options,
-            wants=wants,
-            ring=ring,
             pair=pair,
-            pack=pack,
-            required=required,
-            force=magnet.actuation_force,
-            needs=(magnet_blocks.HOLDS,),
-        )
-        start, area = plate_pack.declare_pack_start(
-            d, duty=duty, ring=ring, pair=pair, pack=pack, torque=torque, torques=torques, ramp_time=ramp_time
-        )
-        size = plate_pack.pack_size(duty, wants, ring, pair, pack)
-        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size, rules=scope.rules)
-        drag = plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
-        body = habits = None
-        if body_wants is not None:
-            body = plate_body.body_at_magnet(
-                duty=duty, wants=body_wants, pack_wants=wants, ring=ring, pack=pack, pack_size=size
-            )
-            plate_body.declare_body(
-                d,
-                duty=duty,
-                pack_wants=wants,
-                ring=ring,
-                pair=pair,
-                pack=pack,
-                start=start,
-                body=body,
-                pack_size=size,
-            )
-            if rules is not None and coil_rules is not None:
-                plate_body.declare_rules(
-                    d,
-                    rules=rules,
-                    duty=duty,
-                    pack_wants=wants,
-                    ring=ring,
-                    pair=pair,
-                    pack=pack,
-                    start=start,
-                    drag=drag,
-                    body=body,
-                    cooled_area=size.cooled_area,
-                )
-                depth = plate_body.wear_depth(body_wants, pair, pack)
-                habits = magnet_blocks.Practice(rules=coil_rules, wear_depth=depth, ramp_time=ramp_time)
-        built = magnet_blocks.declare_magnet_coil(
-            d,
-            duty=duty,
-            magnet=magnet,
+            start=built.start,
+            ramp_time=ramp_time,
             surfaces=pack.surfaces,
             gap=pack.gap,
-            friction_work=start.friction_work,
-            practice=habits,
+            wear_depth=pack_layer.wear_depth(built),
+            size=pack_layer.size(built),
+            full_size=pack_layer.full_size(built),
+            parts=pack.surfaces + 1,
+            area=built.area,
+            objective="drag_torque",
+            offered=pack_layer.offered,
         )
-        whole = size if body is None or not scope.complete else body.size
-        self._declare_size(d, scope=scope, duty=duty, magnet=magnet, built=built, pack=whole)
-        if body is not None:
-            self._declare_cost(
-                d, magnet=magnet, built=built, mass=body.size.mass, parts=pack.surfaces + 1, pair=pair, area=area
-            )
+        self._declare_magnet(d, layer=layer, magnet=magnet, pressed=pressed)
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
 
-    def _declare_disc(self, d: Declaration, *, scope: practice.Scope) -> None:
-        duty = friction.declare_duty(
-            d,
-            cooling_default="still_air",
-            lubrication="dry",
-            kind=friction.DutyOfDiscs if scope.rules else friction.Duty,
-        )
-        required = friction.sizing_torque(duty)
-        body_wants = wants = rules = coil_rules = seat = None
-        if scope.rules or scope.complete:
-            body_wants = disc_body.declare_body_requirements(d, required=required, wear_depth_limit=WEAR_AT_MAGNET)
-            wants = disc_body.declare_disc_requirements(d, body=body_wants)
-        if scope.rules:
-            rules = d.block(disc_body.DiscRules)
-            coil_rules = magnet_blocks.declare_magnet_rules(d)
-            if body_wants is not None:
-                seat = magnet_blocks.Seat(required, body_wants.shaft_diameter, body_wants.hub_diameter)
-        least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
+    def _declare_disc(self, d: Declaration, layer_of: type[Sources]) -> None:
+        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry", kind=layer_of.discs.kind)
+        pack_layer = layer_of.discs(d, DiscHousing, duty)
+        layer = layer_of(d, pack_layer.required, pack_layer.shaft)
+        least, most = pack_layer.ring_ratios
         ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
-        pack = disc_pack.declare_disc_pack(
-            d, duty=duty, ring=ring, wants=d.block(disc_pack.DiscRequirements) if wants is None else wants
-        )
-        magnet = magnet_blocks.declare_magnet(d, seat=seat)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=pack_layer.requirements(d))
+        magnet = layer.declare_magnet(d)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", rules=scope.rules)
+        pair = friction.declare_friction_pair(
+            d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings
+        )
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
@@ -291,7 +204,7 @@ class ElectromagneticClutch(DesignProblem):
             d,
             duty=duty,
             pair=pair,
-            required=required,
+            required=pack_layer.required,
             torque_low=low,
             torque_high=high,
             source=f"{S1}, sizing",
@@ -315,41 +228,55 @@ class ElectromagneticClutch(DesignProblem):
         discs = disc_pack.Discs(duty, ring, pair, pack, start, size)
         disc_pack.declare_disc_inertia(d, discs)
         disc_pack.declare_disc_temperature(d, discs)
-        body = habits = None
-        if body_wants is not None:
-            body = disc_body.body_at_magnet(discs, body_wants)
-            disc_body.declare_body(d, discs, body)
-            if rules is not None and coil_rules is not None:
-                disc_body.declare_rules(d, discs, rules)
-                habits = magnet_blocks.Practice(
-                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, discs), ramp_time=ramp_time
-                )
-        built = magnet_blocks.declare_magnet_coil(
-            d,
+        pack_layer.declare_body(d, discs)
+        pack_layer.declare_rules(d, discs)
+        pressed = Pressed(
             duty=duty,
-            magnet=magnet,
+            pair=pair,
+            start=start,
+            ramp_time=ramp_time,
             surfaces=pack.surfaces,
             gap=duty.plate_gap,
-            friction_work=start.friction_work,
-            practice=habits,
+            wear_depth=pack_layer.wear_depth(discs),
+            size=pack_layer.size(discs),
+            full_size=pack_layer.full_size(discs),
+            parts=2 * pack.discs + 2,
+            area=area,
+            objective="disc_inertia",
+            offered=(),
         )
-        whole = size if body is None or not scope.complete else body.size
-        self._declare_size(d, scope=scope, duty=duty, magnet=magnet, built=built, pack=whole)
-        if body is not None:
-            self._declare_cost(
-                d, magnet=magnet, built=built, mass=body.size.mass, parts=2 * pack.discs + 2, pair=pair, area=area
-            )
+        self._declare_magnet(d, layer=layer, magnet=magnet, pressed=pressed)
+
+    def _declare_magnet(self, d: Declaration, *, layer: Sources, magnet: Magnet, pressed: Pressed) -> None:
+        """Declare coil, size, cost and objectives."""
+        pull = magnet_blocks.declare_pull(d, pressed, magnet)
+        layer.limit_pull_in(d, magnet, pull)
+        winding = magnet_blocks.declare_coil(d, pressed, magnet, pull)
+        layer.limit_magnet(d, pressed, magnet, pull, winding)
+        built = magnet_blocks.declare_magnet_size(d, pressed, magnet, pull, winding)
+        self._declare_size(d, layer=layer, pressed=pressed, magnet=magnet, built=built)
+        layer.declare_cost(d, pressed, magnet, built)
+        d.headline(
+            "mass",
+            "outer_diameter",
+            "length",
+            "friction_surfaces",
+            "coil_power",
+            "surface_pressure",
+            "peak_temperature_rise",
+            "coil_temperature_rise",
+            sized_by="torque_capacity",
+        )
+        for name in ("coil_power", "mass", "outer_diameter", "volume", "friction_work", pressed.objective):
+            d.objective(name, default=name in layer.objectives)
+        wear.offer_wear_life(d)
+        for name in (*layer.offered, *pressed.offered):
+            d.objective(name, default=False)
 
     def _declare_size(
-        self,
-        d: Declaration,
-        *,
-        scope: practice.Scope,
-        duty: friction.Duty,
-        magnet: magnet_blocks.Magnet,
-        built: magnet_blocks.MagnetSize,
-        pack: friction.Size,
+        self, d: Declaration, *, layer: Sources, pressed: Pressed, magnet: Magnet, built: MagnetSize
     ) -> None:
+        pack = pressed.size
         for name, value, symbol, text in (
             ("pack_diameter", pack.diameter, "D_pk", "Outside of the pack"),
             ("pack_room", pack.length, "L_room", "Length without the magnet"),
@@ -364,27 +291,10 @@ class ElectromagneticClutch(DesignProblem):
         friction.declare_size(
             d,
             size=size,
-            mass_of="The whole clutch" if scope.complete else "Pack and magnet with armature and coil",
+            mass_of=layer.mass_of,
             outside="Outside of pack or magnet",
-            along="The whole clutch" if scope.complete else "Released pack and engaged magnet",
+            along=layer.along,
         )
         friction.declare_envelope(
-            d, duty=duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length
-        )
-
-    def _declare_cost(
-        self,
-        d: Declaration,
-        *,
-        magnet: magnet_blocks.Magnet,
-        built: magnet_blocks.MagnetSize,
-        mass: Any,
-        parts: Any,
-        pair: friction.Pair,
-        area: Any,
-    ) -> None:
-        wire = magnet.unknowns.winding_wire
-        coil = cost.Special("copper", wire, amount=built.copper, mass=built.copper, pieces=1, factor=cost.COPPER)
-        cost.declare_cost(
-            d, mass=mass + built.mass, parts=parts + MAGNET_PARTS, lining=(pair.part, area), special=[coil]
+            d, duty=pressed.duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length
         )

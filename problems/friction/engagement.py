@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..mechanics import heat, plates, startup
-from ..practice import lining_conditions
+from ..practice import allowed_linings
 from ..sources import PRACTICE, S0, S1
 from .duty import Duty
 
@@ -29,7 +29,12 @@ class Pair:
 
 
 def declare_friction_pair(
-    d: Declaration, *, suited: Sequence[str], duty: Duty, lubrication: str | None, rules: bool = False
+    d: Declaration,
+    *,
+    suited: Sequence[str],
+    duty: Duty,
+    lubrication: str | None,
+    linings: Callable[[Declaration, str], list[str]] = allowed_linings,
 ) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
@@ -43,8 +48,8 @@ def declare_friction_pair(
         Block duty.
     lubrication : str or None
         dry or oil; None accepts both.
-    rules : bool
-        Whether the rules of practice count: what is built no more is then left out where a table tells.
+    linings : callable
+        Further conditions, from the declaration and the word chosen for allow_obsolete.
 
     Returns
     -------
@@ -52,7 +57,7 @@ def declare_friction_pair(
         The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
     """
     conditions = [*suited, f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')"]
-    conditions += lining_conditions(d, duty.allow_obsolete, rules=rules)
+    conditions += linings(d, duty.allow_obsolete)
     part = d.part(
         "friction_pair",
         "friction_materials",

@@ -6,26 +6,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from operator import add
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from synth.declaration import Declaration
 
 from .. import wear
-from ..friction.duty import Duty, Size
-from ..friction.engagement import Pair, Startup
-from ..friction.ring import Ring
+from ..friction.duty import Size
 from ..mechanics import heat, plates
 from ..mechanics import ring as ring_formulas
 from ..practice import UNSOURCED, declare_shaft, name_boss, shaft_for
 from ..sources import DRIVE
-from .pack import Pack, PackSize
+from .pack import BuiltPack
 from .requirements import (
     FLATNESS,
     BodyRequirements,
     PackBodyRequirements,
-    PackRequirements,
     PackRules,
     PistonPackRules,
 )
@@ -61,176 +58,103 @@ class Body:
     actuator_length: Any = None
 
 
-def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any) -> BodyRequirements:
-    """Declare the requirements of the complete clutch.
+class PackHousing:
+    """Drum, hub and shaft around a pack that an armature presses, which is one of its end plates."""
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    lubrication : str
-        dry or oil; pistons of packs in oil are pressed by oil, those of dry ones by air.
-    required : symbol
-        Sizing torque M_req [N m], which the shaft carries.
+    rules: ClassVar[type[PackRules]] = PackRules
+    offered: ClassVar[tuple[str, ...]] = ("inner_inertia",)  # further objectives
+    # Defaults by lubrication; a magnet does not reach over more wear of dry linings.
+    wear_depth_limit: ClassVar[Mapping[str, float]] = {"oil": 0.2, "dry": 0.3}  # mm
+    friction_surfaces_max: ClassVar[Mapping[str, int]] = {"oil": 12, "dry": 8}
 
-    Returns
-    -------
-    BodyRequirements
-        Symbols of the block.
-    """
-    oil = lubrication == "oil"
-    wants = d.block(
-        BodyRequirements,
-        shaft_diameter=shaft_for(required),
-        actuator="hydraulic" if oil else "pneumatic",
-        actuator_pressure=1.4 if oil else 0.55,
-        wear_depth_limit=0.2 if oil else 1.0,
-    )
-    declare_shaft(d, wants, diameter=wants.shaft_diameter, torque=required)
-    return wants
+    def __init__(self, d: Declaration, lubrication: str, required: Any) -> None:
+        """Declare the requirements of the complete clutch, whose shaft carries the sizing torque [N m]."""
+        self.lubrication = lubrication
+        self.wants = self.declare_requirements(
+            d, shaft_diameter=shaft_for(required), wear_depth_limit=self.wear_depth_limit[lubrication]
+        )
+        declare_shaft(d, self.wants, diameter=self.wants.shaft_diameter, torque=required)
 
+    def declare_requirements(self, d: Declaration, **defaults: Any) -> PackBodyRequirements:
+        """Declare the block of requirements."""
+        return d.block(PackBodyRequirements, **defaults)
 
-def declare_pack_rules(d: Declaration, *, lubrication: str) -> PistonPackRules:
-    """Declare the requirements that rules for packs with a piston go by.
+    def declare_rules(self, d: Declaration) -> PackRules:
+        """Declare the requirements that rules for packs go by."""
+        least = 0.05 if self.lubrication == "oil" else 0.3
+        most = self.friction_surfaces_max[self.lubrication]
+        return d.block(self.rules, friction_surfaces_max=most, release_gap_min=least)
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    lubrication : str
-        dry or oil.
-
-    Returns
-    -------
-    PistonPackRules
-        Symbols of the block.
-    """
-    oil = lubrication == "oil"
-    return d.block(PistonPackRules, friction_surfaces_max=20 if oil else 8, release_gap_min=0.05 if oil else 0.3)
+    def complete(self, built: BuiltPack) -> Body:
+        """Parts around a pack: their mass adds an end plate, the shell of the drum, hub, web and bosses."""
+        size = built.size
+        end = 2 * built.ring.outer_radius / self.wants.end_plate_ratio
+        along = size.length + (end - built.pack.inner_thickness)
+        parts = _masses_around(built, self.wants, end=end, end_plates=1, along=along, drum_length=along)
+        complete = Size(mass=size.mass + _together(parts), diameter=size.diameter, length=along)
+        return Body(wants=self.wants, end_plates=1, end_thickness=end, size=complete, parts=parts)
 
 
-def wear_depth(wants: PackBodyRequirements, pair: Pair, pack: Pack) -> Any:
-    """Return the wear of one lining before it is replaced [m]; plates of a list wear no deeper than they are lined."""
-    depth = wear.depth(pair.part, wants.wear_depth_limit)
-    lining = pack.plates.lining_thickness
+class PistonHousing(PackHousing):
+    """Drum, hub and shaft around a pack that a ring piston in the drum presses, or something outside."""
+
+    wants: BodyRequirements
+    rules = PistonPackRules
+    offered = ("stroke", "inner_inertia")
+    wear_depth_limit: ClassVar[Mapping[str, float]] = {"oil": 0.2, "dry": 1.0}
+    friction_surfaces_max: ClassVar[Mapping[str, int]] = {"oil": 20, "dry": 8}
+
+    def declare_requirements(self, d: Declaration, **defaults: Any) -> BodyRequirements:
+        """Declare the block of requirements; pistons of packs in oil are pressed by oil, those of dry ones by air."""
+        oil = self.lubrication == "oil"
+        return d.block(
+            BodyRequirements,
+            actuator="hydraulic" if oil else "pneumatic",
+            actuator_pressure=1.4 if oil else 0.55,
+            **defaults,
+        )
+
+    def complete(self, built: BuiltPack) -> Body:
+        """Parts around a pack: their mass adds end plates, drum, hub, web, bosses and piston."""
+        wants, pack, size, rho = self.wants, built.pack, built.size, built.duty.steel_density
+        b, shaft = pack.outer_spline_radius, wants.shaft_diameter / 2
+        end = 2 * built.ring.outer_radius / wants.end_plate_ratio
+        along = size.length + 2 * (end - pack.inner_thickness)
+        way = plates.stroke(pack.surfaces, pack.gap, wear_depth(wants, built))
+        piston = built.force / wants.actuator_pressure
+        actuator = 0.0 if wants.actuator == "external" else way + end
+        length = along + end + actuator
+        parts = _masses_around(built, wants, end=end, end_plates=2, along=along, drum_length=length)
+        bottom = plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)
+        pressing = rho * piston * actuator
+        mass = size.mass + _together(parts) + bottom + pressing
+        parts["drum_bottom_mass"] = bottom
+        if wants.actuator != "external":
+            parts["piston_mass"] = pressing
+        return Body(
+            wants=wants,
+            end_plates=2,
+            end_thickness=end,
+            size=Size(mass=mass, diameter=plates.drum_diameter(b, built.wants.drum_wall), length=length),
+            parts=parts,
+            stroke=way,
+            piston_area=None if wants.actuator == "external" else piston,
+            actuator_length=None if wants.actuator == "external" else actuator,
+        )
+
+
+def wear_depth(wants: PackBodyRequirements, built: BuiltPack) -> Any:
+    """Wear of one lining before it is replaced [m]; plates of a list wear no deeper than they are lined."""
+    depth, lining = wear.depth(built.pair.part, wants.wear_depth_limit), built.pack.plates.lining_thickness
     return depth if lining is None else np.minimum(depth, lining)
 
 
-def complete_body(
-    *,
-    duty: Duty,
-    wants: BodyRequirements,
-    pack_wants: PackRequirements,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    force: Any,
-    pack_size: PackSize,
-) -> Body:
-    """Parts around a pack.
-
-    Parameters
-    ----------
-    duty : Duty
-        Block duty.
-    wants : BodyRequirements
-        Requirements of the complete clutch.
-    pack_wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : Pack
-        The plates.
-    force : symbol
-        Actuation force F0 [N].
-    pack_size : PackSize
-        Mass and size of the pack alone.
-
-    Returns
-    -------
-    Body
-        Its mass adds end plates, drum, hub, web, bosses and piston to plates and linings.
-    """
-    rho, wall, shaft = duty.steel_density, pack_wants.drum_wall, wants.shaft_diameter / 2
-    b = pack.outer_spline_radius
-    end = 2 * ring.outer_radius / wants.end_plate_ratio
-    along = pack_size.length + 2 * (end - pack.inner_thickness)
-    way = plates.stroke(pack.surfaces, pack.gap, wear_depth(wants, pair, pack))
-    piston = force / wants.actuator_pressure
-    actuator = 0.0 if wants.actuator == "external" else way + end
-    length = along + end + actuator
-    parts = _masses_around(duty, wants, pack_wants, pack, end=end, end_plates=2, along=along, drum_length=length)
-    bottom = plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)
-    pressing = rho * piston * actuator
-    mass = pack_size.mass + _together(parts) + bottom + pressing
-    parts["drum_bottom_mass"] = bottom
-    if wants.actuator != "external":
-        parts["piston_mass"] = pressing
-    return Body(
-        wants=wants,
-        end_plates=2,
-        end_thickness=end,
-        size=Size(mass=mass, diameter=plates.drum_diameter(b, wall), length=length),
-        parts=parts,
-        stroke=way,
-        piston_area=None if wants.actuator == "external" else piston,
-        actuator_length=None if wants.actuator == "external" else actuator,
-    )
-
-
-def body_at_magnet(
-    *,
-    duty: Duty,
-    wants: PackBodyRequirements,
-    pack_wants: PackRequirements,
-    ring: Ring,
-    pack: Pack,
-    pack_size: PackSize,
-) -> Body:
-    """Parts around a pack that an armature presses: it is one of the end plates, and there is no piston.
-
-    Parameters
-    ----------
-    duty : Duty
-        Block duty.
-    wants : PackBodyRequirements
-        Requirements of the complete clutch.
-    pack_wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pack : Pack
-        The plates.
-    pack_size : PackSize
-        Mass and size of the pack alone.
-
-    Returns
-    -------
-    Body
-        Its mass adds an end plate, the shell of the drum, hub, web and bosses to plates and linings.
-    """
-    end = 2 * ring.outer_radius / wants.end_plate_ratio
-    along = pack_size.length + (end - pack.inner_thickness)
-    parts = _masses_around(duty, wants, pack_wants, pack, end=end, end_plates=1, along=along, drum_length=along)
-    size = Size(mass=pack_size.mass + _together(parts), diameter=pack_size.diameter, length=along)
-    return Body(wants=wants, end_plates=1, end_thickness=end, size=size, parts=parts)
-
-
 def _masses_around(
-    duty: Duty,
-    wants: PackBodyRequirements,
-    pack_wants: PackRequirements,
-    pack: Pack,
-    *,
-    end: Any,
-    end_plates: int,
-    along: Any,
-    drum_length: Any,
+    built: BuiltPack, wants: PackBodyRequirements, *, end: Any, end_plates: int, along: Any, drum_length: Any
 ) -> dict[str, Any]:
-    """Return the masses of what every pack has around it [kg]: end plates over cores, drum shell, hub and bosses."""
-    rho, wall, shaft = duty.steel_density, pack_wants.drum_wall, wants.shaft_diameter / 2
+    """Masses of what every pack has around it [kg]: end plates over cores, drum shell, hub and bosses."""
+    pack = built.pack
+    rho, wall, shaft = built.duty.steel_density, built.wants.drum_wall, wants.shaft_diameter / 2
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
     thicker = end - pack.inner_thickness
     return {
@@ -248,41 +172,9 @@ def _together(parts: Mapping[str, Any]) -> Any:
     return reduce(add, parts.values())
 
 
-def declare_body(
-    d: Declaration,
-    *,
-    duty: Duty,
-    pack_wants: PackRequirements,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    start: Startup,
-    body: Body,
-    pack_size: PackSize,
-) -> None:
-    """Name what a complete clutch adds to its pack: parts of the mass, stroke, wear and inertia.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Block duty.
-    pack_wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : Pack
-        The plates.
-    start : Startup
-        What one engagement costs.
-    body : Body
-        What is around the pack.
-    pack_size : PackSize
-        Mass and size of the pack alone.
-    """
+def declare_body(d: Declaration, built: BuiltPack, body: Body) -> None:
+    """Name what a complete clutch adds to its pack: parts of the mass, stroke, wear and inertia."""
+    duty, ring, pack, pack_size = built.duty, built.ring, built.pack, built.size
     d.derive(
         "plate_mass",
         "kg",
@@ -303,10 +195,10 @@ def declare_body(
         )
     wear.declare_wear_life(
         d,
-        pair.part,
+        built.pair.part,
         area=pack.aid.area_factor * pack.surfaces * ring.area,
-        depth=wear_depth(body.wants, pair, pack),
-        work=start.friction_work,
+        depth=wear_depth(body.wants, built),
+        work=built.start.friction_work,
         text="Engagements until the linings are worn",
     )
     inner = ring_formulas.inner_plate_count(pack.surfaces) * pack.inner_thickness
@@ -315,7 +207,7 @@ def declare_body(
         ("end_plate_thickness", body.end_thickness, "t_end", "An end plate, and the web of the hub"),
         ("inner_stack", inner + thicker, "t_stack", "All inner plates on each other, end plates included"),
         ("hub_length", pack_size.length + thicker, "L_hub", "Rim of the hub: the pack with its end plates"),
-        ("rim_radius", pack.inner_spline_radius - pack_wants.drum_wall, "r_rim", "Inside of the rim of the hub"),
+        ("rim_radius", pack.inner_spline_radius - built.wants.drum_wall, "r_rim", "Inside of the rim of the hub"),
     ):
         d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
     name_boss(d, body.wants)
@@ -338,7 +230,7 @@ def declare_body(
             body.end_thickness,
             ring.outer_radius,
             pack.inner_spline_radius,
-            pack_wants.drum_wall,
+            built.wants.drum_wall,
             body.wants.shaft_diameter / 2,
         ),
         symbol="J_in",
@@ -354,47 +246,9 @@ def declare_body(
     )
 
 
-def declare_rules(
-    d: Declaration,
-    *,
-    rules: PackRules,
-    duty: Duty,
-    pack_wants: PackRequirements,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    start: Startup,
-    drag: Any,
-    body: Body,
-    cooled_area: Any,
-) -> None:
-    """Declare the limits that an engineer adds to a pack.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : PackRules
-        What the limits go by.
-    duty : Duty
-        Block duty.
-    pack_wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : Pack
-        The plates.
-    start : Startup
-        What one engagement costs.
-    drag : symbol
-        Drag of the released pack [N m].
-    body : Body
-        What is around the pack.
-    cooled_area : symbol
-        Surface of the pack that gives off heat [m2].
-    """
+def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules) -> None:
+    """Declare the limits that an engineer adds to a pack."""
+    duty, wants, ring, pair, pack = built.duty, built.wants, built.ring, built.pair, built.pack
     across = 2 * ring.outer_radius
     d.at_most(
         "surfaces_practice", pack.surfaces, rules.friction_surfaces_max, "-", text="So many plates are built",
@@ -408,15 +262,7 @@ def declare_rules(
         text="The cores are thick enough to stay flat",
         source=f"{UNSOURCED}; {FLATNESS}",
     )
-    if isinstance(rules, PistonPackRules):
-        d.at_most(
-            "stroke",
-            body.stroke,
-            rules.stroke_base + rules.stroke_per_diameter * across,
-            "mm",
-            text="An actuator has the stroke",
-            source=UNSOURCED,
-        )
+    rules.limit_stroke(d, stroke=body.stroke, ring=ring)
     if duty.plate_gap is not None:
         d.at_least(
             "release_clearance",
@@ -426,23 +272,18 @@ def declare_rules(
             text="The plates come free although they are not quite flat",
             source=f"{UNSOURCED}; {FLATNESS}",
         )
-    if isinstance(rules, PistonPackRules) and body.piston_area is not None:
-        d.at_most(
-            "piston_fits",
-            body.piston_area,
-            rules.piston_fill * np.pi * pack.plates.spline_width * pack.plates.spline_mean_diameter,
-            "cm2",
-            text="A ring piston of that pressure fits between the splines",
-            source=UNSOURCED,
-        )
+    rules.limit_piston(
+        d, area=body.piston_area, width=pack.plates.spline_width, diameter=pack.plates.spline_mean_diameter
+    )
     d.at_least(
         "hub_room",
-        2 * (pack.inner_spline_radius - pack_wants.drum_wall),
+        2 * (pack.inner_spline_radius - wants.drum_wall),
         body.wants.hub_diameter,
         "mm",
         text="The hub of the shaft fits inside the rim of the plates",
         source=UNSOURCED,
     )
+    drag = d.derived["drag_torque"].sx
     ratio = d.derive(
         "drag_ratio",
         "-",
@@ -462,7 +303,7 @@ def declare_rules(
     power = d.derive(
         "drag_power",
         "W",
-        drag * pack_wants.released_speed(duty),
+        drag * wants.released_speed(duty),
         symbol="P_drag",
         text="Power of the drag of the released clutch",
         source="definition",
@@ -471,15 +312,15 @@ def declare_rules(
     d.constant("film_speed", "m/s", FILM_BREAKS, symbol="v_film", text=text, source=UNSOURCED)
     d.advise(
         "film_breaks",
-        pack_wants.released_speed(duty) * ring.mean_diameter / 2 > FILM_BREAKS,
+        wants.released_speed(duty) * ring.mean_diameter / 2 > FILM_BREAKS,
         "above 8 m/s an oil film takes in air, and the drag is less than computed: state drag speed, at which it is to "
         "be judged",
         source=UNSOURCED,
     )
-    heating = start.friction_work * duty.engagements_per_hour + power
+    heating = built.start.friction_work * duty.engagements_per_hour + power
     d.at_most(
         "mean_temperature",
-        heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, cooled_area),
+        heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, built.size.cooled_area),
         pair.part.optional("temp_continuous") - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature, drag included",

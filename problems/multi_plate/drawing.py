@@ -6,11 +6,8 @@ formulas have them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from synth import Design
 from synth.drawing import (
     Area,
     Balloon,
@@ -150,25 +147,8 @@ def pack_detail(size: Sizes, pack: DrawnPack, *, wall: float, letter: str = "X")
     return Detail(letter, window, dimensions, least=min(lining, core[1] - core[0]))
 
 
-def multi_plate_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool, piston: bool) -> Drawing:
-    """Return the drawing of a multi-plate clutch.
-
-    Parameters
-    ----------
-    spec : mapping
-        What the hook is told.
-    design : Design
-        The design.
-    complete : bool
-        Whether mass and length are those of the whole clutch, so that drum, hub and actuator are known.
-    piston : bool
-        Whether a ring piston presses.
-    """
-    size = Sizes(spec, design)
-    return _complete(size, piston=piston) if complete else _pack_alone(size)
-
-
-def _pack_alone(size: Sizes) -> Drawing:
+def pack_drawing(size: Sizes) -> Drawing:
+    """Drawing of a pack, with the room of its drum."""
     names = pack_names(size)
     pack = drawn_pack(size, 0.0, first=names.inner, last=names.inner)
     b, wall = size("outer_spline_radius"), size("drum_wall")
@@ -202,7 +182,8 @@ def _pack_alone(size: Sizes) -> Drawing:
     )
 
 
-def _complete(size: Sizes, *, piston: bool) -> Drawing:
+def clutch_drawing(size: Sizes, *, piston: bool) -> Drawing:
+    """Drawing of a complete clutch, with drum, hub and actuator; a ring piston presses, or something outside."""
     bottom = size("end_plate_thickness")
     room = size("actuator_length") if piston else 0.0
     pack = drawn_pack(size, bottom + room, first="end_plate_thickness", last="end_plate_thickness")

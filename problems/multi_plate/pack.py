@@ -27,12 +27,9 @@ from ..mechanics import plates as plate_formulas
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1
 from .requirements import (
-    LugRequirements,
     MadePackOptions,
     PackOptions,
     PackRequirements,
-    PracticeLugRequirements,
-    PracticePackRequirements,
 )
 
 
@@ -89,6 +86,7 @@ class Pack:
 class PackTorque:
     """Torque and pressure of a pack under an actuation force, and the sources of their formulas."""
 
+    force: Any
     low: Any
     high: Any
     pressure: Any
@@ -107,6 +105,28 @@ class PackSize(Size):
     lining_mass: Any
 
 
+@dataclass(frozen=True)
+class Stack:
+    """A pack and its lining, with what they are declared for."""
+
+    duty: Duty
+    options: PackOptions
+    wants: PackRequirements
+    ring: Ring
+    pair: Pair
+    pack: Pack
+
+
+@dataclass(frozen=True)
+class BuiltPack(Stack):
+    """A pack whose torque and start are declared; ``area`` is that of all friction surfaces [m2]."""
+
+    force: Any
+    area: Any
+    start: Startup
+    size: PackSize
+
+
 def declare_lubrication(d: Declaration) -> str:
     """Declare the option lubrication; it comes first, because defaults of others depend on it."""
     return d.option(
@@ -121,7 +141,7 @@ def declare_lubrication(d: Declaration) -> str:
 
 
 def declare_pack_requirements(
-    d: Declaration, *, duty: Duty, options: PackOptions, lubrication: str, rules: bool = False
+    d: Declaration, *, duty: Duty, options: PackOptions, lubrication: str, kind: type[PackRequirements]
 ) -> PackRequirements:
     """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
 
@@ -135,8 +155,8 @@ def declare_pack_requirements(
         Options of the pack.
     lubrication : str
         dry or oil.
-    rules : bool
-        Whether the rules of practice count: lugs and gap then grow with the diameter.
+    kind : subclass of PackRequirements
+        The block to declare.
 
     Returns
     -------
@@ -146,11 +166,7 @@ def declare_pack_requirements(
     series = options.guide_model == "series"
     oil = lubrication == "oil"
     defaults = {"surface_factor": 1.0 if series else 0.75, "oil_viscosity": 0.02 if oil else 0.0}
-    if rules:
-        further = {"gap_base": 0.1 if oil else 0.3, "drag_speed": duty.driver_speed}
-        pack: PackRequirements = d.block(PracticePackRequirements, **defaults, **further)
-    else:
-        pack = d.block(PackRequirements, **defaults)
+    pack = d.block(kind, **defaults, **kind.defaults(duty, oil=oil))
     if series:
         d.refuse(
             "double_guide_loss",
@@ -184,8 +200,7 @@ def made_plates(d: Declaration, *, options: PackOptions, wants: PackRequirements
     Plates
         Cores from core_plates, lugs at lug_clearance from the ring.
     """
-    rules = isinstance(wants, PracticePackRequirements)
-    lugs = d.block(PracticeLugRequirements if rules else LugRequirements)
+    lugs = d.block(wants.lugs)
     lug = lugs.lug_clearance
     inner_plate = d.part(
         "inner_plate",
@@ -340,35 +355,9 @@ def declare_pack(
     return pack
 
 
-def refuse_impossible_pack(
-    d: Declaration,
-    *,
-    duty: Duty,
-    options: PackOptions,
-    wants: PackRequirements,
-    ring: Ring,
-    pack: Pack,
-    required: Any,
-) -> None:
-    """Refuse requirements that no design can meet, whatever the unknowns.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    duty : Duty
-        Block duty.
-    options : PackOptions
-        Options of the pack.
-    wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pack : Pack
-        The plates.
-    required : symbol
-        Sizing torque M_req [N m].
-    """
+def refuse_impossible_pack(d: Declaration, stack: Stack, required: Any) -> None:
+    """Refuse requirements that no design can meet, whatever the unknowns, for a sizing torque [N m]."""
+    duty, options, wants, ring, pack = stack.duty, stack.options, stack.wants, stack.ring, stack.pack
     lug = pack.plates.lug_clearance
     if lug is None:
         return  # of plates of a list the sizes are known, and limits tell what is wrong with them
@@ -403,40 +392,9 @@ def refuse_impossible_pack(
         )
 
 
-def declare_pack_torque(
-    d: Declaration,
-    *,
-    options: PackOptions,
-    wants: PackRequirements,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    force: Any,
-) -> PackTorque:
-    """Declare guide friction, lug pressures and drag of a pack; return its torque and pressure.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    options : PackOptions
-        Options of the pack.
-    wants : PackRequirements
-        Requirements of the pack.
-    ring : Ring
-        Block ring.
-    pair : Pair
-        Slot friction_pair.
-    pack : Pack
-        The plates.
-    force : symbol
-        Actuation force F0 [N].
-
-    Returns
-    -------
-    PackTorque
-        Torque with the friction counted on and the friction feared, largest pressure.
-    """
+def declare_pack_torque(d: Declaration, stack: Stack, force: Any) -> PackTorque:
+    """Declare guide friction and lug pressures of a pack; torque and pressure under an actuation force F0 [N]."""
+    options, wants, ring, pair, pack = stack.options, stack.wants, stack.ring, stack.pair, stack.pack
     radius, surfaces = ring.friction_radius, pack.surfaces
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
     series = options.guide_model == "series"
@@ -528,6 +486,7 @@ def declare_pack_torque(
         _name_shares(d, options=options, guides=inner + outer, shares=shares)
     _declare_lugs(d, wants=wants, pack=pack, moment=moment_high, shares=shares)
     return PackTorque(
+        force=force,
         low=moment_low * factor,
         high=moment_high * factor_high,
         pressure=net_force * share(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
@@ -537,17 +496,7 @@ def declare_pack_torque(
 
 
 def declare_pack_torques(
-    d: Declaration,
-    *,
-    duty: Duty,
-    options: PackOptions,
-    wants: PackRequirements,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    required: Any,
-    force: Any,
-    needs: tuple[str, ...] = (),
+    d: Declaration, stack: Stack, *, required: Any, force: Any, needs: tuple[str, ...] = ()
 ) -> tuple[PackTorque, Torques]:
     """Refuse a pack that cannot be, declare what it carries under an actuation force, and that it carries its load.
 
@@ -555,7 +504,7 @@ def declare_pack_torques(
     ----------
     d : Declaration
         Takes the declarations.
-    duty, options, wants, ring, pair, pack
+    stack : Stack
         What is asked, and what it is made of.
     required : symbol
         Torque that it is sized for [N m].
@@ -564,12 +513,12 @@ def declare_pack_torques(
     needs : tuple of str
         Guards beside that of the guides without which the torque does not exist.
     """
-    refuse_impossible_pack(d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required)
-    torque = declare_pack_torque(d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=force)
+    refuse_impossible_pack(d, stack, required)
+    torque = declare_pack_torque(d, stack, force)
     torques = declare_torque(
         d,
-        duty=duty,
-        pair=pair,
+        duty=stack.duty,
+        pair=stack.pair,
         required=required,
         torque_low=torque.low,
         torque_high=torque.high,
@@ -580,23 +529,16 @@ def declare_pack_torques(
 
 
 def declare_pack_start(
-    d: Declaration,
-    *,
-    duty: Duty,
-    ring: Ring,
-    pair: Pair,
-    pack: Pack,
-    torque: PackTorque,
-    torques: Torques,
-    ramp_time: Any,
-) -> tuple[Startup, Any]:
-    """Declare a start with a pack and what it does to the surfaces; return it and their area [m2]."""
-    start = declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
+    d: Declaration, stack: Stack, *, torque: PackTorque, torques: Torques, ramp_time: Any
+) -> BuiltPack:
+    """Declare a start with a pack and what it does to the surfaces."""
+    ring, pack = stack.ring, stack.pack
+    start = declare_startup(d, duty=stack.duty, torques=torques, ramp_time=ramp_time)
     area = pack.surfaces * ring.area
     declare_surface_loads(
         d,
-        duty=duty,
-        pair=pair,
+        duty=stack.duty,
+        pair=stack.pair,
         start=start,
         area=area,
         rubbing_area=pack.aid.area_factor * area,
@@ -604,7 +546,7 @@ def declare_pack_start(
         pressure_source=torque.pressure_source,
         rubbing_radius=ring.outer_radius,
     )
-    return start, area
+    return BuiltPack(**vars(stack), force=torque.force, area=area, start=start, size=pack_size(stack))
 
 
 def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, moment: Any) -> None:
@@ -751,14 +693,20 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
     )
 
 
-def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> Any:
-    """Declare the drag of the released pack and its limit; return the drag [N m]."""
+def declare_drag(d: Declaration, built: BuiltPack) -> None:
+    """Declare the drag of the released pack and its limit."""
+    wants, ring, pack = built.wants, built.ring, built.pack
     drag = d.derive(
         "drag_torque",
         "N*m",
         pack.aid.drag_factor
         * plate_formulas.drag_torque(
-            pack.surfaces, wants.oil_viscosity, wants.released_speed(duty), ring.mean_diameter, ring.ratio, pack.gap
+            pack.surfaces,
+            wants.oil_viscosity,
+            wants.released_speed(built.duty),
+            ring.mean_diameter,
+            ring.ratio,
+            pack.gap,
         ),
         symbol="T_drag",
         text="Drag of the released clutch with full oil films; 0 when dry",
@@ -773,11 +721,11 @@ def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: R
             text="The released clutch does not run after",
             source=f"{S0}, after-running",
         )
-    return drag
 
 
-def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack) -> PackSize:
-    """Return mass, size and heat capacity of a pack."""
+def pack_size(stack: Stack) -> PackSize:
+    """Mass, size and heat capacity of a pack."""
+    duty, ring, pair, pack = stack.duty, stack.ring, stack.pair, stack.pack
     z, plates = pack.surfaces, pack.plates
     lining = pair.part.lining_thickness if plates.lining_thickness is None else plates.lining_thickness
     inner = plate_formulas.annulus_mass(
@@ -796,7 +744,7 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
     )
     steel = inner + outer
     linings = plate_formulas.lining_mass(pair.part.density, lining, z * ring.area)
-    diameter = plate_formulas.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
+    diameter = plate_formulas.drum_diameter(pack.outer_spline_radius, stack.wants.drum_wall)
     length = plate_formulas.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, pack.gap)
     return PackSize(
         mass=steel + linings,
@@ -810,10 +758,9 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
     )
 
 
-def declare_pack_temperature(
-    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, size: PackSize, rules: bool = False
-) -> None:
-    """Declare the peak temperature of a pack and its limit; a remark on the mean one where it is no rule."""
+def declare_pack_temperature(d: Declaration, built: BuiltPack) -> None:
+    """Declare the peak temperature of a pack and its limit."""
+    duty, pair, start, size = built.duty, built.pair, built.start, built.size
     for name, value, symbol, text in (
         ("inner_plate_mass", size.inner_mass, "m_ip", "All inner plates"),
         ("outer_plate_mass", size.outer_mass, "m_op", "Cores of all outer plates"),
@@ -840,14 +787,17 @@ def declare_pack_temperature(
         source="Neale, Tribology Handbook, Table 7.4",
     )
     advise_frequent_switching(d, duty=duty, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area)
-    if rules:
-        return
+
+
+def advise_mean_temperature(d: Declaration, built: BuiltPack) -> None:
+    """Remark a mean temperature above what the lining stands continuously."""
+    duty = built.duty
     mean_rise = heat.mean_temperature_rise(
-        start.friction_work, duty.engagements_per_hour, duty.heat_transfer, size.cooled_area
+        built.start.friction_work, duty.engagements_per_hour, duty.heat_transfer, built.size.cooled_area
     )
     d.advise(
         "mean_temperature",
-        mean_rise > pair.part.optional("temp_continuous") - duty.ambient_temperature,
+        mean_rise > built.pair.part.optional("temp_continuous") - duty.ambient_temperature,
         "the mean temperature of the pack is above what the lining stands continuously; choose a stronger cooling",
         source="Neale, Tribology Handbook, Table 7.4",
     )

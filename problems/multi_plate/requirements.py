@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
-from synth.declaration import Block, Option, Requirement
+import numpy as np
+
+from synth.declaration import Block, Declaration, Option, Requirement
 
 from .. import wear
 from ..friction.duty import Duty
@@ -65,10 +67,77 @@ class MadePackOptions(PackOptions):
     )
 
 
+class LugRequirements(Block):
+    """Lugs of plates that are made to size, all in SI."""
+
+    group = "model"
+
+    lug_clearance = Requirement(
+        "mm",
+        3,
+        lower=0.1,
+        upper=30,
+        symbol="e_lug",
+        text="From the edge of the friction ring to the mean spline radius",
+        source=f"{S0}, example",
+    )
+    lug_count = Requirement(
+        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
+    )
+    lug_height = Requirement(
+        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
+    )
+
+    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
+        """Return number and height [m] of the lugs of a plate that carry."""
+        return self.lug_count, self.lug_height
+
+
+class PracticeLugRequirements(LugRequirements):
+    """Lugs that grow in number with the diameter where they are not given, all in SI."""
+
+    lug_count = Requirement(
+        "-",
+        lower=3,
+        upper=200,
+        optional=True,
+        symbol="n_lug",
+        text="Lugs of a plate that carry; by default the share lug share of teeth of lug module all around",
+        source=UNSOURCED,
+        group="model",
+    )
+    lug_height = Requirement(
+        "mm",
+        lower=0.5,
+        upper=30,
+        optional=True,
+        symbol="h_lug",
+        text="Loaded flank height of a lug; by default lug module",
+        source=UNSOURCED,
+        group="model",
+    )
+    lug_module = Requirement(
+        "mm",
+        3,
+        lower=0.5,
+        upper=20,
+        symbol="m_l",
+        text=f"Module of involute or straight teeth all around the plates ({UNSOURCED})",
+        source=UNSOURCED,
+        group="practice",
+    )
+
+    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
+        """Return number and height [m] of the lugs that carry: teeth all around, more of them on larger rings."""
+        count = wants.carrying(2 * ring.inner_radius / self.lug_module) if self.lug_count is None else self.lug_count
+        return count, self.lug_module if self.lug_height is None else self.lug_height
+
+
 class PackRequirements(Block):
     """Requirements of a multi-plate pack, all in SI; None where an optional one is not given."""
 
     group = "model"
+    lugs: ClassVar[type[LugRequirements]] = LugRequirements
 
     surface_factor = Requirement(
         "-",
@@ -146,6 +215,11 @@ class PackRequirements(Block):
         source=f"{S0}, eq. (16)",
     )
 
+    @staticmethod
+    def defaults(duty: Duty, *, oil: bool) -> dict[str, Any]:
+        """Defaults by duty and lubrication, beside those of all packs."""
+        return {}
+
     def carrying(self, teeth: Any) -> Any:
         """Number of teeth of a plate that carry."""
         return teeth
@@ -163,6 +237,7 @@ class PracticePackRequirements(PackRequirements):
     """Requirements of a pack whose gap grows with its diameter where it is not given."""
 
     group = "practice"
+    lugs = PracticeLugRequirements
 
     lug_share = Requirement(
         "-",
@@ -200,6 +275,11 @@ class PracticePackRequirements(PackRequirements):
         group="duty",
     )
 
+    @staticmethod
+    def defaults(duty: Duty, *, oil: bool) -> dict[str, Any]:
+        """Defaults by duty and lubrication, beside those of all packs."""
+        return {"gap_base": 0.1 if oil else 0.3, "drag_speed": duty.driver_speed}
+
     def carrying(self, teeth: Any) -> Any:
         """Number of teeth of a plate that carry: the share lug_share."""
         return self.lug_share * teeth
@@ -212,72 +292,6 @@ class PracticePackRequirements(PackRequirements):
     def released_speed(self, duty: Duty) -> Any:
         """Return the speed between the released plates [rad/s]."""
         return self.drag_speed
-
-
-class LugRequirements(Block):
-    """Lugs of plates that are made to size, all in SI."""
-
-    group = "model"
-
-    lug_clearance = Requirement(
-        "mm",
-        3,
-        lower=0.1,
-        upper=30,
-        symbol="e_lug",
-        text="From the edge of the friction ring to the mean spline radius",
-        source=f"{S0}, example",
-    )
-    lug_count = Requirement(
-        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
-    )
-    lug_height = Requirement(
-        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
-    )
-
-    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
-        """Return number and height [m] of the lugs of a plate that carry."""
-        return self.lug_count, self.lug_height
-
-
-class PracticeLugRequirements(LugRequirements):
-    """Lugs that grow in number with the diameter where they are not given, all in SI."""
-
-    lug_count = Requirement(
-        "-",
-        lower=3,
-        upper=200,
-        optional=True,
-        symbol="n_lug",
-        text="Lugs of a plate that carry; by default the share lug share of teeth of lug module all around",
-        source=UNSOURCED,
-        group="model",
-    )
-    lug_height = Requirement(
-        "mm",
-        lower=0.5,
-        upper=30,
-        optional=True,
-        symbol="h_lug",
-        text="Loaded flank height of a lug; by default lug module",
-        source=UNSOURCED,
-        group="model",
-    )
-    lug_module = Requirement(
-        "mm",
-        3,
-        lower=0.5,
-        upper=20,
-        symbol="m_l",
-        text=f"Module of involute or straight teeth all around the plates ({UNSOURCED})",
-        source=UNSOURCED,
-        group="practice",
-    )
-
-    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
-        """Return number and height [m] of the lugs that carry: teeth all around, more of them on larger rings."""
-        count = wants.carrying(2 * ring.inner_radius / self.lug_module) if self.lug_count is None else self.lug_count
-        return count, self.lug_module if self.lug_height is None else self.lug_height
 
 
 class PackRules(Block):
@@ -321,6 +335,12 @@ class PackRules(Block):
     )
     wear_life_min = wear.LEAST_LIFE
 
+    def limit_stroke(self, d: Declaration, *, stroke: Any, ring: Ring) -> None:
+        """Declare the limit of the stroke [m], where an actuator has one."""
+
+    def limit_piston(self, d: Declaration, *, area: Any, width: Any, diameter: Any) -> None:
+        """Declare that the piston fits between the splines, where there is a piston."""
+
 
 class PistonPackRules(PackRules):
     """Rules for packs that a piston presses, all in SI."""
@@ -354,6 +374,29 @@ class PistonPackRules(PackRules):
         text=f"Share of the room between the splines that a ring piston can use ({UNSOURCED})",
         source=UNSOURCED,
     )
+
+    def limit_stroke(self, d: Declaration, *, stroke: Any, ring: Ring) -> None:
+        """Declare the limit of the stroke [m]."""
+        d.at_most(
+            "stroke",
+            stroke,
+            self.stroke_base + self.stroke_per_diameter * (2 * ring.outer_radius),
+            "mm",
+            text="An actuator has the stroke",
+            source=UNSOURCED,
+        )
+
+    def limit_piston(self, d: Declaration, *, area: Any, width: Any, diameter: Any) -> None:
+        """Declare that a piston of an area fits between the splines, by their distance and mean diameter."""
+        if area is not None:
+            d.at_most(
+                "piston_fits",
+                area,
+                self.piston_fill * np.pi * width * diameter,
+                "cm2",
+                text="A ring piston of that pressure fits between the splines",
+                source=UNSOURCED,
+            )
 
 
 class PackBodyRequirements(ShaftRequirements):
