@@ -224,8 +224,8 @@ def _rules() -> list[EnclosureRule]:
     forward = [EnclosureRule(f"FORWARD_{OP_NAMES[op]}", rule) for op, rule in FORWARD.items() if op not in POWERS]
     backward = [
         EnclosureRule(f"BACKWARD_{OP_NAMES[op]}_{i}", rule)
-        for op, own in BACKWARD.items()
-        for i, rule in enumerate(own)
+        for op, rules in BACKWARD.items()
+        for i, rule in enumerate(rules)
         if rule and op not in POWERS
     ]
     # The kernel has a rule for an exponent that is the same for all boxes, and one for any other.

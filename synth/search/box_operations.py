@@ -62,7 +62,7 @@ class BoxOperations:
 
     def root(self, passes: int = 3) -> Boxes:
         """Return the box of everything, tightened; no box where nothing is feasible."""
-        boxes = self._boxes(self.cells.whole())
+        boxes = self._boxes(self.cells.all_combinations())
         if self.bounding.question.root.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
         # With the instructions that all other boxes are tightened with: cutoffs of infinity say nothing.
@@ -85,7 +85,7 @@ class BoxOperations:
 
     def nothing(self) -> Boxes:
         """Return no boxes."""
-        return self._boxes(self.cells.whole()).take(slice(0, 0))
+        return self._boxes(self.cells.all_combinations()).take(slice(0, 0))
 
     def leaves(self, combinations: np.ndarray, low: np.ndarray | None = None, high: np.ndarray | None = None) -> Boxes:
         """Return a box per combination, over the whole range of the variables unless ends are given."""

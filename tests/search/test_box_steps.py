@@ -113,7 +113,7 @@ def test_whatever_stops_a_tree_its_clock_holds_what_is_open_and_nothing_is_under
     assert len(steps) > after
     for step in steps:
         assert step._growth is not None
-        assert all(other.done() for other in step._growth._parts._beside)
+        assert all(other.done() for other in step._growth._parts._futures)
 
 
 def outcome_of(workers):
