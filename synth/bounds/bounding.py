@@ -60,10 +60,10 @@ class Bounding:
         question = self.question.among(instance)
         if question is None:
             return None
-        clone = copy.copy(self)
+        new = copy.copy(self)
         first = self._influences.clusters(question.factors[0])
-        clone._begin(self.propagation.among(question, first), workers)
-        return clone
+        new._begin(self.propagation.among(question, first), workers)
+        return new
 
     def _begin(self, propagation: Propagation, workers: int) -> None:
         self.question, self.propagation = propagation.question, propagation

@@ -178,10 +178,8 @@ class BranchingWeights:
             return
         shares = sizes[good] / total[good, None]
         first = len(self._question.constraints)
-        objective_shares = shares[:, first : first + self._bits]
-        pattern = self._pattern(
-            objective_shares > self._settings.active_share * objective_shares.sum(axis=1, keepdims=True)
-        )
+        goal_shares = shares[:, first : first + self._bits]
+        pattern = self._pattern(goal_shares > self._settings.active_share * goal_shares.sum(axis=1, keepdims=True))
         np.add.at(self._statistics.shares, pattern, importance[good, None] * shares)
         np.add.at(self._statistics.importance, pattern, importance[good])
         np.add.at(self._statistics.count, pattern, 1)

@@ -18,7 +18,7 @@ import numpy as np
 
 from synth.bounds.intervals import BACKWARD, FORWARD, loosened
 from synth.model.program import OP_SELECT, OPERATIONS
-from synth.operations.enclosures import whole
+from synth.operations.enclosures import unbounded
 from synth.operations.record import Interval
 
 WIDTH = 6  # of an instruction: what is done, where the result goes, and up to four operands
@@ -232,7 +232,7 @@ def _rules() -> list[EnclosureRule]:
     powers = [EnclosureRule(f"FORWARD_{name}", FORWARD[ca.OP_POW]) for name in ("POW_CONSTANT", "POW_ANY")]
     base = BACKWARD[ca.OP_POW][0]
     assert base is not None
-    unknown = [EnclosureRule(f"WHOLE_{count}", whole) for count in (1, 2, 3)]
+    unknown = [EnclosureRule(f"WHOLE_{count}", unbounded) for count in (1, 2, 3)]
     return [*forward, *powers, *unknown, *backward, EnclosureRule("BACKWARD_POW_CONSTANT", base)]
 
 

@@ -129,26 +129,24 @@ class LogRelaxation:
         tight = replace(boxes, low=boxes.low.copy(), high=boxes.high.copy(), bounds=boxes.bounds.copy())
         alive, points = ~dead, list[RelaxedPoints]()
         for pattern in np.unique(signs[alive], axis=0):
-            members = np.flatnonzero(alive & np.all(signs == pattern, axis=1))
+            group = np.flatnonzero(alive & np.all(signs == pattern, axis=1))
             forms = self._forms_of(pattern)
-            program = _Programs(
-                forms, [_values_of(x, members) for x in low], [_values_of(x, members) for x in high], len(members)
-            )
+            program = _Programs(forms, [_select(x, group) for x in low], [_select(x, group) for x in high], len(group))
             program.relate(self.nodes.program, self.settings.tangents)
             for constraint, right_side in zip(self.nodes.constraints, self.question.right_sides, strict=True):
                 program.limit(constraint, right_side)
             for j, goal in enumerate(self.nodes.goals):
                 if j != target:
-                    program.cap(goal.node, goal.sign, cutoffs[members, j])
+                    program.cap(goal.node, goal.sign, cutoffs[group, j])
             goal = self.nodes.goals[target]
             solved = program.solve(goal.node, goal.sign, self.settings.yield_cost)
-            alive[members] = solved.alive
+            alive[group] = solved.alive
             if goal.node in forms.place:
                 side = goal.sign * int(pattern[goal.node])
                 size = np.exp(np.clip(side * solved.bound, -700.0, 700.0))
-                tight.bounds[members, target] = np.fmax(tight.bounds[members, target], below(side * size, ROUNDED))
-            self._tighten(tight, members, forms, solved)
-            points.append(RelaxedPoints(forms, members, solved.logs, program.low, program.high))
+                tight.bounds[group, target] = np.fmax(tight.bounds[group, target], below(side * size, ROUNDED))
+            self._tighten(tight, group, forms, solved)
+            points.append(RelaxedPoints(forms, group, solved.logs, program.low, program.high))
         alive &= ~np.any(tight.low > above(tight.high, ROUNDING), axis=1)
         np.maximum(tight.high, tight.low, out=tight.high)
         return BoundedTogether(tight, alive, points)
@@ -173,14 +171,14 @@ class LogRelaxation:
             self._forms[key] = log_forms(self.nodes, pattern, self._values)
         return self._forms[key]
 
-    def _tighten(self, boxes: Boxes, members: np.ndarray, forms: LogForms, solved: Solved) -> None:
+    def _tighten(self, boxes: Boxes, group: np.ndarray, forms: LogForms, solved: Solved) -> None:
         """Cut the ends of variables by those of their columns, in place."""
         for column, k in enumerate(forms.columns):
             if k in self.nodes.variables and forms.signs[k] > 0:
                 i = self.nodes.position(k)
                 least, most = (np.exp(x[:, column]) for x in (solved.least, solved.most))
-                boxes.low[members, i] = np.fmax(boxes.low[members, i], below(least, ROUNDED))
-                boxes.high[members, i] = np.fmin(boxes.high[members, i], above(most, ROUNDED))
+                boxes.low[group, i] = np.fmax(boxes.low[group, i], below(least, ROUNDED))
+                boxes.high[group, i] = np.fmin(boxes.high[group, i], above(most, ROUNDED))
 
 
 @dataclass(frozen=True)
@@ -399,6 +397,6 @@ def _bound(
     return float(np.minimum(residual, 0.0) @ width + multipliers @ right) - rounding - loose, residual
 
 
-def _values_of(values: Any, rows: np.ndarray) -> Any:
+def _select(values: Any, rows: np.ndarray) -> Any:
     """Values of a node in the given boxes; a scalar holds in all of them."""
     return values if np.ndim(values) == 0 else values[rows]

@@ -74,13 +74,13 @@ class Propagation:
         first : ClusterTree
             The clusters of the other rows.
         """
-        clone = copy.copy(self)
-        clone.question = question
-        clone.cells = Cells([first, *self.cells.trees[1:]], question.instance.combinations.radix)
-        clone._ends = [clone._ends_per_cluster(0), *self._ends[1:]]
-        clone.tables = clone._in_order()
-        clone.floors = clone._floors_per_cluster()
-        return clone
+        new = copy.copy(self)
+        new.question = question
+        new.cells = Cells([first, *self.cells.trees[1:]], question.instance.combinations.radix)
+        new._ends = [new._ends_per_cluster(0), *self._ends[1:]]
+        new.tables = new._in_order()
+        new.floors = new._floors_per_cluster()
+        return new
 
     def run(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Propagated:
         """Tighten boxes.

@@ -109,19 +109,17 @@ class QuestionBounds:
         QuestionBounds, optional
             None where rows do not lie within those known here, or where something else is not the same.
         """
-        clone, owner = copy.copy(self), instance.owners()
-        clone.instance = instance
-        if owner != self.instance.owners() or not np.array_equal(
-            clone._fixed(owner), self._fixed(owner), equal_nan=True
-        ):
+        new, owner = copy.copy(self), instance.owners()
+        new.instance = instance
+        if owner != self.instance.owners() or not np.array_equal(new._fixed(owner), self._fixed(owner), equal_nan=True):
             return None
-        first = clone._factor(0, instance.combinations.names[0], owner)
+        first = new._factor(0, instance.combinations.names[0], owner)
         read, known = first.columns[:, : len(first.inputs)], self.factors[0].columns
         if not np.all((read >= known.min(axis=0)) & (read <= known.max(axis=0))):
             return None
-        clone.factors = [first, *self.factors[1:]]
-        clone.row_values = [clone._values_of_rows(0), *self.row_values[1:]]
-        return clone
+        new.factors = [first, *self.factors[1:]]
+        new.row_values = [new._values_of_rows(0), *self.row_values[1:]]
+        return new
 
     def surely_positive(self, node: int) -> bool:
         """True if a node is positive wherever a design is feasible (rows without a value do not count)."""

@@ -39,10 +39,8 @@ def relaxed_scores(nodes: PropagatedNodes, points: RelaxedPoints, width: int, fa
     moving = np.array([nodes.kind[k] in (VARIABLE, TABLE) for k in forms.columns], dtype=bool)
     blame = np.zeros((len(middle), len(forms.columns)))
     for relation in forms.relations:
-        gradients = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
-        steep = (
-            np.abs(gradients[2] - gradients[1]) if relation.kind != ELASTIC else sum(np.abs(g) for g in gradients[1:])
-        )
+        slopes = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
+        steep = np.abs(slopes[2] - slopes[1]) if relation.kind != ELASTIC else sum(np.abs(g) for g in slopes[1:])
         part = np.where(moving, np.nan_to_num(steep) * widths, 0.0)
         total = part.sum(axis=1, keepdims=True)
         off = _off(nodes, relation, [points.logs[:, place[k]] for k in relation.nodes])

@@ -13,7 +13,7 @@ from synth.bounds.intervals import FORWARD, ROUNDING, backward, loosened, specia
 from synth.bounds.propagated_nodes import PropagatedNodes
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SPECIAL, TRAITS, Node, Program
-from synth.operations.enclosures import whole
+from synth.operations.enclosures import unbounded
 from synth.operations.record import Interval, Trait
 
 SWEEPS = 4  # forward over the whole question, with what limits cut carried back between them
@@ -70,7 +70,7 @@ def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interv
     if node.op == OP_SPECIAL:
         return special_range(program.specials[int(node.constant)], args)
     forward = FORWARD.get(node.op)
-    return forward(*args) if forward else whole(*args)
+    return forward(*args) if forward else unbounded(*args)
 
 
 def propagated_boxes(

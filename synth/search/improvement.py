@@ -159,7 +159,7 @@ def difference(front: ParetoFront, question: Question) -> str:
             return f"option {name}: {there} there, {option.chosen} here"
     for key, value in frame.requirement_values.items():
         own = instance.values.requirements.get(key, math.nan)
-        if not (own == value or math.isclose(own, value, rel_tol=MARGINS.stated)):
+        if not (own == value or math.isclose(own, value, rel_tol=MARGINS.conversion)):
             return f"requirement {key}: {typed_number(value, 12)} there, {typed_number(own, 12)} here (SI)"
     if set(instance.values.requirements) != set(frame.requirement_values):
         more = sorted(set(instance.values.requirements) ^ set(frame.requirement_values))

@@ -26,7 +26,7 @@ from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings
 from synth.search.pruning import PruningRule
 from synth.search.settings import TUNING, Tuning
-from synth.system.file_locks import alone
+from synth.system.file_locks import exclusive_access
 from synth.system.operating_system import cache_home
 
 BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"
@@ -60,7 +60,7 @@ def sample_parts(
     """
     if journal is None:
         return _searched(form, left, rule, clock, None, seed, trials)
-    with alone(journal.with_suffix(".lock")) as own:
+    with exclusive_access(journal.with_suffix(".lock")) as own:
         done = _searched(form, left, rule, clock, journal if own else None, seed, trials)
         if own:
             journal.unlink(missing_ok=True)

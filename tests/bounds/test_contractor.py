@@ -603,6 +603,7 @@ def test_the_root_box_holds_all_feasible_designs(family):
     assert_kept(form.boxes.contract(leaves, None), points, phi, form)
     for k in range(0, len(points), 40):
         alone = replace(
-            form.boxes.contract(form.boxes.whole(int(family.combinations[k])), None), tag=np.zeros(1, dtype=np.int32)
+            form.boxes.contract(form.boxes.whole(int(family.combinations[k])), None),
+            tag=np.zeros(1, dtype=np.int32),
         )
         assert_kept(alone, points[k : k + 1], phi[k : k + 1], form)
