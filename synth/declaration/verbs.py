@@ -259,7 +259,7 @@ class Declaration:
         Name of the problem, for messages.
     options : mapping
         Options the user has set.
-    given : set of str
+    specified : set of str
         Names of the requirements the user has given.
     catalogs : Catalogs
         The part tables in force.

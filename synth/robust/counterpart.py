@@ -66,7 +66,7 @@ class RobustProblem(DesignProblem):
     Parameters
     ----------
     base : DesignProblem
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     limits : mapping
         The user's own limits.

@@ -89,7 +89,7 @@ def rater_for(frame: Frame, uncertainty: Uncertainty, problem: Any = None, catal
     Parameters
     ----------
     frame : Frame
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     problem, catalogs : optional
         As for :func:`rate`.

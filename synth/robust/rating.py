@@ -44,7 +44,7 @@ class Rater:
     ----------
     request : Request
         The problem without limits over the range, its requirements, tables and the user's own limits count.
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     settings : RobustLimits, optional
 

@@ -295,7 +295,7 @@ def check_rows(quantities: Sequence[Scattered], slots: Iterable[SlotRows], where
 
     Parameters
     ----------
-    found : list of Scattered
+    quantities : list of Scattered
     slots : iterable of SlotRows
         What may fill the slots.
 
@@ -324,7 +324,7 @@ def check_values(
 
     Parameters
     ----------
-    found : list of Scattered
+    quantities : list of Scattered
     d : Declaration
     values : mapping
         Requirements in SI.

@@ -125,7 +125,7 @@ class ContinuousProblems:
         kinked: KinkedNlp = model.function(("kinked", rows, edge, kinks, positive, nlp, native_enabled()), made)
         return kinked
 
-    def solve_many(
+    def solve_batch(
         self,
         tasks: Tasks,
         combinations: np.ndarray,
@@ -167,10 +167,10 @@ class ContinuousProblems:
             return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers, rough)
         return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers)
 
-    def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
-        """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
-        prices = np.concatenate([found.constraint_multipliers, found.goal_multipliers + tasks.weights], axis=1)
-        self.branching.learn(prices[found.converged], importance[found.converged])
+    def learn(self, tasks: Tasks, solutions: Solutions, importance: np.ndarray) -> None:
+        """Update the branching weights by the multipliers of solved problems; ``importance`` per problem."""
+        prices = np.concatenate([solutions.constraint_multipliers, solutions.goal_multipliers + tasks.weights], axis=1)
+        self.branching.learn(prices[solutions.converged], importance[solutions.converged])
 
     def _positive(self, node: int | None) -> bool:
         return node is not None and not self.question.root.empty and self.question.surely_positive(node)
