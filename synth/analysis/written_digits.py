@@ -53,7 +53,7 @@ def written_digits(
         same = _searched(space, rounded) | ~_searched(space, chosen)
         for k, variable in enumerate(space.model.variables):
             if len(variable.grid):
-                same &= np.abs(rounded[:, k] - chosen[:, k]) <= MARGINS.stated * np.abs(chosen[:, k])
+                same &= np.abs(rounded[:, k] - chosen[:, k]) <= MARGINS.conversion * np.abs(chosen[:, k])
         for was, is_now in ((before.holds, after.holds), (before.void, after.void), (before.advice, after.advice)):
             same &= _alike(was, is_now, open_rows)
         for name in objectives:

@@ -61,7 +61,7 @@ class ArrayReader:
         self._lists: tuple[list[Step], ...] | None = None
 
     def contract(self, boxes: BoxArrays, root: Root, passes: int) -> tuple[np.ndarray, list[Any], list[Any]]:
-        """Tighten boxes.
+        """Contract boxes.
 
         Parameters
         ----------
@@ -77,29 +77,29 @@ class ArrayReader:
         tuple
             Dead boxes; lower ends of the objectives, with their sign; per limit whether a box may still break it.
         """
-        own, at = self.instructions, self.instructions.regions
+        code, at = self.instructions, self.instructions.regions
         if self._lists is None:
-            self._lists = tuple([_step(row) for row in rows] for rows in (own.first, own.later, own.last))
+            self._lists = tuple([_step(row) for row in rows] for rows in (code.first, code.later, code.last))
         first, later, last = self._lists
         f: list[Any] = [None] * at.count
 
         def fill(place: int, values: Sequence[Any]) -> None:
             f[place : place + len(values)] = values
 
-        fill(at.literals, list(own.literals))
+        fill(at.literals, list(code.literals))
         fill(at.constants, [np.float64(value) for value in boxes.constants for _ in range(2)])
         fill(at.right_sides, [np.float64(value) for value in boxes.right_sides])
         fill(at.cutoffs, boxes.cutoffs or [])
         fill(at.floors, boxes.floors)
         fill(at.tables, [end for pair in boxes.tables for end in pair])
-        fill(at.variables, [end for i in own.variables for end in boxes.variables[i]])
+        fill(at.variables, [end for i in code.variables for end in boxes.variables[i]])
         file = _File(f, boxes.count, root)
         for steps in (first, *[later] * (passes - 1), last):
             for step in steps:
                 step(file)
-        for place, i in enumerate(own.variables):
+        for place, i in enumerate(code.variables):
             boxes.variables[i] = f[at.variables + 2 * place], f[at.variables + 2 * place + 1]
-        return file.dead, f[at.goals : at.goals + own.goals], f[at.open : at.open + own.limits]
+        return file.dead, f[at.goals : at.goals + code.goals], f[at.open : at.open + code.limits]
 
 
 def _step(row: Row) -> Step:
@@ -160,8 +160,8 @@ def _met(compute: Callable[[Any, Any], Any], target: int, operands: Row) -> Step
 def _rule(enclosure: Callable[..., Pair | None], target: int, operands: Row) -> Step:
     def step(file: _File) -> None:
         f = file.registers
-        found = enclosure(*[(f[k], f[k + 1]) for k in operands])
-        f[target], f[target + 1] = (np.nan, np.nan) if found is None else found
+        enclosed = enclosure(*[(f[k], f[k + 1]) for k in operands])
+        f[target], f[target + 1] = (np.nan, np.nan) if enclosed is None else enclosed
 
     return step
 

@@ -56,14 +56,14 @@ class Bounding:
         self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)), workers)
 
     def among(self, instance: SearchSpace, workers: int) -> Bounding | None:
-        """Return the same for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
+        """Bounding for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
         question = self.question.among(instance)
         if question is None:
             return None
-        own = copy.copy(self)
+        new = copy.copy(self)
         first = self._influences.clusters(question.factors[0])
-        own._begin(self.propagation.among(question, first), workers)
-        return own
+        new._begin(self.propagation.among(question, first), workers)
+        return new
 
     def _begin(self, propagation: Propagation, workers: int) -> None:
         self.question, self.propagation = propagation.question, propagation

@@ -30,7 +30,7 @@ NUMBERS = {
     "snap": "double",
     "pinned": "double",
 }
-GIVEN = {
+INPUT_ARRAYS = {
     "cell": "int",
     "low": "double",
     "high": "double",
@@ -55,7 +55,7 @@ GIVEN = {
     "per_unit": "double",
     "shape": "void",
 }
-TAKEN = {
+OUTPUT_ARRAYS = {
     "out_cell": "int",
     "out_low": "double",
     "out_high": "double",
@@ -76,7 +76,7 @@ class BatchStructure(ctypes.Structure):
 
     _fields_ = (
         *((name, CTYPES[kind]) for name, kind in NUMBERS.items()),
-        *((name, ctypes.c_void_p) for name in (*GIVEN, *TAKEN)),
+        *((name, ctypes.c_void_p) for name in (*INPUT_ARRAYS, *OUTPUT_ARRAYS)),
     )
 
 
@@ -138,7 +138,7 @@ class Prepared:
         per_factor: list[list[np.ndarray]] = [[] for _ in range(factors)]
         for f, low, high in question.tables:
             per_factor[f] += [low, high]
-        rows = [np.stack(own, axis=1) if own else np.zeros((1, 1)) for own in per_factor]
+        rows = [np.stack(columns, axis=1) if columns else np.zeros((1, 1)) for columns in per_factor]
         spreads = [np.zeros((len(s), width), dtype=np.float32) for s in of_clusters]
         for padded, spread in zip(spreads, of_clusters, strict=True):
             padded[:, : spread.shape[1]] = spread
@@ -195,7 +195,7 @@ class Batches:
         still: Mapping[str, np.ndarray] | None = None,
         **numbers: int,
     ) -> None:
-        own = {
+        per_box = {
             "cell": np.ascontiguousarray(boxes.cell, dtype=np.int32),
             "low": np.ascontiguousarray(boxes.low, dtype=float),
             "high": np.ascontiguousarray(boxes.high, dtype=float),
@@ -203,7 +203,7 @@ class Batches:
             "tag": np.ascontiguousarray(boxes.tag, dtype=np.int32),
         }
         # The record holds addresses alone: the arrays live as long as this.
-        self._moving = own | dict(moving or {})
+        self._moving = per_box | dict(moving or {})
         self._fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)} | dict(still or {})
         self._places = {name: a.ctypes.data for name, a in self._fixed.items()}
         self._steps = {name: (a.ctypes.data, a.strides[0]) for name, a in self._moving.items()}
@@ -222,8 +222,8 @@ class Batches:
         return BatchStructure(count=last - first, **self._numbers, **self._places, **places)
 
 
-def room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
-    """Return arrays for so many boxes that come of some, by their names in the record; without scores."""
+def output_arrays(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
+    """Empty output arrays for ``count`` boxes of the shape of ``boxes``, by name in the record; without scores."""
     return {
         "out_cell": np.empty((count, boxes.cell.shape[1]), dtype=np.int32),
         "out_low": np.empty((count, boxes.low.shape[1])),
@@ -233,10 +233,10 @@ def room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
     }
 
 
-def scored_room(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
-    """Return the same with room for scores."""
+def scored_output_arrays(boxes: Boxes, count: int) -> dict[str, np.ndarray]:
+    """Empty output arrays of :func:`output_arrays` and of the scores."""
     columns = boxes.low.shape[1] + boxes.cell.shape[1]
-    return room(boxes, count) | {"out_scores": np.empty((count, columns), dtype=np.float32)}
+    return output_arrays(boxes, count) | {"out_scores": np.empty((count, columns), dtype=np.float32)}
 
 
 def filled(arrays: Mapping[str, np.ndarray]) -> Boxes:

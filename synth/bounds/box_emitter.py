@@ -64,7 +64,7 @@ class BoxEmitter:
     ----------
     nodes : PropagatedNodes
     root : Root
-        Tells the signs that hold over the whole question.
+        Root bounds; they settle the signs.
     capped : bool
         Whether objectives have cutoffs; then they may have floors as well.
     """
@@ -98,13 +98,13 @@ class BoxEmitter:
             "goals": goals,
             "scratch": SCRATCH,
         }
-        for region, own in regions.items():
+        for region, indices in regions.items():
             self.places[region] = at
-            if isinstance(own, int):
-                at += own
+            if isinstance(indices, int):
+                at += indices
             else:
-                self.low |= {k: at + 2 * i for i, k in enumerate(own)}
-                at += 2 * len(own)
+                self.low |= {k: at + 2 * i for i, k in enumerate(indices)}
+                at += 2 * len(indices)
         self.free_at = at
         self.s, self.t, self.m, self.p, self.q = (self.places["scratch"] + k for k in range(SCRATCH))
 
@@ -177,9 +177,9 @@ class BoxEmitter:
         self._end(self.low[k], Op.FMAX, met, op, low)
         self._end(self._high(k), Op.FMIN, met, op, high)
 
-    def _meet(self, k: int, found: int) -> None:
+    def _meet(self, k: int, register: int) -> None:
         """Put both ends of a node met with two registers side by side."""
-        self._both(k, True, (Op.MOVE, (found,), (found + 1,)))
+        self._both(k, True, (Op.MOVE, (register,), (register + 1,)))
 
     # -- signs
 
@@ -478,7 +478,7 @@ class BoxEmitter:
         low, high = self.low[k], self._high(k)
         if op == OP_SPECIAL:
             self._shave(k)
-        elif op in (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV) and a != b and self._signs_suit(op, k, a, b):
+        elif op in (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV) and a != b and self._all_positive(op, k, a, b):
             self._back_of_two(op, k, a, b)
         elif op == ca.OP_NEG:
             self._narrow(a, (Op.NEG, (high,), (low,)))
@@ -495,7 +495,7 @@ class BoxEmitter:
         elif op in BACKWARD:
             self._back_by_rules(k)
 
-    def _signs_suit(self, op: int, k: int, a: int, b: int) -> bool:
+    def _all_positive(self, op: int, k: int, a: int, b: int) -> bool:
         result = self._not_negative(k) if op == ca.OP_MUL else self._positive(k)
         return result and self._positive(a) and self._positive(b)
 
@@ -526,13 +526,13 @@ class BoxEmitter:
         power = op in POWERS
         if power and self.kind[args[1]] != CONSTANT:
             return
-        read, found = [self.low[k], *(self.low[a] for a in args)], list[tuple[int, int]]()
+        read, narrowed = [self.low[k], *(self.low[a] for a in args)], list[tuple[int, int]]()
         for i, a in enumerate(args):
             if self._moves(a) and BACKWARD[op][i] is not None:
-                found.append((a, self._new(2)))
+                narrowed.append((a, self._new(2)))
                 rule = "BACKWARD_POW_CONSTANT" if power else f"BACKWARD_{OP_NAMES[op]}_{i}"
-                self._put(RULE_NUMBERS[rule], found[-1][1], *read)
-        for a, place in found:
+                self._put(RULE_NUMBERS[rule], narrowed[-1][1], *read)
+        for a, place in narrowed:
             self._meet(a, place)
 
     def _shave(self, k: int) -> None:

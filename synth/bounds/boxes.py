@@ -38,17 +38,17 @@ class Boxes:
         return len(self.cell)
 
     def take(self, rows: np.ndarray | slice) -> Boxes:
-        """Return some of the boxes, by mask or positions; the same arrays where a mask keeps all of them."""
-        own = (self.cell, self.low, self.high, self.bounds, self.scores, self.tag)
+        """Boxes of a mask or of positions; the same arrays where a mask keeps all of them."""
+        columns = (self.cell, self.low, self.high, self.bounds, self.scores, self.tag)
         if isinstance(rows, slice):
-            return Boxes(*(a[rows] for a in own))
+            return Boxes(*(a[rows] for a in columns))
         if rows.dtype == bool:
             kept = np.flatnonzero(rows)
             if len(kept) == len(rows):
                 return self
             rows = kept
         # Four times as fast as indexing: rows are copied whole.
-        return Boxes(*(a.take(rows, axis=0) for a in own))
+        return Boxes(*(a.take(rows, axis=0) for a in columns))
 
     @staticmethod
     def joined(batches: Sequence[Boxes]) -> Boxes:

@@ -46,7 +46,7 @@ class BranchingStatistics:
         return BranchingStatistics(np.zeros((sets, columns)), np.zeros(sets), np.zeros(sets, dtype=np.int64))
 
     def copy(self) -> BranchingStatistics:
-        """Return the same numbers in arrays of their own."""
+        """Copy that shares no array."""
         return BranchingStatistics(self.shares.copy(), self.importance.copy(), self.count.copy())
 
 
@@ -155,8 +155,8 @@ class BranchingWeights:
         variables : array (designs, variables)
         combinations : array (designs,)
         """
-        given = self._question.instance.data(combinations)
-        data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in given]
+        inputs = self._question.instance.data(combinations)
+        data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in inputs]
         near = self._influences.near([variables[:, i] for i in range(self._question.n)] + data)
         self.tables = self._score_tables(np.maximum(near, self._settings.anywhere * self._influences.anywhere))
 
@@ -178,8 +178,8 @@ class BranchingWeights:
             return
         shares = sizes[good] / total[good, None]
         first = len(self._question.constraints)
-        own = shares[:, first : first + self._bits]
-        pattern = self._pattern(own > self._settings.some * own.sum(axis=1, keepdims=True))
+        goal_shares = shares[:, first : first + self._bits]
+        pattern = self._pattern(goal_shares > self._settings.active_share * goal_shares.sum(axis=1, keepdims=True))
         np.add.at(self._statistics.shares, pattern, importance[good, None] * shares)
         np.add.at(self._statistics.importance, pattern, importance[good])
         np.add.at(self._statistics.count, pattern, 1)
@@ -212,8 +212,8 @@ class BranchingWeights:
         result = np.ones(known.shares.shape)
         if known.count.any():
             result[:] = known.shares.sum(axis=0) / known.importance.sum()
-            own = known.count >= self._settings.enough
-            result[own] = known.shares[own] / known.importance[own, None]
+            learned = known.count >= self._settings.enough
+            result[learned] = known.shares[learned] / known.importance[learned, None]
             result += self._floor
         for pattern in range(1, len(result)):
             idle = [k for k in range(self._bits) if not pattern >> k & 1]
@@ -232,8 +232,8 @@ class BranchingWeights:
     def _share(self, name: str) -> float:
         """Weight of a variable or factor for splitting: little if others make up for it."""
         model, goals = self._question.model, self._question.goals[: self._question.bounded]
-        unless, asked = model.declaration.late.get(name), {goal.node for goal in goals}
-        if unless is None or any(model.quantity_node[objective] in asked for objective in unless):
+        unless, objective_nodes = model.declaration.late.get(name), {goal.node for goal in goals}
+        if unless is None or any(model.quantity_node[objective] in objective_nodes for objective in unless):
             return 1.0
         return self._settings.late
 
@@ -246,9 +246,9 @@ class BranchingWeights:
         width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], np.minimum(width, WIDEST))
         # The cutoff of a row is as far off as its objective.
         capped = np.eye(len(influence))[:, [len(question.constraints) + g for g in factor.capped]]
-        own = np.concatenate([influence[:, [question.n + i for i in factor.inputs]], capped], axis=1)
+        influence_of_factor = np.concatenate([influence[:, [question.n + i for i in factor.inputs]], capped], axis=1)
         first = self._settings.parts_first if factor.name else self._settings.questions_first
-        result: np.ndarray = (first * width @ own.T).astype(np.float32)
+        result: np.ndarray = (first * width @ influence_of_factor.T).astype(np.float32)
         # Rows that differ only in what has no influence are still different rows.
         result += np.where(tree.leaf, 0.0, self._floor)[:, None].astype(np.float32)
         return result

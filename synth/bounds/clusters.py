@@ -158,8 +158,8 @@ class Cells:
         self.trees = list(trees)
         self.numbers = MixedRadix(radix)
 
-    def whole(self) -> np.ndarray:
-        """Return the cell of all combinations (1, factors)."""
+    def all_combinations(self) -> np.ndarray:
+        """Cell of all combinations (1, factors)."""
         return np.zeros((1, len(self.trees)), dtype=np.int32)
 
     def size(self, cells: np.ndarray) -> np.ndarray:
@@ -199,13 +199,13 @@ class Cells:
         return result[:most]
 
     def all_members(self, cells: np.ndarray, most: int) -> np.ndarray:
-        """Return the different combinations of some cells, at most so many."""
-        found = np.empty(0, dtype=np.int64)
+        """Distinct combinations of cells, ``most`` at most."""
+        combinations = np.empty(0, dtype=np.int64)
         for cell in np.unique(cells, axis=0):
-            found = np.union1d(found, self.members(cell, most))[:most]
-            if len(found) == most:
+            combinations = np.union1d(combinations, self.members(cell, most))[:most]
+            if len(combinations) == most:
                 break
-        return found
+        return combinations
 
     def leaf_of(self, digits: Sequence[int]) -> np.ndarray:
         """Return the cell (1, factors) of leaves that holds one combination given by its rows."""

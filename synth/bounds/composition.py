@@ -119,9 +119,9 @@ class TermComposition:
             return self._special(k, node, terms)
         known = [t for t in terms if t is not None]
         if len(known) == len(terms):
-            found = self._arithmetic(node, known) or self._function(k, node, known)
-            if found is not None:
-                return found
+            term = self._arithmetic(node, known) or self._function(k, node, known)
+            if term is not None:
+                return term
         return self._anything(k)
 
     def _input(self, k: int, position: int) -> Term | None:
@@ -237,25 +237,25 @@ class TermComposition:
         return self._difference(k, sign, large, small, nonzero or self.atoms.nonzero(large))
 
     def _positive_sum(self, k: int, a: Term, b: Term) -> Term:
-        shared, rest_a, rest_b = without_common(a, b)
+        shared, cofactor_a, cofactor_b = without_common(a, b)
         direct = self.atoms.curvature(a).convex and self.atoms.curvature(b).convex
-        factored = self.atoms.curvature(rest_a).convex and self.atoms.curvature(rest_b).convex
+        factored = self.atoms.curvature(cofactor_a).convex and self.atoms.curvature(cofactor_b).convex
         curvature = Curvature(direct, False) | (self.atoms.curvature(shared) & Curvature(factored, False))
         # A convex combination with the shares of both terms as weights.
-        low, high = self.atoms.ratio(a, b, rest_a, rest_b)
-        e_a, e_b = self.atoms.elasticity(rest_a), self.atoms.elasticity(rest_b)
+        low, high = self.atoms.ratio(a, b, cofactor_a, cofactor_b)
+        e_a, e_b = self.atoms.elasticity(cofactor_a), self.atoms.elasticity(cofactor_b)
         shares = [1.0 if r == INF else r / (1 + r) for r in (low, high)]
         mixed = hull(*(scaled(e_a, (s, s)) + scaled(e_b, (1 - s, 1 - s)) for s in shares))
         nonzero = self.atoms.nonzero(a) or self.atoms.nonzero(b)
         return self._atom(k, a.sign, curvature, self.atoms.elasticity(shared) + mixed, nonzero)
 
     def _difference(self, k: int, sign: int, large: Term, small: Term, nonzero: bool) -> Term:
-        shared, rest_large, rest_small = without_common(large, small)
+        shared, cofactor_large, cofactor_small = without_common(large, small)
         direct = self.atoms.curvature(large).concave and self.atoms.curvature(small).convex
-        factored = self.atoms.curvature(rest_large).concave and self.atoms.curvature(rest_small).convex
+        factored = self.atoms.curvature(cofactor_large).concave and self.atoms.curvature(cofactor_small).convex
         curvature = Curvature(False, direct) | (self.atoms.curvature(shared) & Curvature(False, factored))
-        low, high = self.atoms.ratio(small, large, rest_small, rest_large)
-        e_large, e_small = self.atoms.elasticity(rest_large), self.atoms.elasticity(rest_small)
+        low, high = self.atoms.ratio(small, large, cofactor_small, cofactor_large)
+        e_large, e_small = self.atoms.elasticity(cofactor_large), self.atoms.elasticity(cofactor_small)
         e_shared = self.atoms.elasticity(shared)
         if self.nodes[k].op == ca.OP_SUB:
             squares = e_shared + difference_elasticity(e_large, e_small, (low * low, high * high))

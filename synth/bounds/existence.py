@@ -39,11 +39,11 @@ def surely_exist(space: SearchSpace, nodes: Sequence[int]) -> list[bool]:
         plain: list[Ends] = []
         for node in program.nodes:
             plain.append(natural(program, node, plain, low, high))
-        found = _existing(program, low + high, plain)
-        if not all(found[k] for k in nodes):  # limits leave less, which takes several times as long to learn
+        existing = _existing(program, low + high, plain)
+        if not all(existing[k] for k in nodes):  # limits leave less, which takes several times as long to learn
             within = FeasibleIntervals(space.model, low, high)
-            found = _existing(program, low + high, list(zip(within.low, within.high, strict=True)))
-    return [found[k] for k in nodes]
+            existing = _existing(program, low + high, list(zip(within.low, within.high, strict=True)))
+    return [existing[k] for k in nodes]
 
 
 def _existing(program: Program, inputs: np.ndarray, ends: Sequence[Ends]) -> list[bool]:
@@ -74,8 +74,8 @@ def _exists(node: Node, ends: Sequence[Ends], args: Sequence[bool]) -> bool:
         return -INF < node.constant < INF
     if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO):
         low, high = ends[0]
-        taken = [high > 0.5, low < 0.5]
-        return args[0] and all(there or not may for there, may in zip(args[1:], taken, strict=False))
+        reachable = [high > 0.5, low < 0.5]
+        return args[0] and all(there or not may for there, may in zip(args[1:], reachable, strict=False))
     return all(args) and _defined(node.op, ends)
 
 

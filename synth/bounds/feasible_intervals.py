@@ -60,14 +60,14 @@ class FeasibleIntervals:
         self._program, self._inputs = model.program, (low, high)
         self.above_zero = set[int]()
         self.larger = set[tuple[int, int]]()
-        whole: list[Ends] = []
+        natural_ends: list[Ends] = []
         for node in self._program.nodes:
-            whole.append(natural(self._program, node, whole, low, high))
-        self.low, self.high = [a for a, _ in whole], [b for _, b in whole]
+            natural_ends.append(natural(self._program, node, natural_ends, low, high))
+        self.low, self.high = [a for a, _ in natural_ends], [b for _, b in natural_ends]
         limits = [x for x in model.constraints if not x.void_without]
         self._read = self._program.needed([k for x in limits for k in x.nodes])
         if not all(self._sweep(limits) for _ in range(SWEEPS)):
-            self.low, self.high = [a for a, _ in whole], [b for _, b in whole]
+            self.low, self.high = [a for a, _ in natural_ends], [b for _, b in natural_ends]
             self.above_zero, self.larger = set(), set()
 
     def _sweep(self, limits: Sequence[Constraint]) -> bool:
@@ -105,8 +105,8 @@ class FeasibleIntervals:
     def _backward(self, k: int) -> None:
         node = self._program.nodes[k]
         args = [(np.float64(self.low[j]), np.float64(self.high[j])) for j in node.args]
-        found = backward(node.op, (np.float64(self.low[k]), np.float64(self.high[k])), args)
-        for j, bounds in zip(node.args, found, strict=True):
+        contracted = backward(node.op, (np.float64(self.low[k]), np.float64(self.high[k])), args)
+        for j, bounds in zip(node.args, contracted, strict=True):
             if bounds is not None:
                 self.low[j] = float(np.fmax(self.low[j], bounds[0]))
                 self.high[j] = float(np.fmin(self.high[j], bounds[1]))

@@ -97,7 +97,7 @@ def _by_first() -> dict[int, list[tuple[Op, Steps, list[str]]]]:
     """Runs by the operation that they begin with."""
     runs: dict[int, list[tuple[Op, Steps, list[str]]]] = {}
     for op, run in RUNS.items():
-        steps = [(own, registers.split()) for own, registers in run.steps]
+        steps = [(operation, registers.split()) for operation, registers in run.steps]
         runs.setdefault(steps[0][0], []).append((op, steps, run.operands.split()))
     return runs
 
@@ -145,7 +145,7 @@ def _registers(rows: Sequence[Row], steps: Steps) -> dict[str, int] | None:
         if row[0] != op:
             return None
         for register, letter in zip(row[1:], letters, strict=False):
-            own = register - letter.endswith("+")
-            if registers.setdefault(letter.rstrip("+"), own) != own:
+            first_register = register - letter.endswith("+")
+            if registers.setdefault(letter.rstrip("+"), first_register) != first_register:
                 return None
     return registers

@@ -18,7 +18,7 @@ import numpy as np
 
 from synth.bounds.intervals import BACKWARD, FORWARD, loosened
 from synth.model.program import OP_SELECT, OPERATIONS
-from synth.operations.enclosures import whole
+from synth.operations.enclosures import unbounded
 from synth.operations.record import Interval
 
 WIDTH = 6  # of an instruction: what is done, where the result goes, and up to four operands
@@ -224,15 +224,15 @@ def _rules() -> list[EnclosureRule]:
     forward = [EnclosureRule(f"FORWARD_{OP_NAMES[op]}", rule) for op, rule in FORWARD.items() if op not in POWERS]
     backward = [
         EnclosureRule(f"BACKWARD_{OP_NAMES[op]}_{i}", rule)
-        for op, own in BACKWARD.items()
-        for i, rule in enumerate(own)
+        for op, rules in BACKWARD.items()
+        for i, rule in enumerate(rules)
         if rule and op not in POWERS
     ]
     # The kernel has a rule for an exponent that is the same for all boxes, and one for any other.
     powers = [EnclosureRule(f"FORWARD_{name}", FORWARD[ca.OP_POW]) for name in ("POW_CONSTANT", "POW_ANY")]
     base = BACKWARD[ca.OP_POW][0]
     assert base is not None
-    unknown = [EnclosureRule(f"WHOLE_{count}", whole) for count in (1, 2, 3)]
+    unknown = [EnclosureRule(f"WHOLE_{count}", unbounded) for count in (1, 2, 3)]
     return [*forward, *powers, *unknown, *backward, EnclosureRule("BACKWARD_POW_CONSTANT", base)]
 
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, scored_room
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, scored_output_arrays
 from synth.bounds.boxes import Boxes
 from synth.bounds.contractor import Code
 from synth.bounds.fused_instructions import fused
@@ -21,7 +21,7 @@ from synth.bounds.kernel_subtrees import SubtreeCode
 from synth.kernels.loading import kernel
 from synth.kernels.threads import side_by_side
 
-# Sizes that the kernel has room for; boxes of a larger question are tightened over arrays.
+# Capacities of the kernel; boxes of a larger question are contracted over arrays.
 # Variables are goals as well: the last that settle ties.
 MOST = {"N": 24, "LIMITS": 256, "GOALS": 40, "TABLES": 256, "NODES": 1536}
 MOST_REGISTERS = 4096
@@ -41,24 +41,24 @@ class KernelList:
     """
 
     def __init__(self, code: Code) -> None:
-        nodes, own = code.nodes, code.instructions
-        at, sizes, factor = own.regions, sizes_of(code), [nodes.factor[k] for k in nodes.tables]
+        nodes, code_list = code.nodes, code.instructions
+        at, sizes, factor = code_list.regions, sizes_of(code), [nodes.factor[k] for k in nodes.tables]
         numbers = [
             *(sizes[name] for name in ("N", "LIMITS", "GOALS", "TABLES", "NODES")),
-            len(own.variables),
+            len(code_list.variables),
             at.count,
-            len(own.literals),
-            own.constants,
+            len(code_list.literals),
+            code_list.constants,
             *(at.literals, at.constants, at.right_sides, at.cutoffs, at.floors),
             *(at.tables, at.variables, at.open, at.goals, at.scratch),
         ]
         self._kept = [
-            own.literals,
-            np.array(own.variables, dtype=np.intc),
+            code_list.literals,
+            np.array(code_list.variables, dtype=np.intc),
             np.array(factor, dtype=np.intc),
             np.array([2 * factor.count(f) for f in factor], dtype=np.intc),
             np.array([2 * factor[:i].count(f) for i, f in enumerate(factor)], dtype=np.intc),
-            *(fused(rows) for rows in (own.first, own.later, own.last)),
+            *(fused(rows) for rows in (code_list.first, code_list.later, code_list.last)),
         ]
         self.record = np.array([*numbers, *(x.ctypes.data for x in self._kept)], dtype=np.int64)
 
@@ -77,7 +77,7 @@ def sizes_of(code: Code) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Verdicts:
-    """What a contraction finds of each box, where that is wanted: searches go by the boxes that are left.
+    """Result of a contraction for each box.
 
     Parameters
     ----------
@@ -91,8 +91,8 @@ class Verdicts:
     undecided: np.ndarray
 
     @staticmethod
-    def room(boxes: int, limits: int) -> Verdicts:
-        """Return room for what is found of so many boxes."""
+    def empty(boxes: int, limits: int) -> Verdicts:
+        """Arrays for a contraction to fill: no box is alive, no limit undecided."""
         return Verdicts(np.zeros(boxes, dtype=bool), np.zeros((boxes, limits), dtype=bool))
 
 
@@ -143,12 +143,12 @@ class BoxKernel:
         workers : int
             Threads; the boxes are split between them and the result is the same for any number.
         verdicts : Verdicts, optional
-            Takes what is found of each box.
+            Filled with the result for each box.
         """
         most = np.ascontiguousarray(np.full(boxes.bounds.shape[1], np.inf) if cutoffs is None else cutoffs, dtype=float)
         step = most.shape[1] if most.ndim == 2 else 0
-        taken = scored_room(boxes, len(boxes))
-        moving, still = dict(taken), dict(self._read)
+        outputs = scored_output_arrays(boxes, len(boxes))
+        moving, still = dict(outputs), dict(self._read)
         (moving if step else still)["cutoffs"] = most
         if verdicts is not None:
             moving |= {"alive": verdicts.alive, "undecided": verdicts.undecided}
@@ -157,8 +157,8 @@ class BoxKernel:
         work = [partial(self._tightened, batches.part(first, last)) for first, last in pairwise(ends)]
         kept = side_by_side(work, workers)
         rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
-        found = filled(taken)
-        return Boxes.joined([found.take(own) for own in rows])
+        contracted = filled(outputs)
+        return Boxes.joined([contracted.take(alive_rows) for alive_rows in rows])
 
     def _tightened(self, batch: BatchStructure) -> int:
         """Tighten some boxes; return how many are left."""
@@ -166,17 +166,17 @@ class BoxKernel:
 
 
 def fits(code: Code) -> bool:
-    """True if the kernel has room for some code."""
+    """True if the code is within the capacities of the kernel."""
     small = all(size <= MOST[name] for name, size in sizes_of(code).items())
     return small and code.instructions.regions.count <= MOST_REGISTERS
 
 
 def box_kernel(code: Code) -> BoxKernel | None:
-    """Kernel for the instructions of a sign pattern; None where there is none, or it has no room for them."""
+    """Kernel for the instructions of a sign pattern; None where none is built or its capacity is exceeded."""
     loaded = kernel("boxes")
     if loaded is None:
         return None
     if code.kernel is None:
         code.kernel = (BoxKernel(loaded, KernelList(code)) if fits(code) else None,)
-    found: BoxKernel | None = code.kernel[0]
-    return found
+    cached: BoxKernel | None = code.kernel[0]
+    return cached

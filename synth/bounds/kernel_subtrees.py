@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, room, scored_room
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, filled, output_arrays, scored_output_arrays
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.kernels.threads import SideBySide, side_by_side
 
@@ -126,7 +126,7 @@ class Halves:
 
 
 class Growth:
-    """Subtrees that grow beside what goes on meanwhile; it has to be ended, by asking for them or without.
+    """Subtrees that grow concurrently with the caller, who must end it: with :meth:`subtrees` or :meth:`stop`.
 
     Parameters
     ----------
@@ -149,10 +149,10 @@ class Growth:
         Raises
         ------
         MemoryError
-            Where the code found no room to work in.
+            If the kernel could not allocate its work space.
         """
         parts = self._parts.results()
-        both = Boxes.joined([own for own, _, _ in parts])
+        both = Boxes.joined([boxes for boxes, _, _ in parts])
         too_small = np.concatenate([small for _, small, _ in parts])
         contracted = sum(contracted for _, _, contracted in parts)
         return self._changed(Subtrees(both.take(~too_small), both.take(too_small), contracted))
@@ -212,24 +212,24 @@ class SubtreeCode:
         batches, sizes = Batches(prepared, boxes, weights, passes, still=self._read), prepared.sizes
         fixed, numbers = halves.kept | cutoffs.arrays(), {"levels": levels, **cutoffs.numbers()}
         places = {name: a.ctypes.data for name, a in fixed.items()}
-        # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
+        # Parts have one size, whatever the number of threads: the boxes returned when the capacity is exhausted
         # must not depend on it.
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
 
         def grown(first: int, last: int, read: Any) -> tuple[Boxes, np.ndarray, int]:
             """Grow a part; ``read``: what its records have addresses of, which must not end before it does."""
             count = last - first
-            # No more than all halves of the last generation come back, and there is room for those at hand.
-            capacity = min(sizes.tree_room * count + sizes.tree_beside, (count << levels) + MOST_AT_HAND)
-            taken = room(boxes, capacity) | {"too_small": np.empty(capacity, dtype=bool)}
-            written = {name: a.ctypes.data for name, a in taken.items()}
+            # At most all halves of the last generation come back, beside the boxes at hand.
+            capacity = min(sizes.capacity_per_box * count + sizes.extra_capacity, (count << levels) + MOST_AT_HAND)
+            outputs = output_arrays(boxes, capacity) | {"too_small": np.empty(capacity, dtype=bool)}
+            written = {name: a.ctypes.data for name, a in outputs.items()}
             tree = _TreeStructure(capacity=capacity, **numbers, **places, **written)
             kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
             if kept < 0:
                 raise MemoryError
-            return *_taken(taken, kept, boxes.scores.shape[1], len(ends) == 1), int(tree.contracted)
+            return *_grown_boxes(outputs, kept, boxes.scores.shape[1], len(ends) == 1), int(tree.contracted)
 
-        return Growth(SideBySide([partial(grown, *own, (halves, fixed)) for own in ends], workers))
+        return Growth(SideBySide([partial(grown, *part, (halves, fixed)) for part in ends], workers))
 
     def split(self, prepared: Prepared, halves: Halves, boxes: Boxes, workers: int = 1) -> tuple[Boxes, Boxes]:
         """Split boxes by their scores.
@@ -245,10 +245,10 @@ class SubtreeCode:
             First the first halves, in order, then the second halves; and the boxes that are too small to be split.
         """
         count = len(boxes)
-        taken, too_small = scored_room(boxes, 2 * count), np.empty(count, dtype=bool)
+        outputs, too_small = scored_output_arrays(boxes, 2 * count), np.empty(count, dtype=bool)
         scores = np.ascontiguousarray(boxes.scores, dtype=np.float32)
         unweighted = np.zeros((1, 0))
-        batches = Batches(prepared, boxes, unweighted, 0, moving={**taken, "scores": scores}, still=self._read)
+        batches = Batches(prepared, boxes, unweighted, 0, moving={**outputs, "scores": scores}, still=self._read)
         places = {name: a.ctypes.data for name, a in halves.kept.items()}
 
         def halved(first: int, last: int) -> None:
@@ -256,17 +256,17 @@ class SubtreeCode:
             self._split(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
 
         side_by_side([partial(halved, *ends) for ends in pairwise(prepared.parts(count, workers))], workers)
-        both = filled(taken)
+        both = filled(outputs)
         if not too_small.any():
             return both, boxes.take(slice(0, 0))
         return both.take(np.tile(~too_small, 2)), boxes.take(too_small)
 
 
-def _taken(taken: dict[str, np.ndarray], kept: int, scores: int, alone: bool) -> tuple[Boxes, np.ndarray]:
-    """Return boxes, and which are too small; what is kept holds no room that was there for more.
+def _grown_boxes(outputs: dict[str, np.ndarray], kept: int, scores: int, sole: bool) -> tuple[Boxes, np.ndarray]:
+    """Grown boxes, and which of them are too small; spare capacity is not kept alive.
 
-    ``alone``: nothing is joined with them, which copies them as well.
+    ``sole``: the only part, so that no joining will copy them.
     """
-    own = {name.removeprefix("out_"): a[:kept].copy() if alone else a[:kept] for name, a in taken.items()}
-    too_small = own.pop("too_small")
-    return Boxes(scores=np.ones((kept, scores), dtype=np.float32), **own), too_small
+    columns = {name.removeprefix("out_"): a[:kept].copy() if sole else a[:kept] for name, a in outputs.items()}
+    too_small = columns.pop("too_small")
+    return Boxes(scores=np.ones((kept, scores), dtype=np.float32), **columns), too_small

@@ -144,11 +144,11 @@ class _Composition:
         signs = self.signs
         if op in (ca.OP_ADD, ca.OP_SUB):
             a, b = args
-            own, first, second = signs[k], signs[a], signs[b] if op == ca.OP_ADD else -signs[b]
+            sign, first, second = signs[k], signs[a], signs[b] if op == ca.OP_ADD else -signs[b]
             if first == second:
                 return [Relation(SUM, (k, a, b))]
             # What is left of the larger one has its sign.
-            return [Relation(SUM, (a, k, b) if own == first else (b, k, a))]
+            return [Relation(SUM, (a, k, b) if sign == first else (b, k, a))]
         if op in (ca.OP_FMAX, ca.OP_FMIN) and signs[args[0]] == signs[args[1]]:
             larger = (op == ca.OP_FMAX) == (signs[k] > 0)
             return [Relation(LARGEST if larger else LEAST, (k, *args))]

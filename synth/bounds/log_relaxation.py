@@ -129,24 +129,24 @@ class LogRelaxation:
         tight = replace(boxes, low=boxes.low.copy(), high=boxes.high.copy(), bounds=boxes.bounds.copy())
         alive, points = ~dead, list[RelaxedPoints]()
         for pattern in np.unique(signs[alive], axis=0):
-            own = np.flatnonzero(alive & np.all(signs == pattern, axis=1))
+            group = np.flatnonzero(alive & np.all(signs == pattern, axis=1))
             forms = self._forms_of(pattern)
-            program = _Programs(forms, [_taken(x, own) for x in low], [_taken(x, own) for x in high], len(own))
+            program = _Programs(forms, [_select(x, group) for x in low], [_select(x, group) for x in high], len(group))
             program.relate(self.nodes.program, self.settings.tangents)
             for constraint, right_side in zip(self.nodes.constraints, self.question.right_sides, strict=True):
                 program.limit(constraint, right_side)
             for j, goal in enumerate(self.nodes.goals):
                 if j != target:
-                    program.cap(goal.node, goal.sign, cutoffs[own, j])
+                    program.cap(goal.node, goal.sign, cutoffs[group, j])
             goal = self.nodes.goals[target]
-            found = program.solve(goal.node, goal.sign, self.settings.yield_cost)
-            alive[own] = found.alive
+            solved = program.solve(goal.node, goal.sign, self.settings.yield_cost)
+            alive[group] = solved.alive
             if goal.node in forms.place:
                 side = goal.sign * int(pattern[goal.node])
-                size = np.exp(np.clip(side * found.bound, -700.0, 700.0))
-                tight.bounds[own, target] = np.fmax(tight.bounds[own, target], below(side * size, ROUNDED))
-            self._tighten(tight, own, forms, found)
-            points.append(RelaxedPoints(forms, own, found.logs, program.low, program.high))
+                size = np.exp(np.clip(side * solved.bound, -700.0, 700.0))
+                tight.bounds[group, target] = np.fmax(tight.bounds[group, target], below(side * size, ROUNDED))
+            self._tighten(tight, group, forms, solved)
+            points.append(RelaxedPoints(forms, group, solved.logs, program.low, program.high))
         alive &= ~np.any(tight.low > above(tight.high, ROUNDING), axis=1)
         np.maximum(tight.high, tight.low, out=tight.high)
         return BoundedTogether(tight, alive, points)
@@ -171,19 +171,19 @@ class LogRelaxation:
             self._forms[key] = log_forms(self.nodes, pattern, self._values)
         return self._forms[key]
 
-    def _tighten(self, boxes: Boxes, own: np.ndarray, forms: LogForms, found: Solved) -> None:
-        """Cut the ends of variables by what is left of columns, in place."""
+    def _tighten(self, boxes: Boxes, group: np.ndarray, forms: LogForms, solved: Solved) -> None:
+        """Cut the ends of variables by those of their columns, in place."""
         for column, k in enumerate(forms.columns):
             if k in self.nodes.variables and forms.signs[k] > 0:
                 i = self.nodes.position(k)
-                least, most = (np.exp(x[:, column]) for x in (found.least, found.most))
-                boxes.low[own, i] = np.fmax(boxes.low[own, i], below(least, ROUNDED))
-                boxes.high[own, i] = np.fmin(boxes.high[own, i], above(most, ROUNDED))
+                least, most = (np.exp(x[:, column]) for x in (solved.least, solved.most))
+                boxes.low[group, i] = np.fmax(boxes.low[group, i], below(least, ROUNDED))
+                boxes.high[group, i] = np.fmin(boxes.high[group, i], above(most, ROUNDED))
 
 
 @dataclass(frozen=True)
 class Solved:
-    """What the linear programs of some boxes say.
+    """Solutions of the linear programs of boxes.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ class Solved:
     bound : array (boxes,)
         Lower bound of the objective: of the logarithm of its size, with the sign of the objective.
     least, most : array (boxes, columns)
-        What is left of the columns.
+        Contracted ends of the columns.
     logs : array (boxes, nodes)
         Of the nodes that have a form: where the program ended.
     """
@@ -322,8 +322,8 @@ class _Programs:
     # -- solving -------------------------------------------------------------------------------
 
     def solve(self, goal: int, sense: int, yield_cost: float) -> Solved:
-        """Bound an objective over each box; without a sign of the objective, only whether boxes are empty is told."""
-        forms, left, right = self.forms, *self._assembled()
+        """Bound an objective over each box; one without a sign gets no bound, but empty boxes are still detected."""
+        forms, matrix, right = self.forms, *self._assembled()
         cost, base, most = np.zeros(len(forms.columns)), np.zeros(self.count), np.zeros(self.count)
         if goal in forms.place:
             place, side = forms.place[goal], float(sense * forms.signs[goal])
@@ -334,69 +334,69 @@ class _Programs:
         least, greatest = self.start.copy(), self.start + self.width
         logs = np.empty((self.count, len(forms.place)))
         for i in range(self.count):
-            point, multipliers = _solved(cost, left[i], right[i], self.width[i], yield_cost)
-            bound[i], residual = _bound(cost, left[i], right[i], self.width[i], multipliers)
+            point, multipliers = _solved(cost, matrix[i], right[i], self.width[i], yield_cost)
+            bound[i], residual = _bound(cost, matrix[i], right[i], self.width[i], multipliers)
             bound[i] += base[i] - ROUNDED - SUMMED * abs(base[i])
             alive[i] = bound[i] <= most[i]
-            room = max(most[i] - bound[i], 0.0)
-            # What is left of a coefficient by rounding alone says nothing.
+            slack = max(most[i] - bound[i], 0.0)
+            # A coefficient that is rounding error alone bounds nothing.
             residual = np.where(
-                np.abs(residual) > NOISE * (np.abs(cost) + np.abs(multipliers) @ np.abs(left[i])), residual, 0.0
+                np.abs(residual) > NOISE * (np.abs(cost) + np.abs(multipliers) @ np.abs(matrix[i])), residual, 0.0
             )
             with np.errstate(all="ignore"):
-                reach = above(np.minimum(room / np.abs(residual), self.width[i]), SUMMED, ROUNDED)
+                reach = above(np.minimum(slack / np.abs(residual), self.width[i]), SUMMED, ROUNDED)
             greatest[i] = np.where(residual > 0, least[i] + reach, greatest[i])
             least[i] = np.where(residual < 0, self.start[i] + self.width[i] - reach, least[i])
             logs[i] = forms.matrix @ (self.start[i] + point) + forms.constants
         return Solved(alive, bound, least, greatest, logs)
 
     def _assembled(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the rows in columns above their lower ends; those that say nothing are empty."""
+        """Rows in columns above their lower ends; those without a finite coefficient or right side are zeros."""
         forms, place = self.forms, self.forms.place
-        left = np.zeros((self.count, len(self.rows), len(place)))
+        matrix = np.zeros((self.count, len(self.rows), len(place)))
         right = np.empty((self.count, len(self.rows)))
         for j, (side, limit) in enumerate(self.rows):
             for k, coefficient in side:
-                left[:, j, place[k]] += coefficient
+                matrix[:, j, place[k]] += coefficient
             right[:, j] = limit
-        columns = left @ forms.matrix
-        right = right - left @ forms.constants - (columns @ self.start[:, :, None])[:, :, 0]
+        columns = matrix @ forms.matrix
+        right = right - matrix @ forms.constants - (columns @ self.start[:, :, None])[:, :, 0]
         void = ~(np.isfinite(right) & np.all(np.isfinite(columns), axis=2))
         columns[void], right[void] = 0.0, 0.0
         return columns, right
 
 
 def _solved(
-    cost: np.ndarray, left: np.ndarray, right: np.ndarray, width: np.ndarray, yield_cost: float
+    cost: np.ndarray, matrix: np.ndarray, right: np.ndarray, width: np.ndarray, yield_cost: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return a point and multipliers of a linear program whose rows may all give way by the same amount."""
+    """Point and multipliers of a linear program whose rows may all be violated by the same amount."""
     from scipy.optimize import linprog  # costly to import; few questions need it
 
-    rows, columns = left.shape
-    found = linprog(
+    rows, columns = matrix.shape
+    solution = linprog(
         np.append(cost, yield_cost),
-        A_ub=np.hstack([left, -np.ones((rows, 1))]),
+        A_ub=np.hstack([matrix, -np.ones((rows, 1))]),
         b_ub=right,
         bounds=np.column_stack([np.zeros(columns + 1), np.append(width, np.inf)]),
         method="highs",
         options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
     )
-    if found.x is None:
+    if solution.x is None:
         return 0.5 * width, np.zeros(rows)
-    return np.clip(found.x[:columns], 0.0, width), np.minimum(found.ineqlin.marginals, 0.0)
+    return np.clip(solution.x[:columns], 0.0, width), np.minimum(solution.ineqlin.marginals, 0.0)
 
 
 def _bound(
-    cost: np.ndarray, left: np.ndarray, right: np.ndarray, width: np.ndarray, multipliers: np.ndarray
+    cost: np.ndarray, matrix: np.ndarray, right: np.ndarray, width: np.ndarray, multipliers: np.ndarray
 ) -> tuple[float, np.ndarray]:
     """Bound proven by any multipliers, none of them positive (see the head of the module), and the remainder of c."""
-    residual = cost - multipliers @ left
-    sizes = np.abs(cost) + np.abs(multipliers) @ np.abs(left)
+    residual = cost - multipliers @ matrix
+    sizes = np.abs(cost) + np.abs(multipliers) @ np.abs(matrix)
     rounding = SUMMED * float(sizes @ width + np.abs(multipliers) @ np.abs(right))
     loose = ROUNDED * float(np.abs(multipliers).sum())
     return float(np.minimum(residual, 0.0) @ width + multipliers @ right) - rounding - loose, residual
 
 
-def _taken(values: Any, rows: np.ndarray) -> Any:
-    """Return some of the values of a node, which are one number or one per box."""
+def _select(values: Any, rows: np.ndarray) -> Any:
+    """Values of a node in the given boxes; a scalar holds in all of them."""
     return values if np.ndim(values) == 0 else values[rows]

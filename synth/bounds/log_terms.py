@@ -149,8 +149,8 @@ class AtomTable:
         result = BOTH
         for atom, p in [*powers.items(), *squares.items()]:
             if p != 0.0:
-                own = self._atoms[atom].curvature
-                result = result & (own if p > 0 else own.opposite())
+                curvature = self._atoms[atom].curvature
+                result = result & (curvature if p > 0 else curvature.opposite())
         return result
 
     def _squared(self, term: Term) -> tuple[dict[int, float], dict[int, float]]:
@@ -179,9 +179,9 @@ class AtomTable:
             low, high = low * min(a, b), high * max(a, b)
         return (0.0 if np.isnan(low) else float(low)), (INF if np.isnan(high) else float(high))
 
-    def ratio(self, a: Term, b: Term, rest_a: Term, rest_b: Term) -> Ends:
-        """Return the range of a/b, by their own ranges and by what is left after cancelling."""
+    def ratio(self, a: Term, b: Term, cofactor_a: Term, cofactor_b: Term) -> Ends:
+        """Range of a/b: the intersection of what their ranges and their cofactors after cancelling give."""
         (a_low, a_high), (b_low, b_high) = (np.asarray(self.size(t)) for t in (a, b))
-        low, high = self.size(times(rest_a, rest_b, -1.0))
+        low, high = self.size(times(cofactor_a, cofactor_b, -1.0))
         low, high = np.fmax(low, a_low / b_high), np.fmin(high, a_high / b_low)
         return float(low), float(high)

@@ -73,10 +73,10 @@ class PropagatedNodes:
     ) -> None:
         self.program, self.layout, self.auxiliary = program, layout, tuple(auxiliary)
         self.constraints, self.goals = list(constraints), list(goals)
-        wanted = [k for c in constraints for k in c.nodes] + [g.node for g in goals]
-        self.order = program.needed(wanted) if wanted else []
+        targets = [k for c in constraints for k in c.nodes] + [g.node for g in goals]
+        self.order = program.needed(targets) if targets else []
         compared = [k for c in constraints for k in (c.value, c.limit) if k is not None]
-        shaping = set(program.needed([*compared, *(g.node for g in goals)])) if wanted else set()
+        shaping = set(program.needed([*compared, *(g.node for g in goals)])) if targets else set()
         self.sizes = [k not in shaping for k in range(len(program.nodes))]
         self.kind, self.factor = self._kinds()
         # What a limit says of a column that may lack a value holds only for rows that have one: it is read, never cut.
@@ -86,7 +86,7 @@ class PropagatedNodes:
             kind != CONSTANT and not void and not size
             for kind, void, size in zip(self.kind, untouchable, self.sizes, strict=True)
         ]
-        read = {a for k in self.order if self.kind[k] == INNER for a in program.nodes[k].args} | set(wanted)
+        read = {a for k in self.order if self.kind[k] == INNER for a in program.nodes[k].args} | set(targets)
         self.tables = [k for k in self.order if self.kind[k] == TABLE and k in read]
         self.constants = [k for k in self.order if self.kind[k] == CONSTANT and k in read]
         self.inner = [k for k in self.order if self.kind[k] == INNER]

@@ -65,7 +65,7 @@ class Propagation:
         self._codes: dict[tuple[bool, bool], Code] = {}
 
     def among(self, question: QuestionBounds, first: ClusterTree) -> Propagation:
-        """Return the same for other rows of the first factor.
+        """Propagation for other rows of the first factor.
 
         Parameters
         ----------
@@ -74,13 +74,13 @@ class Propagation:
         first : ClusterTree
             The clusters of the other rows.
         """
-        own = copy.copy(self)
-        own.question = question
-        own.cells = Cells([first, *self.cells.trees[1:]], question.instance.combinations.radix)
-        own._ends = [own._ends_per_cluster(0), *self._ends[1:]]
-        own.tables = own._in_order()
-        own.floors = own._floors_per_cluster()
-        return own
+        new = copy.copy(self)
+        new.question = question
+        new.cells = Cells([first, *self.cells.trees[1:]], question.instance.combinations.radix)
+        new._ends = [new._ends_per_cluster(0), *self._ends[1:]]
+        new.tables = new._in_order()
+        new.floors = new._floors_per_cluster()
+        return new
 
     def run(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Propagated:
         """Tighten boxes.
@@ -134,12 +134,12 @@ class Propagation:
         return result
 
     def _floors_per_cluster(self) -> np.ndarray | None:
-        """Return the least that objectives may be, per cluster of the first factor; None where all may be anything."""
-        given, tree = self.question.instance.floors, self.cells.trees[0] if self.cells.trees else None
-        if not given or tree is None:
+        """Floors of objectives per cluster of the first factor; None where there are none."""
+        declared, tree = self.question.instance.floors, self.cells.trees[0] if self.cells.trees else None
+        if not declared or tree is None:
             return None
         per_row = np.full((len(tree.leaf_of_row), len(self.question.goals)), -np.inf)
-        for k, values in given.items():
+        for k, values in declared.items():
             # Rows of a leaf are equal in all else that counts: what the lowest floor allows counts for all of them.
             per_leaf = np.full(len(tree), np.inf)
             np.minimum.at(per_leaf, tree.leaf_of_row, values)
@@ -147,5 +147,5 @@ class Propagation:
         return tree.hull(per_row)[0]
 
     def _in_order(self) -> dict[bool, Tables]:
-        ends = {node: (f, *pair) for f, own in enumerate(self._ends) for node, pair in own.items()}
+        ends = {node: (f, *pair) for f, of_factor in enumerate(self._ends) for node, pair in of_factor.items()}
         return {every: [ends[node] for node in c.nodes.tables] for every, c in self.question.contractors.items()}

@@ -84,7 +84,7 @@ class QuestionBounds:
         self.factors = [self._factor(f, name, owner) for f, name in enumerate(instance.combinations.names)]
         self.constants = self._constants(owner)
         self.row_values = [self._values_of_rows(f) for f in range(len(self.factors))]
-        values = {node: v for own in self.row_values for node, v in own.items()}
+        values = {node: v for of_factor in self.row_values for node, v in of_factor.items()}
         self._least_known = {node: _least_known(v) for node, v in values.items()}
         self.root = self._root([values[node] for node in self.contractors[True].nodes.tables])
         self.auxiliary = () if self.root.empty else self._auxiliary(settings)
@@ -97,7 +97,7 @@ class QuestionBounds:
         self.grids = [*instance.ranges.grids(), *(np.empty(0) for _ in self.auxiliary)]
 
     def among(self, instance: SearchSpace) -> QuestionBounds | None:
-        """Return the same for other rows of the first factor: what holds over all rows here is not sought again.
+        """Bounds for other rows of the first factor, which reuse what holds for every row.
 
         Parameters
         ----------
@@ -109,17 +109,17 @@ class QuestionBounds:
         QuestionBounds, optional
             None where rows do not lie within those known here, or where something else is not the same.
         """
-        own, owner = copy.copy(self), instance.owners()
-        own.instance = instance
-        if owner != self.instance.owners() or not np.array_equal(own._fixed(owner), self._fixed(owner), equal_nan=True):
+        new, owner = copy.copy(self), instance.owners()
+        new.instance = instance
+        if owner != self.instance.owners() or not np.array_equal(new._fixed(owner), self._fixed(owner), equal_nan=True):
             return None
-        first = own._factor(0, instance.combinations.names[0], owner)
+        first = new._factor(0, instance.combinations.names[0], owner)
         read, known = first.columns[:, : len(first.inputs)], self.factors[0].columns
         if not np.all((read >= known.min(axis=0)) & (read <= known.max(axis=0))):
             return None
-        own.factors = [first, *self.factors[1:]]
-        own.row_values = [own._values_of_rows(0), *self.row_values[1:]]
-        return own
+        new.factors = [first, *self.factors[1:]]
+        new.row_values = [new._values_of_rows(0), *self.row_values[1:]]
+        return new
 
     def surely_positive(self, node: int) -> bool:
         """True if a node is positive wherever a design is feasible (rows without a value do not count)."""
@@ -145,19 +145,19 @@ class QuestionBounds:
         layout = MovingInputs(self.n, tuple(owner), optional)
         plain = tuple(replace(c, bound=0.0) for c in self.constraints)
 
-        def contractor(wanted: Sequence[Goal]) -> Contractor:
+        def contractor(goals: Sequence[Goal]) -> Contractor:
             made: Contractor = model.function(
-                ("contractor", layout, plain, tuple(wanted), auxiliary),
-                lambda: Contractor(PropagatedNodes(model.program, layout, plain, wanted, auxiliary)),
+                ("contractor", layout, plain, tuple(goals), auxiliary),
+                lambda: Contractor(PropagatedNodes(model.program, layout, plain, goals, auxiliary)),
             )
             return made
 
         return {False: contractor(self.goals[: self.bounded]), True: contractor(self.goals)}
 
     def _data_read(self) -> set[int]:
-        """Return the numbers of the data inputs that limits, objectives or refusals depend on."""
-        instance, model, wanted = self.instance, self.model, self.sides()
-        needed = set(model.program.needed(wanted)) if wanted else set()
+        """Numbers of the data inputs that limits, objectives or refusals depend on."""
+        instance, model, sides = self.instance, self.model, self.sides()
+        needed = set(model.program.needed(sides)) if sides else set()
         read = {k for k, node in enumerate(model.program.input_nodes[self.n :]) if node in needed}
         for refusal in instance.selection.joint_refusals:
             symbols = model.function(("symbols", id(refusal)), partial(_symbols, refusal.when, model.calls))
@@ -165,9 +165,9 @@ class QuestionBounds:
         return read
 
     def _factor(self, f: int, name: str, owner: Sequence[int]) -> Factor:
-        """Return a factor with the numbers of its rows that anything depends on."""
+        """A factor with the relevant numbers of its rows."""
         instance = self.instance
-        inputs = tuple(k for k, own in enumerate(owner) if own == f and k in self._read)
+        inputs = tuple(k for k, factor in enumerate(owner) if factor == f and k in self._read)
         cutoffs = instance.cutoffs if f < instance.scenario_factors else {}
         columns = np.empty((instance.combinations.radix[f], len(inputs) + len(cutoffs)))
         for position, column in enumerate([*(instance.column(k) for k in inputs), *cutoffs.values()]):
@@ -175,8 +175,8 @@ class QuestionBounds:
         return Factor(name, inputs, columns, tuple(cutoffs))
 
     def _fixed(self, owner: Sequence[int]) -> list[float]:
-        """Return the data that belong to no factor."""
-        return [v for v, own in zip(self.first_data(), owner, strict=True) if own < 0]
+        """Data that belong to no factor."""
+        return [v for v, factor in zip(self.first_data(), owner, strict=True) if factor < 0]
 
     def _constants(self, owner: Sequence[int]) -> dict[bool, list[float]]:
         # All that is known are requirements: what a factor decides is no number here.
@@ -184,7 +184,7 @@ class QuestionBounds:
         every = self.contractors[True]
         values = [float(np.asarray(v).ravel()[0]) for v in every.constant_values([None] * self.n + data)]
         known = dict(zip(every.nodes.constants, values, strict=True))
-        return {some: [known[node] for node in c.nodes.constants] for some, c in self.contractors.items()}
+        return {compared: [known[node] for node in c.nodes.constants] for compared, c in self.contractors.items()}
 
     def _values_of_rows(self, f: int) -> dict[int, np.ndarray]:
         """Return every node that one factor alone decides, per row of it."""

@@ -39,8 +39,8 @@ def relaxed_scores(nodes: PropagatedNodes, points: RelaxedPoints, width: int, fa
     moving = np.array([nodes.kind[k] in (VARIABLE, TABLE) for k in forms.columns], dtype=bool)
     blame = np.zeros((len(middle), len(forms.columns)))
     for relation in forms.relations:
-        own = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
-        steep = np.abs(own[2] - own[1]) if relation.kind != ELASTIC else sum(np.abs(g) for g in own[1:])
+        slopes = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
+        steep = np.abs(slopes[2] - slopes[1]) if relation.kind != ELASTIC else sum(np.abs(g) for g in slopes[1:])
         part = np.where(moving, np.nan_to_num(steep) * widths, 0.0)
         total = part.sum(axis=1, keepdims=True)
         off = _off(nodes, relation, [points.logs[:, place[k]] for k in relation.nodes])
@@ -54,32 +54,32 @@ def relaxed_scores(nodes: PropagatedNodes, points: RelaxedPoints, width: int, fa
 
 
 def _gradients(forms: LogForms, middle: np.ndarray) -> np.ndarray:
-    """Return the derivatives of all columns by those that relations do not explain (boxes, columns, columns)."""
+    """Derivatives of all columns by those that relations do not explain (boxes, columns, columns)."""
     place, number = forms.place, {k: column for column, k in enumerate(forms.columns)}
     gradient = np.tile(np.eye(len(forms.columns)), (len(middle), 1, 1))
     for relation in forms.relations:
         explained = max(relation.nodes)  # arguments come first
         values = [middle[:, place[k]] for k in relation.nodes]
-        own = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
-        gradient[:, number[explained]] = _derivative(relation, values, own)
+        node_gradients = [forms.matrix[place[k]] @ gradient for k in relation.nodes]
+        gradient[:, number[explained]] = _derivative(relation, values, node_gradients)
     return gradient
 
 
-def _derivative(relation: Relation, values: list[np.ndarray], own: list[np.ndarray]) -> np.ndarray:
-    """Return the derivatives of what a relation explains, from the values and derivatives of its nodes."""
+def _derivative(relation: Relation, values: list[np.ndarray], gradients: list[np.ndarray]) -> np.ndarray:
+    """Derivatives of the column that a relation explains, from the values and derivatives of its nodes."""
     explained = relation.nodes.index(max(relation.nodes))
     if relation.kind == SUM:
         share = np.exp(-np.logaddexp(0.0, values[1] - values[2]))[:, None]
         if explained == 0:
-            return np.asarray((1 - share) * own[1] + share * own[2])
+            return np.asarray((1 - share) * gradients[1] + share * gradients[2])
         share = share if explained == 1 else 1 - share
-        other = own[2] if explained == 1 else own[1]
-        result: np.ndarray = (own[0] - share * other) / np.maximum(1 - share, LEAST_SHARE)
+        other = gradients[2] if explained == 1 else gradients[1]
+        result: np.ndarray = (gradients[0] - share * other) / np.maximum(1 - share, LEAST_SHARE)
         return result
     if relation.kind == ELASTIC:
-        return np.asarray(np.sum(own[1:], axis=0))
+        return np.asarray(np.sum(gradients[1:], axis=0))
     first = (values[1] >= values[2]) == (relation.kind == LARGEST)
-    return np.asarray(np.where(first[:, None], own[1], own[2]))
+    return np.asarray(np.where(first[:, None], gradients[1], gradients[2]))
 
 
 def _off(nodes: PropagatedNodes, relation: Relation, logs: list[np.ndarray]) -> np.ndarray:

@@ -13,7 +13,7 @@ from synth.bounds.intervals import FORWARD, ROUNDING, backward, loosened, specia
 from synth.bounds.propagated_nodes import PropagatedNodes
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SPECIAL, TRAITS, Node, Program
-from synth.operations.enclosures import whole
+from synth.operations.enclosures import unbounded
 from synth.operations.record import Interval, Trait
 
 SWEEPS = 4  # forward over the whole question, with what limits cut carried back between them
@@ -57,9 +57,9 @@ class Leaves:
 def propagated_root(nodes: PropagatedNodes, leaves: Leaves) -> Root:
     """Ranges of every node over the hull of everything."""
     with np.errstate(all="ignore"):
-        found = _NodePropagation(nodes, leaves)
-        found.run(SWEEPS)
-        return found.root
+        propagation = _NodePropagation(nodes, leaves)
+        propagation.run(SWEEPS)
+        return propagation.root
 
 
 SIGN_KEEPING = {ca.OP_CONST, ca.OP_INPUT} | {op for op, traits in TRAITS.items() if Trait.ROUNDS_WELL in traits}
@@ -70,7 +70,7 @@ def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interv
     if node.op == OP_SPECIAL:
         return special_range(program.specials[int(node.constant)], args)
     forward = FORWARD.get(node.op)
-    return forward(*args) if forward else whole(*args)
+    return forward(*args) if forward else unbounded(*args)
 
 
 def propagated_boxes(
@@ -93,9 +93,9 @@ def propagated_boxes(
         Lower and upper ends per node, a number or an array (boxes,) each, and which boxes hold nothing feasible.
     """
     with np.errstate(all="ignore"):
-        found = _NodePropagation(nodes, leaves, cutoffs)
-        found.run(sweeps)
-        return found.a, found.b, np.broadcast_to(found.crossed(), (leaves.low.shape[1],))
+        propagation = _NodePropagation(nodes, leaves, cutoffs)
+        propagation.run(sweeps)
+        return propagation.a, propagation.b, np.broadcast_to(propagation.crossed(), (leaves.low.shape[1],))
 
 
 class _NodePropagation:
@@ -167,8 +167,8 @@ class _NodePropagation:
 
     def _backward(self, k: int) -> None:
         node, a, b = self.program.nodes[k], self.a, self.b
-        found = backward(node.op, (a[k], b[k]), [(a[j], b[j]) for j in node.args])
-        for j, bound in zip(node.args, found, strict=True):
+        contracted = backward(node.op, (a[k], b[k]), [(a[j], b[j]) for j in node.args])
+        for j, bound in zip(node.args, contracted, strict=True):
             if bound is not None:
                 self._narrow(j, *bound)
 

@@ -60,8 +60,8 @@ class BranchingSettings:
         The same where nothing feasible is known: limits that nearly agree are told apart in very small boxes.
     most_bits : int
         Objectives that are told apart when weights are learned.
-    some : float
-        Share of the multipliers of all objectives from which one counts as asked for.
+    active_share : float
+        Share of the multipliers of all objectives from which one counts as active.
     enough : int
         Problems solved before their own weights are believed.
     parts_first : float
@@ -85,7 +85,7 @@ class BranchingSettings:
     least: float = 1e-3
     least_if_infeasible: float = 1e-6
     most_bits: int = 3
-    some: float = 1e-3
+    active_share: float = 1e-3
     enough: int = 8
     parts_first: float = 3.0
     questions_first: float = 6.0
@@ -105,11 +105,11 @@ class KernelSizes:
         Boxes that a thread tightens at a time.
     tree_part : int
         Boxes whose generations are grown at a time.
-    tree_room, tree_beside : int
-        Boxes that may come back of them: so many for each, and beside. Where there is no room a box stays as it is.
+    capacity_per_box, extra_capacity : int
+        Boxes that may come back: so many per box of a part, and more per part. Beyond, a box stays unsplit.
     """
 
     part: int = 512
     tree_part: int = 512
-    tree_room: int = 4
-    tree_beside: int = 4096
+    capacity_per_box: int = 4
+    extra_capacity: int = 4096

@@ -65,7 +65,7 @@ def worded(shape: Shape, named: Sequence[tuple[int, str]], equal: bool = False) 
 
 
 def _directions(shape: Shape, named: Sequence[tuple[int, str]], longest: int) -> str:
-    """Say in which inputs a quantity is monotone, with as many names as there is room for."""
+    """Text on the inputs in which a quantity is monotone, with as many names as fit."""
     rising, falling, unknown = (
         [label for k, label in named if which[k]] for which in (shape.rising(), shape.falling(), shape.open())
     )
@@ -74,27 +74,27 @@ def _directions(shape: Shape, named: Sequence[tuple[int, str]], longest: int) ->
     for count in range(NAMED, -1, -1):
         if not unknown:
             ways = [("rises", rising), ("falls", falling)]
-            text = "monotone: " + ", ".join(f"{verb} with {_some(names, count)}" for verb, names in ways if names)
+            text = "monotone: " + ", ".join(f"{verb} with {_listed(names, count)}" for verb, names in ways if names)
         elif len(unknown) <= count:
-            text = f"monotone in all but {_some(unknown, count)}"
+            text = f"monotone in all but {_listed(unknown, count)}"
         else:
-            text = f"monotone in {_some(rising + falling, count)}, unknown in {_some(unknown, count)}"
+            text = f"monotone in {_listed(rising + falling, count)}, unknown in {_listed(unknown, count)}"
         if len(text) <= longest:
             break
     return text
 
 
-def _some(names: Sequence[str], count: int) -> str:
-    """Return names as a list; all beyond ``count`` as a number.
+def _listed(names: Sequence[str], count: int) -> str:
+    """Names as a list; those beyond ``count`` as a number.
 
     Examples
     --------
     >>> _some(["a", "b", "c"], 2), _some(["a", "b", "c"], 3), _some(["a"], 0)
     ('a, b and 1 more', 'a, b, c', '1 input')
     """
-    rest = len(names) - count
-    if rest <= 0:
+    unnamed = len(names) - count
+    if unnamed <= 0:
         return ", ".join(names)
     if not count:
-        return f"{rest} input{'s' if rest > 1 else ''}"
-    return f"{', '.join(names[:count])} and {rest} more"
+        return f"{unnamed} input{'s' if unnamed > 1 else ''}"
+    return f"{', '.join(names[:count])} and {unnamed} more"

@@ -170,18 +170,18 @@ def _is_of_family(frame: FrameType) -> bool:
 
 
 def _fault(problem: str, error: Exception) -> DeclarationError | None:
-    """Fault of the family behind an error; None where its line is told already, or no line of a family raised it."""
-    trace, found = error.__traceback__, None
+    """Fault of the family behind an error; None where its line is known already, or no line of a family raised it."""
+    trace, innermost = error.__traceback__, None
     while trace is not None:
-        found = trace if _is_of_family(trace.tb_frame) else found
+        innermost = trace if _is_of_family(trace.tb_frame) else innermost
         trace = trace.tb_next
-    if found is None or (isinstance(error, DeclarationError) and error.line is not None):
+    if innermost is None or (isinstance(error, DeclarationError) and error.line is not None):
         return None
-    line = SourceLine(found.tb_frame.f_code.co_filename, found.tb_lineno)
+    line = SourceLine(innermost.tb_frame.f_code.co_filename, innermost.tb_lineno)
     if isinstance(error, DeclarationError):
         return DeclarationError(str(error), line)
-    frame, source = found.tb_frame, linecache.getline(line.file, line.number)
-    segment = _segment(frame.f_code, found.tb_lasti) or source.strip()
+    frame, source = innermost.tb_frame, linecache.getline(line.file, line.number)
+    segment = _segment(frame.f_code, innermost.tb_lasti) or source.strip()
     names = _names(error.expression) if isinstance(error, _NoValue) else _names(*_operands(segment, frame))
     if not names:
         return DeclarationError(f"{problem}: {type(error).__name__}: {_first_line(error)}", line)
@@ -223,13 +223,13 @@ def _operands(segment: str, frame: FrameType) -> Iterator[Any]:
 
 def _names(*values: Any) -> list[str]:
     """Names of the symbols in expressions, also in lists and arrays of these."""
-    found: dict[str, None] = {}
+    names: dict[str, None] = {}
     for value in values:
         if isinstance(value, ca.SX):
-            found |= dict.fromkeys(str(symbol) for symbol in ca.symvar(value))
+            names |= dict.fromkeys(str(symbol) for symbol in ca.symvar(value))
         elif isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.dtype == object):
-            found |= dict.fromkeys(_names(*value))
-    return list(found)
+            names |= dict.fromkeys(_names(*value))
+    return list(names)
 
 
 def _first_line(error: Exception) -> str:

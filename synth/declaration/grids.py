@@ -62,5 +62,5 @@ def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper:
         values = np.sort(np.asarray(grid, dtype=float))
         if not np.isfinite(values).all():
             raise DeclarationError(f"the values of a grid must be finite, not {grid}")
-    inside: np.ndarray = values[within(values, lower, upper, MARGINS.stated)]
+    inside: np.ndarray = values[within(values, lower, upper, MARGINS.conversion)]
     return inside

@@ -110,8 +110,8 @@ class Choice:
 
     def __eq__(self, other: object) -> bool:
         """Refuse a comparison with a label or its number, which would be false whatever the search decides."""
-        told = ", ".join(f"{label!r}: ..." for label in self.labels)
-        return _same(self, other, f"choice {self.name}", f"{self.name}.select({{{told}}})")
+        branches = ", ".join(f"{label!r}: ..." for label in self.labels)
+        return _same(self, other, f"choice {self.name}", f"{self.name}.select({{{branches}}})")
 
     def expected(self, label: str) -> str:
         """Texts that may replace a label that is not offered, with the reason where there is one."""

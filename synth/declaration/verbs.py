@@ -185,10 +185,10 @@ class Slot:
         return _field_of(self, block)
 
 
-def _field_of(own: Any, block: Block | None) -> Any:
-    """Return the field to who asks the class, as it has no value there yet."""
+def _field_of(descriptor: Any, block: Block | None) -> Any:
+    """The field itself on access through the class, where it has no value yet."""
     if block is None:
-        return own
+        return descriptor
     raise AttributeError("this field of the block is declared further down")
 
 
@@ -230,12 +230,12 @@ class Block:
         for name in defaults:
             if name not in fields:
                 raise DeclarationError(f"{d.problem}: block {type(self).__name__} has no field {name!r}")
-        for name, own in fields.items():
-            default = defaults.get(name, own.default)
+        for name, field in fields.items():
+            default = defaults.get(name, field.default)
             if callable(default):
                 default = default(self)
             group = next(getattr(base, "group", "") for base in type(self).__mro__ if name in vars(base))
-            self.__dict__[name] = own.declared(d, name, default, group)
+            self.__dict__[name] = field.declared(d, name, default, group)
 
     @classmethod
     def fields(cls) -> dict[str, BlockField]:
@@ -259,17 +259,17 @@ class Declaration:
         Name of the problem, for messages.
     options : mapping
         Options the user has set.
-    given : set of str
+    specified : set of str
         Names of the requirements the user has given.
     catalogs : Catalogs
         The part tables in force.
     """
 
-    def __init__(self, problem: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs) -> None:
+    def __init__(self, problem: str, options: Mapping[str, str], specified: frozenset[str], catalogs: Catalogs) -> None:
         self.problem = problem
         self.catalogs = catalogs
-        self._asked_options = dict(options)
-        self._given = given
+        self._requested_options = dict(options)
+        self._specified = specified
         self.requirements: dict[str, RequirementRecord] = {}
         self.options: dict[str, OptionRecord] = {}
         self.variables: dict[str, VariableRecord] = {}
@@ -401,7 +401,7 @@ class Declaration:
             default = self._number(f"the default {what}", default, parsed)
         elif default is not None:
             default = self._expression(f"the default {what}", default)
-        given = name in self._given
+        specified = name in self._specified
         record = RequirementRecord(
             name=name,
             unit=unit,
@@ -412,9 +412,9 @@ class Declaration:
             lower=low,
             upper=high,
             optional=optional,
-            given=given,
+            given=specified,
             group=group,
-            sx=None if optional and not given else ca.SX.sym(name),
+            sx=None if optional and not specified else ca.SX.sym(name),
         )
         self.requirements[name] = record
         return record.sx
@@ -434,10 +434,10 @@ class Declaration:
         labels = tuple(choices)
         if default not in labels:
             raise DeclarationError(f"{self.problem}: default {default!r} of option {name} is not one of {labels}")
-        if name != symbol and name in self._asked_options and symbol in self._asked_options:
+        if name != symbol and name in self._requested_options and symbol in self._requested_options:
             right = "each option once (name and symbol mean the same)"
             raise InputError(f"options: {name}", symbol, right, ("options", symbol))
-        chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
+        chosen = self._requested_options.get(name, self._requested_options.get(symbol, default))
         if isinstance(chosen, bool):
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         if isinstance(chosen, str) and chosen not in labels and SWITCHED.get(chosen) in labels:
@@ -453,8 +453,8 @@ class Declaration:
 
     def cell(self, table: str, designation: str, column: str) -> str:
         """Return a text of a catalogue table; empty where a user's own table does not have the column."""
-        found = self.catalogs.table(table)
-        return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+        source_table = self.catalogs.table(table)
+        return source_table.text(column)[source_table.row_index(designation)] if source_table.has(column) else ""
 
     def has_column(self, table: str, column: str) -> bool:
         """True if a catalogue table has a column: a user's own may lack those that are not required."""
@@ -748,9 +748,9 @@ class Declaration:
 
     # -- views ---------------------------------------------------------------------------------
 
-    def asked(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
-        """Key of its purpose: another one made for the same takes the same declarations."""
-        return self.problem, self._asked_options, self._given, self.catalogs
+    def purpose(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
+        """Key of its purpose: declarations for the same purpose are equal."""
+        return self.problem, self._requested_options, self._specified, self.catalogs
 
     def quantities(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, unit, kind) of every numeric quantity, in the order of reports."""
@@ -818,7 +818,7 @@ class Declaration:
             for guard in derived.needs:
                 if guard not in self.limits or not self.limits[guard].guard:
                     raise DeclarationError(f"{self.problem}: {derived.name} needs {guard!r}, which is no guard")
-        for option in self._asked_options:
+        for option in self._requested_options:
             if option not in self.options and option not in {o.symbol for o in self.options.values()}:
                 known_options = ", ".join(self.options) or "none"
                 right = f"an option of {self.problem}: {known_options}"

@@ -90,7 +90,7 @@ def open_bytes(path: str | Path, field: str, right: str = "a file") -> io.Buffer
 
 
 def _opened(path: str | Path, field: str, right: str, most: int | None) -> int:
-    """Return the handle of a regular file that is not too large."""
+    """Handle of a regular file that is not too large."""
     shown = str(path)
     try:
         handle = os.open(path, os.O_RDONLY | NO_WAIT | AS_BYTES)
@@ -101,13 +101,13 @@ def _opened(path: str | Path, field: str, right: str, most: int | None) -> int:
             raise InputError(field, shown, f"{right} that can be read; this is a folder") from error
         reason = getattr(error, "strerror", None) or "not a possible file name"
         raise InputError(field, shown, f"{right} that can be read ({reason})") from error
-    found = os.fstat(handle)
-    if stat.S_ISREG(found.st_mode) and (most is None or found.st_size <= most):
+    status = os.fstat(handle)
+    if stat.S_ISREG(status.st_mode) and (most is None or status.st_size <= most):
         return handle
     os.close(handle)
-    if most is not None and stat.S_ISREG(found.st_mode):
+    if most is not None and stat.S_ISREG(status.st_mode):
         _too_large(field, path, right, most)
-    what = next((words for test, words in KINDS.items() if test(found.st_mode)), "something else")
+    what = next((words for test, words in KINDS.items() if test(status.st_mode)), "something else")
     raise InputError(field, shown, f"{right} that can be read; this is {what}")
 
 
@@ -122,7 +122,7 @@ def read_json(path: str | Path, field: str, right: str, most: int = INPUT_LIMITS
     raw = read_bytes(path, field, right, most)
     try:
         text = raw.decode("utf-8")
-        return json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_finite_whole)
+        return json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_finite_integer)
     except RecursionError as error:
         raise InputError(field, str(path), f"{right}; this one is nested too deeply") from error
     except ValueError as error:
@@ -138,7 +138,7 @@ def _finite(word: str) -> float:
     return number if math.isfinite(number) else _no_number(word)
 
 
-def _finite_whole(word: str) -> int:
+def _finite_integer(word: str) -> int:
     """Read a whole number, which may be used as a float."""
     _finite(word)
     return int(word)
@@ -186,8 +186,8 @@ def named_from(source: str, folder: Path) -> str:
     return source
 
 
-def found_from(source: str, folder: Path) -> str:
-    """Return the path of a file that files in a folder call so; a reference (``my_linings@3``) stays what it is."""
+def resolved_source(source: str, folder: Path) -> str:
+    """Path of a file that is named relative to a folder; a reference (``my_linings@3``) is returned unchanged."""
     if Path(source).is_absolute() or REFERENCE.fullmatch(source):
         return source
     return str((folder / source).resolve())

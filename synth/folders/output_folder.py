@@ -45,14 +45,14 @@ class ResultKind:
     """A result that a command writes into a folder.
 
     ``command`` is what writes it, ``marks`` the files that tell that there is one, ``owned`` patterns of all its
-    files: what an earlier result has of them, and a new one has not, goes with the earlier one. ``found`` are the keys
-    of a mark under which stands what was found; where all are empty, and it was stopped, there is no result yet.
+    files: what an earlier result has of them, and a new one has not, goes with the earlier one. ``content_keys`` are
+    the keys of a mark that hold solutions; where all are empty, and it was stopped, there is no result yet.
     """
 
     command: str
     marks: tuple[str, ...]
     owned: tuple[str, ...]
-    found: tuple[str, ...] = ()
+    content_keys: tuple[str, ...] = ()
 
 
 # What `report` makes of a front: it says what the front says, and goes with it.
@@ -105,17 +105,17 @@ KINDS = (FRONT, NEAR_EQUALS, RATING, PRICES, EXPLANATION, STUDY, BATCH, SIZE_RAN
 
 
 def holds(folder: Path, kind: ResultKind) -> bool:
-    """True if a result of this kind stands in a folder; what was stopped before anything was found is none."""
-    return any((folder / mark).exists() and not _found_nothing(folder / mark, kind) for mark in kind.marks)
+    """True if a folder holds a result of this kind; a search stopped before its first solution left none."""
+    return any((folder / mark).exists() and not _is_empty(folder / mark, kind) for mark in kind.marks)
 
 
-def _found_nothing(record: Path, kind: ResultKind) -> bool:
-    """True if a record says that a search was stopped before it had found anything."""
-    if not kind.found:
+def _is_empty(record: Path, kind: ResultKind) -> bool:
+    """True if the record is of a search that was stopped before its first solution."""
+    if not kind.content_keys:
         return False
     try:
         content = read_json(record, "result", "a result that clutchsynth has written")
-        return bool(content["interrupted"]) and not any(content[key] for key in kind.found)
+        return bool(content["interrupted"]) and not any(content[key] for key in kind.content_keys)
     except (ValueError, KeyError, TypeError):
         return False
 
@@ -130,8 +130,8 @@ def check_kind(folder: Path, kind: ResultKind) -> None:
     for other in KINDS:
         shared = sorted(set(other.owned) & set(kind.owned))
         if other is not kind and shared and holds(folder, other):
-            wanted = f"another folder: {', '.join(shared)} of clutchsynth {other.command} would be lost"
-            raise InputError("output", str(folder), wanted)
+            right = f"another folder: {', '.join(shared)} of clutchsynth {other.command} would be lost"
+            raise InputError("output", str(folder), right)
 
 
 def check_not_held(folder: Path, kind: ResultKind) -> None:
@@ -142,7 +142,7 @@ def check_not_held(folder: Path, kind: ResultKind) -> None:
     InputError
     """
     if not OPEN_FILES_CAN_GO and folder.is_dir():
-        _refuse_held(folder, _left_behind(folder, kind), "it would be replaced")
+        _refuse_held(folder, _earlier_files(folder, kind), "it would be replaced")
 
 
 def save_result(
@@ -188,7 +188,7 @@ def save_result(
         with replaced(target) as new:
             for name, text in texts.items():
                 new.write(name, text)
-            new.drop([*_left_behind(target, kind), *drop])
+            new.drop([*_earlier_files(target, kind), *drop])
     return target
 
 
@@ -233,8 +233,8 @@ def place_for_stopped(folder: Path, kind: ResultKind) -> Path:
     return place
 
 
-def _left_behind(folder: Path, kind: ResultKind) -> list[str]:
-    """Return the files of an earlier result of a kind, those of the families of a comparison among them."""
+def _earlier_files(folder: Path, kind: ResultKind) -> list[str]:
+    """Files of an earlier result of a kind, those of the families of a comparison among them."""
     names = [path.name for pattern in kind.owned for path in folder.glob(pattern)]
     if kind is FRONT:
         for family in _families(folder / "comparison.json"):
@@ -243,12 +243,12 @@ def _left_behind(folder: Path, kind: ResultKind) -> list[str]:
 
 
 def _families(path: Path) -> list[str]:
-    """Return the folders that an earlier comparison has made; none where its record cannot be read."""
+    """Folders that an earlier comparison has made; none where its record cannot be read."""
     try:
-        told = [entry["folder"] for entry in read_json(path, "comparison", "a comparison")["families"]]
+        folders = [entry["folder"] for entry in read_json(path, "comparison", "a comparison")["families"]]
     except (ValueError, KeyError, TypeError):
         return []
-    return [name for name in told if isinstance(name, str) and _is_inside(name) and "/" not in name]
+    return [name for name in folders if isinstance(name, str) and _is_inside(name) and "/" not in name]
 
 
 # ---- files that change together -------------------------------------------------------------------------------------
@@ -312,7 +312,7 @@ def replaced(folder: Path) -> Iterator[Replacement]:
         The folder cannot be written; then nothing has changed.
     """
     # What a stopped run has is saved although its user presses Ctrl-C again.
-    with held_back(), _told_of(folder), _present(folder), _moving(folder):
+    with held_back(), _as_input_error(folder), _present(folder), _moving(folder):
         _move(folder)
         new = Replacement(folder / NEW)
         shutil.rmtree(new.staging, ignore_errors=True)  # of a process that was killed: this one holds the lock
@@ -337,7 +337,7 @@ def settle(folder: Path) -> None:
         The folder cannot be written.
     """
     if (folder / READY).is_dir():
-        with held_back(), _told_of(folder), _moving(folder):
+        with held_back(), _as_input_error(folder), _moving(folder):
             _move(folder)
 
 
@@ -359,12 +359,12 @@ def _complete(folder: Path, new: Replacement) -> None:
 
 
 def _move(folder: Path) -> None:
-    """Move a complete result to its place; what has been moved before is left."""
+    """Move a complete result to its place; files moved before an interruption are skipped."""
     ready = folder / READY
     try:
-        told = json.loads((ready / MANIFEST).read_text(encoding="utf-8"))
-        files = [str(name) for name in told["files"]]
-        dropped = [str(name) for name in told["dropped"]]
+        manifest = json.loads((ready / MANIFEST).read_text(encoding="utf-8"))
+        files = [str(name) for name in manifest["files"]]
+        dropped = [str(name) for name in manifest["dropped"]]
     except FileNotFoundError:
         shutil.rmtree(ready, ignore_errors=True)  # all was moved: the manifest goes last
         return
@@ -403,7 +403,7 @@ def _is_inside(name: str) -> bool:
 
 
 @contextmanager
-def _told_of(folder: Path) -> Iterator[None]:
+def _as_input_error(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
@@ -440,11 +440,11 @@ def claimed(folder: Path, job: str = "") -> Iterator[None]:
             _claims[key] -= 1
         return
     with _present(folder):
-        with _told_of(folder):
+        with _as_input_error(folder):
             handle = _lock(folder / LOCK, job, 0.0)
         if handle is None:
-            wanted = f"a folder that nobody writes into at the moment{_who(folder / LOCK)}"
-            raise InputError("output", str(folder), wanted)
+            right = f"a folder that nobody writes into at the moment{_who(folder / LOCK)}"
+            raise InputError("output", str(folder), right)
         _claims[key] = 1
         try:
             yield
@@ -459,7 +459,7 @@ def _present(folder: Path) -> Iterator[None]:
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     if folder.exists() and not folder.is_dir():
         raise InputError("output", str(folder), "a folder; this is a file")
-    with _told_of(folder):
+    with _as_input_error(folder):
         folder.mkdir(parents=True, exist_ok=True)
     try:
         yield
@@ -482,7 +482,7 @@ def _moving(folder: Path) -> Iterator[None]:
 
 
 def _lock(path: Path, job: str, patience: float) -> int | None:
-    """Return the handle of a locked file; None where somebody else has it.
+    """Handle of a locked file; None where another process holds it.
 
     The lock goes with its process, however that ends; the file alone means nothing.
     """
@@ -494,19 +494,19 @@ def _lock(path: Path, job: str, patience: float) -> int | None:
             _take_away(path)
             handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
         try:
-            taken = lock(handle, shared=False)
-            if taken:
+            locked = lock(handle, shared=False)
+            if locked:
                 _sign(handle, job)
             if job:
-                taken = lock(handle, shared=True)
-            # Whoever let go of the file has taken it away, or another job came between.
-            if taken and is_at(handle, path) and (not job or _signed(handle) == job):
+                locked = lock(handle, shared=True)
+            # The former holder removed the file, or another job came between.
+            if locked and is_at(handle, path) and (not job or _signed(handle) == job):
                 return handle
         except BaseException:
             os.close(handle)
             raise
         os.close(handle)
-        if not taken or job:
+        if not locked or job:
             if time.monotonic() - begin >= (JOIN_PATIENCE if job else patience):
                 return None
             time.sleep(PAUSE)

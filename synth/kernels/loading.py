@@ -14,7 +14,7 @@ VARIABLE = "CLUTCHSYNTH_NATIVE"
 LEVELS = (4, 3, 2)  # of x86-64 processors, the best first; other processors have the last one alone
 
 
-def native_wanted() -> bool:
+def native_enabled() -> bool:
     """True unless the environment switches kernels off."""
     return os.environ.get(VARIABLE) != "0"
 
@@ -26,14 +26,14 @@ def native_code() -> str:
 
 def kernel(name: str) -> ctypes.CDLL | None:
     """Kernel of a name, in the best variant that this processor can run; None where there is none."""
-    return best_variant(name) if native_wanted() else None
+    return best_variant(name) if native_enabled() else None
 
 
 @cache
 def best_variant(name: str) -> ctypes.CDLL | None:
-    """Kernel of a name, whether it is wanted or not."""
+    """Kernel of a name, also where kernels are switched off."""
     level = processor_level()
-    return next((found for x in LEVELS if x <= level and (found := variant(name, x)) is not None), None)
+    return next((loaded for x in LEVELS if x <= level and (loaded := variant(name, x)) is not None), None)
 
 
 @cache
@@ -45,8 +45,8 @@ def variant(name: str, level: int) -> ctypes.CDLL | None:
 @cache
 def processor_level() -> int:
     """Level of this processor, of those in :data:`LEVELS`; 0 where no kernel was built."""
-    found = _loaded("_processor")
-    return 0 if found is None else int(found.processor_level())
+    library = _loaded("_processor")
+    return 0 if library is None else int(library.processor_level())
 
 
 def _loaded(module: str) -> ctypes.CDLL | None:

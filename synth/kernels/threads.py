@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 class SideBySide(Generic[T]):
-    """Parts of some work that go on beside whatever the caller does, until it asks for what comes of them.
+    """Parts of some work that run concurrently with the caller until it requests their results.
 
     Threads take the next part when they are free: a core that is busy with something else holds nobody up. They are
     kept, as starting one takes as long as some parts do. Nothing of it is under way any more when it has ended, however
@@ -24,18 +24,18 @@ class SideBySide(Generic[T]):
     work : sequence of callable
         The parts.
     workers : int
-        Threads at most; the caller's is one of them, once it asks.
+        Threads at most; the caller's is one of them, once it requests the results.
     """
 
     def __init__(self, work: Sequence[Callable[[], T]], workers: int) -> None:
-        self._waiting, self._found, self._count = iter(enumerate(work)), dict[int, T](), len(work)
+        self._waiting, self._results, self._count = iter(enumerate(work)), dict[int, T](), len(work)
         # Threads that are kept know nothing of whoever was the first to need them, as a time limit.
-        self._beside = [
+        self._futures = [
             _threads(workers - 1).submit(Context().run, self._run) for _ in range(min(workers, len(work)) - 1)
         ]
 
     def results(self) -> list[T]:
-        """Do what nobody has begun yet, and return what comes of all parts, in their order.
+        """Results of all parts, in their order; runs those that no thread has begun.
 
         Raises
         ------
@@ -46,22 +46,22 @@ class SideBySide(Generic[T]):
             self._run()
         finally:
             self.stop()
-        for other in self._beside:
-            if not other.cancelled():
-                other.result()
-        return [self._found[k] for k in range(self._count)]
+        for future in self._futures:
+            if not future.cancelled():
+                future.result()
+        return [self._results[k] for k in range(self._count)]
 
     def stop(self) -> None:
         """Begin nothing more, and wait for what is under way, whatever becomes of it."""
         deque(self._waiting, maxlen=0)
-        for other in self._beside:
-            if not other.cancel():
-                other.exception()
+        for future in self._futures:
+            if not future.cancel():
+                future.exception()
 
     def _run(self) -> None:
         try:
             for k, part in self._waiting:
-                self._found[k] = part()
+                self._results[k] = part()
         finally:
             deque(self._waiting, maxlen=0)  # after an error nothing more is begun
 

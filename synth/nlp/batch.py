@@ -58,10 +58,10 @@ class Tasks:
     moved: np.ndarray | None = None
 
     def take(self, rows: np.ndarray) -> Tasks:
-        """Return some of the problems, by positions."""
+        """Problems at the given positions."""
         moved = None if self.moved is None else self.moved[rows]
-        own = self.weights[rows], self.slopes[rows], self.cutoffs[rows]
-        return Tasks(*own, self.goal_scales, self.t_weight, self.elastic, moved)
+        arrays = self.weights[rows], self.slopes[rows], self.cutoffs[rows]
+        return Tasks(*arrays, self.goal_scales, self.t_weight, self.elastic, moved)
 
 
 @dataclass(frozen=True)
@@ -91,11 +91,11 @@ class Solutions:
     converged: np.ndarray
 
     def take(self, rows: np.ndarray) -> Solutions:
-        """Return some of the solutions, by mask or positions."""
+        """Solutions of a mask or of positions."""
         return Solutions(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
 
     def put(self, rows: np.ndarray, other: Solutions) -> None:
-        """Put others into the places of some of the solutions."""
+        """Replace the solutions at the given positions."""
         for field in fields(self):
             getattr(self, field.name)[rows] = getattr(other, field.name)
 
@@ -137,10 +137,10 @@ class BatchNlp:
         self._sides = self._compile_sides(program)
 
     def _compile_sides(self, program: Program) -> Any:
-        """Return a function of both sides and the terms of the rows that enter by a scaled difference."""
+        """Function of both sides and the terms of the rows that enter by a scaled difference."""
         plain = [c for c, log in zip(self.rows.constraints, self.rows.log_constraints, strict=True) if not log]
-        wanted = [k for c in plain for k in c.nodes]
-        return program.compile(wanted) if wanted else None
+        sides = [k for c in plain for k in c.nodes]
+        return program.compile(sides) if sides else None
 
     def solve(
         self,
@@ -242,10 +242,10 @@ class BatchNlp:
                 again = np.flatnonzero((status != CONVERGED) & (status != INFEASIBLE) & missed)
                 if not len(again):
                     break
-                some = problems.moved(again, share)
-                ends = self.solver.solve(some)
+                retried = problems.moved(again, share)
+                ends = self.solver.solve(retried)
                 status[again] = ends.status
-                other = self._finished(some, ends, scales[:, again], low[again], high[again], worth[again])
+                other = self._finished(retried, ends, scales[:, again], low[again], high[again], worth[again])
                 _keep_better(result, other, again)
         return result
 
@@ -264,9 +264,9 @@ class BatchNlp:
             scales = self._scales(low, high)
             sizes = self._inverse_sizes(tasks, [*np.clip(start, low, high).T, *data], bounds)
             stored = self._stored(self._fixed_inputs(data, bounds, sizes, scales))
-            found = self._first_order(list(self._to_search(points, scales)), [], stored)
-            values = np.empty((len(found), len(points)))
-            for k, value in enumerate(found):
+            first_order = self._first_order(list(self._to_search(points, scales)), [], stored)
+            values = np.empty((len(first_order), len(points)))
+            for k, value in enumerate(first_order):
                 values[k] = value  # many are the same at all points
         rows = self.functions.n_rows
         return values[:rows], values[rows:]
@@ -339,14 +339,14 @@ class BatchNlp:
         logs = self.log_variables[:, None]
         variables = np.where(logs, np.exp(np.where(logs, ends.y, 0.0)), ends.y * scales)
         t = self._least_t(problems, ends)
-        left = ends.rows - problems.slopes * t - problems.rights
-        left[:constraints] = np.where(self.equal[:, None], np.abs(left[:constraints]), left[:constraints])
-        left = np.where(problems.counts, np.where(np.isnan(left), np.inf, left), 0.0)
+        excess = ends.rows - problems.slopes * t - problems.rights
+        excess[:constraints] = np.where(self.equal[:, None], np.abs(excess[:constraints]), excess[:constraints])
+        excess = np.where(problems.counts, np.where(np.isnan(excess), np.inf, excess), 0.0)
         return Solutions(
             variables=np.clip(variables.T, low, high),
             phi=ends.rows[constraints:].T,
             t=t,
-            violation=left.max(axis=0, initial=0.0),
+            violation=excess.max(axis=0, initial=0.0),
             constraint_multipliers=(ends.multipliers[:constraints] / worth).T,
             goal_multipliers=(ends.multipliers[constraints:] / worth).T,
             converged=ends.status == CONVERGED,

@@ -206,17 +206,17 @@ class DerivativeSweeps:
         for face in reversed(self.rules):
             if face not in weight:
                 continue
-            rule, own = self.rules[face], weight[face]
+            rule, adjoint = self.rules[face], weight[face]
             for parent, derivative in rule.parents:
-                more(parent, g.times(own, derivative))
+                more(parent, g.times(adjoint, derivative))
             if rule.condition is not None:
                 zero = g.constant(0.0)
-                for chosen, pair in zip(rule.choices, ((own, zero), (zero, own)), strict=True):
+                for chosen, pair in zip(rule.choices, ((adjoint, zero), (zero, adjoint)), strict=True):
                     if chosen is not None:
                         more(chosen, g.choice(rule.condition, *pair))
             for coefficient, first, second in rule.curvature:
                 key = (tuple(sorted(first.items())), None if second is None else tuple(sorted(second.items())))
-                terms.setdefault(key, ([], first, second))[0].append(g.times(own, coefficient))
+                terms.setdefault(key, ([], first, second))[0].append(g.times(adjoint, coefficient))
         result: dict[tuple[int, int], int] = {}
         for coefficients, first, second in terms.values():
             self._add_outer(result, g.total(coefficients), first, second)
@@ -227,12 +227,12 @@ class DerivativeSweeps:
     ) -> None:
         g = self.graph
         scaled = {i: g.times(coefficient, u) for i, u in first.items()}
-        for i, left in scaled.items():
-            for j, right in (first if second is None else second).items():
+        for i, slope in scaled.items():
+            for j, other_slope in (first if second is None else second).items():
                 if second is None and j > i:
                     continue
                 place = (max(i, j), min(i, j))
-                entry = g.times(left, right)
+                entry = g.times(slope, other_slope)
                 if second is not None and i == j:
                     entry = g.times(g.constant(2.0), entry)
                 result[place] = g.add(result.get(place, g.constant(0.0)), entry)
@@ -335,7 +335,7 @@ class DerivativeSweeps:
         return rule
 
     def _terms(self, k: int) -> list[tuple[int, int]]:
-        """Return the terms of a sum of sums with their signs."""
+        """Terms of a sum of sums with their signs."""
         terms, stack = list[tuple[int, int]](), [(k, 1)]
         while stack:
             place, sign = stack.pop()
@@ -348,7 +348,7 @@ class DerivativeSweeps:
         return terms
 
     def _log_of_sum(self, k: int) -> Rule | None:
-        """Return the rule of the logarithm of a sum by those of its terms; None where one of them may be zero."""
+        """Rule of the logarithm of a sum by those of its terms; None where one of them may be zero."""
         g = self.graph
         every = self._terms(k)
         terms = [(a, s) for a, s in every if self._moves(a)]
@@ -363,8 +363,8 @@ class DerivativeSweeps:
         shares, gradients = [s for _, s in rule.parents], [self._gradient(face) for face, _ in rule.parents]
         if len(terms) == 1:
             # The variance of the gradients of all terms, weighted by their shares; two terms have but one difference.
-            rest = g.add(g.constant(1.0), g.negative(shares[0]))
-            rule.curvature.append((g.times(shares[0], rest), gradients[0], None))
+            complement = g.add(g.constant(1.0), g.negative(shares[0]))
+            rule.curvature.append((g.times(shares[0], complement), gradients[0], None))
         elif len(every) == 2:
             rule.curvature.append((g.times(*shares), self._difference(*gradients), None))
         else:
@@ -388,8 +388,8 @@ class DerivativeSweeps:
         if node.op == ca.OP_LOG:
             return Rule([((LOG, node.args[0]), one)])
         if node.op in SUMS:
-            signs = (one, g.constant(-1.0) if node.op == ca.OP_SUB else one)
-            return Rule([((VALUE, a), s) for a, s in zip(node.args, signs, strict=True) if self._moves(a)])
+            factors = (one, g.constant(-1.0) if node.op == ca.OP_SUB else one)
+            return Rule([((VALUE, a), s) for a, s in zip(node.args, factors, strict=True) if self._moves(a)])
         if node.op in (ca.OP_NEG, ca.OP_TWICE):
             return Rule([((VALUE, node.args[0]), g.constant(-1.0 if node.op == ca.OP_NEG else 2.0))])
         if node.op == ca.OP_EXP:
@@ -441,16 +441,16 @@ class DerivativeSweeps:
         return Rule(condition=condition, choices=(faces[0], faces[1] if len(faces) > 1 else None))
 
     def _any(self, node: Node, moving: Sequence[int]) -> Rule:
-        """Return the rule of an instruction that has no shorter one, by its derivatives."""
+        """Rule of an instruction that has no shorter one, by its derivatives."""
         g = self.graph
         symbols = [ca.SX.sym(f"a{k}") for k in range(len(node.args))]
         if len(node.args) == 2:
             result = ca.SX.binary(node.op, *symbols)
         else:
             result = ca.SX.unary(node.op, symbols[0])
-        wanted = [k for k, a in enumerate(node.args) if a in moving]
-        firsts = [ca.jacobian(result, symbols[k]) for k in wanted]
-        seconds = {(i, j): ca.jacobian(firsts[i], symbols[wanted[j]]) for i in range(len(wanted)) for j in range(i + 1)}
+        active = [k for k, a in enumerate(node.args) if a in moving]
+        firsts = [ca.jacobian(result, symbols[k]) for k in active]
+        seconds = {(i, j): ca.jacobian(firsts[i], symbols[active[j]]) for i in range(len(active)) for j in range(i + 1)}
         program = Program(symbols, [*firsts, *seconds.values()])
         numbers: dict[int, int] = {}
         for k in program.needed(program.outputs):
@@ -460,9 +460,9 @@ class DerivativeSweeps:
             else:
                 numbers[k] = g.node(local.op, *(numbers[a] for a in local.args), constant=local.constant)
         places = [numbers[k] for k in program.outputs]
-        rule = Rule([((VALUE, node.args[k]), place) for k, place in zip(wanted, places, strict=False)])
-        for (i, j), place in zip(seconds, places[len(wanted) :], strict=True):
-            first, second = (self._gradient((VALUE, node.args[wanted[m]])) for m in (i, j))
+        rule = Rule([((VALUE, node.args[k]), place) for k, place in zip(active, places, strict=False)])
+        for (i, j), place in zip(seconds, places[len(active) :], strict=True):
+            first, second = (self._gradient((VALUE, node.args[active[m]])) for m in (i, j))
             if g.number(place) != 0:
                 rule.curvature.append((place, first, None if i == j else second))
         return rule
@@ -488,10 +488,10 @@ def with_shared_inverses(graph: Graph, outputs: Sequence[int]) -> tuple[list[Nod
     return result.nodes, [place[k] for k in outputs]
 
 
-def reached(nodes: Sequence[Node], wanted: Iterable[int]) -> list[int]:
-    """Return the nodes needed for some of them, in order of evaluation."""
+def reached(nodes: Sequence[Node], targets: Iterable[int]) -> list[int]:
+    """Nodes needed for the targets, in order of evaluation."""
     marked = np.zeros(len(nodes), dtype=bool)
-    marked[list(wanted)] = True
+    marked[list(targets)] = True
     for k in range(len(nodes) - 1, -1, -1):
         if marked[k]:
             marked[list(nodes[k].args)] = True

@@ -174,13 +174,13 @@ def solve_shifted(
     matrix: Sequence[Sequence[np.ndarray]],
     right: np.ndarray,
     shift: np.ndarray,
-    wanted: np.ndarray,
+    active: np.ndarray,
     method: InteriorPointSettings,
 ) -> np.ndarray:
     """Solve symmetric systems (lower triangles), with the diagonal shifted until they are positive definite."""
     n = len(right)
     factor, pivots, good = factorised(matrix, shift, method.least_pivot)
-    good |= ~wanted
+    good |= ~active
     while not good.all():
         again = np.flatnonzero(~good)
         grown = np.where(shift[again] > 0, method.shift_growth * shift[again], method.first_shift)

@@ -218,9 +218,9 @@ class InteriorPointBatch:
         merit = self._merit(y, t, form, values, missing)
         enough = self.merit + method.armijo * self.step * self.slope + method.rounding * (1 + np.abs(self.merit))
         fresh = missing < self.missing
-        taken = fresh | ((missing == self.missing) & (merit <= enough))
+        accepted = fresh | ((missing == self.missing) & (merit <= enough))
         self._set(
-            taken,
+            accepted,
             y=y,
             t=t,
             form=form,
@@ -233,14 +233,14 @@ class InteriorPointBatch:
         )
         self.evaluations = self.evaluations + 1
         self.late = self.late + (self.barrier <= method.late_barrier)
-        self.rejected = np.where(taken, 0, self.rejected + 1)
+        self.rejected = np.where(accepted, 0, self.rejected + 1)
         if fresh.any():
             self._begin(fresh)
         slopes = np.where(self._idle(absent, missing) | self._first(missing), 0.0, self.slopes)
-        again = self._judge(taken, jacobian, slopes)
+        again = self._judge(accepted, jacobian, slopes)
         bent = (self.rejected == 1) & (missing == self.missing) & np.isfinite(merit)
-        self._direct(taken, bent, jacobian, hessian, slopes, values)
-        self._restart(again | self._stuck(~taken))
+        self._direct(accepted, bent, jacobian, hessian, slopes, values)
+        self._restart(again | self._stuck(~accepted))
 
     def _set(self, where: np.ndarray, **values: np.ndarray) -> None:
         every = bool(where.all())
@@ -271,23 +271,23 @@ class InteriorPointBatch:
         return first
 
     def _absent(self, form: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rows that do not exist at a point, and their number; what must not count there is cleared."""
+        """Relevant rows that do not exist at a point, and their number; their form and derivatives are cleared."""
         layout = self.layout
-        wanted = self.counts.copy()
-        wanted[layout.constraints :] |= self.weights != 0
+        relevant = self.counts.copy()
+        relevant[layout.constraints :] |= self.weights != 0
         absent = ~(np.abs(form) < self.method.largest_row)
         strange = ~np.isfinite(jacobian)
         if strange.any():
             np.logical_or.at(absent, layout.row, strange)
-        absent &= wanted
+        absent &= relevant
         missing = absent.sum(axis=0)
         if layout.has_guard:
             guard = layout.guard[:, None]
             beyond = np.any(self.counts & guard & ~(form <= 0), axis=0)
-            absent |= beyond & wanted & ~guard
+            absent |= beyond & relevant & ~guard
             missing = absent.sum(axis=0) + beyond
         form[absent] = np.nan
-        silent = ~wanted | self._idle(absent, missing)
+        silent = ~relevant | self._idle(absent, missing)
         jacobian[silent[layout.row] | ~self.free[layout.column]] = 0.0
         return absent, missing
 
@@ -312,7 +312,7 @@ class InteriorPointBatch:
     def _prices(self) -> np.ndarray:
         return np.where(self.layout.equal, 2 * self.penalty, self.penalty) if self.layout.has_equal else self.penalty
 
-    def _room(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _bound_distances(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.where(self.free, y - self.low, 1.0), np.where(self.free, self.high - y, 1.0)
 
     def _merit(
@@ -325,7 +325,7 @@ class InteriorPointBatch:
         rows = 0.5 * prices * (values + length) - self.barrier * np.log(least + length)
         if self.layout.has_equal:
             rows -= np.where(self.layout.equal, self.penalty * values, 0.0)
-        below, above = self._room(y)
+        below, above = self._bound_distances(y)
         goals = form[self.layout.constraints :]
         objective = np.where(self.weights != 0, self.weights * goals, 0.0).sum(axis=0) + self.t_weight * t
         barrier = self.barrier * np.log(below * above).sum(axis=0)
@@ -337,7 +337,7 @@ class InteriorPointBatch:
         method = self.method
         soft = self.counts & (self.slopes > 0) & ~self.layout.equal & ~self.absent
         needed = np.where(soft, (self.form - self.rights) / np.where(soft, self.slopes, 1.0), -np.inf)
-        first = needed.max(axis=0, initial=-np.inf) + method.first_room
+        first = needed.max(axis=0, initial=-np.inf) + method.first_slack
         held = ~self.t_free | self._first(self.missing) | ~np.isfinite(first)
         self._set(fresh, t=np.where(held, 0.0, first))
         self._set(
@@ -346,31 +346,31 @@ class InteriorPointBatch:
             barrier=np.full(len(self), method.first_barrier),
             penalty=np.where(self._first(self.missing), method.first_penalty, self.next_penalty),
         )
-        below, above = self._room(self.y)
-        _, _, own = split(self.values, self.barrier, self._prices())
-        self._set(fresh, multipliers=own, low_dual=self.barrier / below, high_dual=self.barrier / above)
+        below, above = self._bound_distances(self.y)
+        _, _, implied = split(self.values, self.barrier, self._prices())
+        self._set(fresh, multipliers=implied, low_dual=self.barrier / below, high_dual=self.barrier / above)
 
-    def _bring_in(self, own: np.ndarray, below: np.ndarray, above: np.ndarray) -> None:
+    def _bring_in(self, implied: np.ndarray, below: np.ndarray, above: np.ndarray) -> None:
         """Keep multipliers within reach of those that the point itself implies."""
         method = self.method
         prices = self._prices()
-        top = np.minimum(own * method.multiplier_spread, prices - (prices - own) / method.multiplier_spread)
-        self.multipliers = np.clip(self.multipliers, own / method.multiplier_spread, top)
-        for name, room in (("low_dual", below), ("high_dual", above)):
-            own = self.barrier / room
-            kept = np.clip(getattr(self, name), own / method.multiplier_spread, own * method.multiplier_spread)
+        top = np.minimum(implied * method.multiplier_spread, prices - (prices - implied) / method.multiplier_spread)
+        self.multipliers = np.clip(self.multipliers, implied / method.multiplier_spread, top)
+        for name, distance in (("low_dual", below), ("high_dual", above)):
+            implied = self.barrier / distance
+            kept = np.clip(getattr(self, name), implied / method.multiplier_spread, implied * method.multiplier_spread)
             setattr(self, name, kept)
 
-    def _judge(self, taken: np.ndarray, jacobian: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    def _judge(self, accepted: np.ndarray, jacobian: np.ndarray, slopes: np.ndarray) -> np.ndarray:
         """End lanes whose point is good enough, or will never be; else set the barrier.
 
         Returns which lanes must start again where they are, because what they look for has changed.
         """
         layout, method = self.layout, self.method
         first = self._first(self.missing)
-        below, above = self._room(self.y)
-        slack, excess, own = split(self.values, self.barrier, self._prices())
-        self._bring_in(own, below, above)
+        below, above = self._bound_distances(self.y)
+        slack, excess, implied = split(self.values, self.barrier, self._prices())
+        self._bring_in(implied, below, above)
         signed = self._signed(self.multipliers)
         weights = signed.copy()
         weights[layout.constraints :] += self._objective()
@@ -398,16 +398,16 @@ class InteriorPointBatch:
             & (self.barrier < method.hopeless_barrier)
             & (over > method.hopeless_ratio * self.barrier)
         )
-        self._set(taken & good & ~first, status=np.full(len(self), CONVERGED))
-        self._set(taken & hopeless, status=np.full(len(self), INFEASIBLE))
+        self._set(accepted & good & ~first, status=np.full(len(self), CONVERGED))
+        self._set(accepted & hopeless, status=np.full(len(self), INFEASIBLE))
         # Along a flat and bent valley the last steps are tiny: what they could still gain is not worth them.
         tired = (self.evaluations >= method.max_evaluations) | (self.late >= method.max_late)
         self._set((self.status == 0) & tired, status=np.full(len(self), STOPPED))
         # Where rows press against the penalty the objective is put aside until they are met.
         pressed = np.any(self.multipliers > method.pressed_share * self._prices(), axis=0)
-        leaves = taken & ~first & pressed & (self.barrier <= method.penalty_barrier)
+        leaves = accepted & ~first & pressed & (self.barrier <= method.penalty_barrier)
         leaves &= over > method.unmet_ratio * self.barrier
-        comes = taken & self.restoring & (over <= method.met)
+        comes = accepted & self.restoring & (over <= method.met)
         again: np.ndarray = (leaves | comes) & (self.status == 0)
         if again.any():
             self._set(leaves, next_penalty=np.minimum(method.penalty_factor * self.penalty, method.last_penalty))
@@ -416,13 +416,13 @@ class InteriorPointBatch:
         for _ in range(method.barrier_cuts):
             error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
             smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
-            lower = taken & ~again & (error < method.barrier_error * self.barrier)
+            lower = accepted & ~again & (error < method.barrier_error * self.barrier)
             self._set(lower, barrier=np.maximum(method.least_barrier, smaller))
         return again
 
     def _direct(
         self,
-        taken: np.ndarray,
+        accepted: np.ndarray,
         bent: np.ndarray,
         jacobian: np.ndarray,
         hessian: Sequence[np.ndarray],
@@ -435,15 +435,15 @@ class InteriorPointBatch:
         forecast: rows that bend would otherwise keep steps small.
         """
         layout, n = self.layout, self.layout.n
-        below, above = self._room(self.y)
+        below, above = self._bound_distances(self.y)
         prices = self._prices()
-        slack, excess, own = split(self.values, self.barrier, prices)
-        self._bring_in(own, below, above)
-        rest = prices - self.multipliers
-        both = self.multipliers * rest
-        stiffness = both / (slack * rest + excess * self.multipliers)
+        slack, excess, implied = split(self.values, self.barrier, prices)
+        self._bring_in(implied, below, above)
+        excess_duals = prices - self.multipliers
+        both = self.multipliers * excess_duals
+        stiffness = both / (slack * excess_duals + excess * self.multipliers)
         # Gradient of the merit function, and its curvature with the multipliers at hand.
-        weights = self._signed(own)
+        weights = self._signed(implied)
         along_t = self.t_weight - (slopes * weights).sum(axis=0)
         weights = weights.copy()
         weights[layout.constraints :] += self._objective()
@@ -461,23 +461,23 @@ class InteriorPointBatch:
         for a in range(n):
             matrix[a][a] = matrix[a][a] + self.low_dual[a] / below[a] + self.high_dual[a] / above[a]
         matrix[n][n] = matrix[n][n] + held
-        direction = -solve_shifted(matrix, right, shift, taken | bent, self.method)
+        direction = -solve_shifted(matrix, right, shift, accepted | bent, self.method)
         moved = layout.times(jacobian, slopes, direction)
-        change = own - self.multipliers + stiffness * moved
+        change = implied - self.multipliers + stiffness * moved
         low_change = self.barrier / below - self.low_dual * (1 + direction[:n] / below)
         high_change = self.barrier / above - self.high_dual * (1 - direction[:n] / above)
         # The largest share of the step that keeps everything positive; each row is a rate of decrease.
         nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
         primal = np.concatenate(
             [
-                1 + (change - own) * rest / both,
+                1 + (change - implied) * excess_duals / both,
                 -direction[:n] / below,
                 direction[:n] / above,
             ]
         )
         dual = np.concatenate(
             [
-                -change * rest / both,
+                -change * excess_duals / both,
                 change * self.multipliers / both,
                 -low_change / self.low_dual,
                 -high_change / self.high_dual,
@@ -487,7 +487,7 @@ class InteriorPointBatch:
         dual_step = nearly / np.maximum(nearly, dual.max(axis=0, initial=0.0))
         merit = self._merit(self.y, self.t, self.form, self.values, self.missing)
         self._set(
-            taken,
+            accepted,
             direction=direction,
             change=change,
             low_change=low_change,
@@ -497,9 +497,9 @@ class InteriorPointBatch:
             dual_step=dual_step,
         )
         corrected = self.uncorrected + direction / np.where(self.step > 0, self.step, 1.0)
-        self._set(~taken, direction=np.where(bent, corrected, self.uncorrected))
-        self._set(taken, uncorrected=direction, forecast=self.values + step * moved)
-        self.step = np.where(taken, step, np.where(bent, self.step, self.method.backtracking * self.step))
+        self._set(~accepted, direction=np.where(bent, corrected, self.uncorrected))
+        self._set(accepted, uncorrected=direction, forecast=self.values + step * moved)
+        self.step = np.where(accepted, step, np.where(bent, self.step, self.method.backtracking * self.step))
 
     def _add_curvature(self, matrix: list[list[np.ndarray]], hessian: Sequence[np.ndarray]) -> np.ndarray:
         """Add the second derivatives of the rows; return a first shift where there are none to be had."""

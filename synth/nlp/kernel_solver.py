@@ -131,7 +131,7 @@ class KernelSolver:
             for name in ("start", "low", "high", "slopes", "rights", "weights", "t_weight")
         }
         counts = np.ascontiguousarray(problems.counts, dtype=np.uint8)
-        given = _Problems(
+        problem_record = _Problems(
             count=count,
             stored=columns.ctypes.data_as(ctypes.POINTER(DOUBLES)),
             stored_steps=steps.ctypes.data_as(LONGS),
@@ -141,7 +141,7 @@ class KernelSolver:
             **{name: array.ctypes.data_as(DOUBLES) for name, array in inputs.items()},
             **{name: getattr(ends, name).ctypes.data_as(DOUBLES) for name in ("y", "t", "rows", "multipliers")},
         )
-        self._solve(ctypes.byref(given), ctypes.byref(self._shape))
+        self._solve(ctypes.byref(problem_record), ctypes.byref(self._shape))
         return ends
 
 

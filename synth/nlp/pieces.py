@@ -132,8 +132,8 @@ class Pieces:
                 first, second = second, first
             less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
             conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
-        wanted = rows.nodes
-        outputs = [*(values[k] for k in wanted), *conditions, *(values[k] for k in terms)]
+        sides = rows.nodes
+        outputs = [*(values[k] for k in sides), *conditions, *(values[k] for k in terms)]
         made = Program([*inputs, *ways, *inverse_sizes], outputs)
         place, sized = iter(made.outputs), iter(made.outputs[len(outputs) - len(terms) :])
         constraints = [
@@ -167,10 +167,10 @@ class Pieces:
             As a share of the size; not negative.
         size : array (points, decisions)
         """
-        found = self._evaluate(inputs)
+        evaluated = self._evaluate(inputs)
         sizes = [np.size(x) for x in inputs]
         count = max(sizes) if min(sizes) else 0  # no point at all, beside numbers that are the same for all points
-        values = iter(np.broadcast_to(np.asarray(x, dtype=float), count) for x in found)
+        values = iter(np.broadcast_to(np.asarray(x, dtype=float), count) for x in evaluated)
         ways = np.empty((count, len(self)), dtype=bool)
         apart, size = np.empty(ways.shape), np.zeros(ways.shape)
         for position, (_, b) in enumerate(self._sides):
@@ -190,7 +190,7 @@ class Pieces:
         return ways, np.nan_to_num(apart / size, nan=np.inf), size
 
     def live(self, ways: np.ndarray) -> np.ndarray:
-        """Decisions that matter where they all go these ways: a branch that is not taken is not looked at."""
+        """Relevant decisions where they all go these ways: those outside branches that are not selected."""
         program, count = self.program, len(ways)
         number = {k: position for position, k in enumerate(self.decisions)}
         nothing, everything = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
@@ -213,10 +213,10 @@ class Pieces:
             return truths[k]
 
         for k in reversed(self._needed):
-            own, node = read.get(k, nothing), program.nodes[k]
-            shares = [own] * len(node.args)
+            live_at, node = read.get(k, nothing), program.nodes[k]
+            shares = [live_at] * len(node.args)
             if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) and (chosen := truth(node.args[0])) is not None:
-                shares = [own, own & chosen, own & ~chosen][: len(node.args)]
+                shares = [live_at, live_at & chosen, live_at & ~chosen][: len(node.args)]
             for a, share in zip(node.args, shares, strict=True):
                 known = read.get(a)
                 if known is None or share is everything:
@@ -237,7 +237,7 @@ def _piece(op: int, way: Any, args: Sequence[Any]) -> Any:
 
 @dataclass
 class _State:
-    """Where some problems stand: the best answer of each, the ways it was found with, and what it started from."""
+    """Best solution of each problem, with its ways of the decisions and its start."""
 
     best: Solutions
     prices: np.ndarray  # multipliers of the conditions
@@ -286,12 +286,12 @@ class PiecedNlp:
         program, rows = self.pieces.written()
         return BatchNlp(program, self.pieces.n, rows, conditions=len(self.pieces), settings=self.nlp_settings)
 
-    def doubtful(self, found: Solutions, data: Sequence[Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Tell which answers of a solver of the whole formulas may not be optima: on a kink, or stuck."""
+    def doubtful(self, solutions: Solutions, data: Sequence[Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Solutions of the unsplit formulas that may be no optima: on a kink, or not converged."""
         with np.errstate(all="ignore"):
-            ways, apart, _ = self.pieces.at([*found.variables.T, *_clean(data)], _reach(low, high))
+            ways, apart, _ = self.pieces.at([*solutions.variables.T, *_clean(data)], _reach(low, high))
         tied = np.any(self.pieces.live(ways) & (apart <= self.settings.tie), axis=1)
-        doubtful: np.ndarray = ~found.converged | tied
+        doubtful: np.ndarray = ~solutions.converged | tied
         return doubtful
 
     def solve(
@@ -313,14 +313,14 @@ class PiecedNlp:
             everything = np.arange(len(start))
             state = question.solved(everything, ways, start, size)
             tried = [_Tried(w) for w in ways]
-            waiting = question.turns(everything, state, tried)
-            for _ in range(self.settings.turns):
+            waiting = question.alternatives(everything, state, tried)
+            for _ in range(self.settings.exchanges):
                 rows = np.array([k for k in sorted(waiting) if waiting[k]], dtype=np.int64)
                 if not len(rows):
                     break
                 turned = np.array([waiting[k].pop(0) for k in rows])
-                for k, own in zip(rows, turned, strict=True):
-                    tried[k].add(own)
+                for k, piece in zip(rows, turned, strict=True):
+                    tried[k].add(piece)
                 begin = state.best.variables[rows]
                 _, _, size = self.pieces.at([*begin.T, *question.inputs(rows)], _reach(low[rows], high[rows]))
                 other = question.solved(rows, turned, begin, size)
@@ -329,13 +329,13 @@ class PiecedNlp:
                 state.put(won, other, better)
                 for k in won:
                     tried[k].from_here(state.ways[k])
-                waiting.update(question.turns(won, state, tried))
+                waiting.update(question.alternatives(won, state, tried))
         return state.best
 
 
 @dataclass(frozen=True)
 class _Question:
-    """Problems to be solved piece by piece, with all they are made of."""
+    """Problems to be solved piece by piece, with their data, ranges and bounds."""
 
     solver: PiecedNlp
     tasks: Tasks
@@ -354,27 +354,27 @@ class _Question:
     def _clean_data(self) -> list[np.ndarray]:
         return _clean(self.data)
 
-    def _posed(self, rows: np.ndarray, ways: np.ndarray, size: np.ndarray) -> tuple[Tasks, list[Any]]:
-        """Return some problems with the pieces that are to be used, and their data."""
+    def _tasks_of(self, rows: np.ndarray, ways: np.ndarray, size: np.ndarray) -> tuple[Tasks, list[Any]]:
+        """Tasks restricted to the given pieces, and their data."""
         tasks, settings, pieces = self.tasks.take(rows), self.solver.settings, self.solver.pieces
-        own = np.zeros(self.void[rows].shape) if tasks.moved is None else tasks.moved
+        moved = np.zeros(self.void[rows].shape) if tasks.moved is None else tasks.moved
         margin = np.broadcast_to(np.where(pieces.compares, -settings.margin, 0.0), ways.shape)
-        tasks = replace(tasks, moved=np.concatenate([own, margin], axis=1))
+        tasks = replace(tasks, moved=np.concatenate([moved, margin], axis=1))
         return tasks, [*self.inputs(rows), *ways.T.astype(float), *(1.0 / size).T]
 
     def solved(self, rows: np.ndarray, ways: np.ndarray, start: np.ndarray, size: np.ndarray) -> _State:
-        """Solve some problems with given pieces."""
-        tasks, data = self._posed(rows, ways, size)
+        """Solve problems with given pieces."""
+        tasks, data = self._tasks_of(rows, ways, size)
         pieces, low, high = self.solver.pieces, self.low[rows], self.high[rows]
         live = pieces.live(ways)
         void = np.concatenate([self.void[rows], ~live], axis=1)
-        found = self.solver.nlp.solve(tasks, data, start, low, high, self._right_sides(), void, self.workers)
+        ended = self.solver.nlp.solve(tasks, data, start, low, high, self._right_sides(), void, self.workers)
         # In a branch that is not taken decisions go the way they would if it were: an exchange may lead there.
-        there, _, _ = pieces.at([*found.variables.T, *self.inputs(rows)], _reach(low, high))
+        there, _, _ = pieces.at([*ended.variables.T, *self.inputs(rows)], _reach(low, high))
         ways = np.where(live, ways, there)
         constraints = self.void.shape[1]
-        own = replace(found, constraint_multipliers=found.constraint_multipliers[:, :constraints])
-        return _State(own, found.constraint_multipliers[:, constraints:], ways, start, size)
+        of_task = replace(ended, constraint_multipliers=ended.constraint_multipliers[:, :constraints])
+        return _State(of_task, ended.constraint_multipliers[:, constraints:], ways, start, size)
 
     def _right_sides(self) -> list[float]:
         return [*self.bounds, *([0.0] * len(self.solver.pieces))]
@@ -391,17 +391,17 @@ class _Question:
         )
         return better
 
-    def turns(self, rows: np.ndarray, state: _State, tried: Sequence[_Tried]) -> dict[int, list[np.ndarray]]:
-        """Return, of some problems, other pieces that promise to be better from where they stand, the best first."""
+    def alternatives(self, rows: np.ndarray, state: _State, tried: Sequence[_Tried]) -> dict[int, list[np.ndarray]]:
+        """Other pieces of each problem that promise a better solution, the most promising first."""
         pressed, apart = self._promises(rows, state)
         ways = state.ways[rows]
         result: dict[int, list[np.ndarray]] = {}
         for place in np.flatnonzero(np.any((pressed > 0) | apart, axis=1)):
-            own, k = pressed[place], int(rows[place])
-            order = np.argsort(-own, kind="stable")[: int(np.sum(own > 0))]
+            promises, k = pressed[place], int(rows[place])
+            order = np.argsort(-promises, kind="stable")[: int(np.sum(promises > 0))]
             flips = [order] if len(order) > 1 else []
             turned = [_turned(ways[place], flip) for flip in [*flips, *order[:, None]]]
-            others = [_turned(ways[place], i) for i in np.flatnonzero(apart[place] & ~(own > 0))]
+            others = [_turned(ways[place], i) for i in np.flatnonzero(apart[place] & ~(promises > 0))]
             result[k] = [w for w in turned if w.tobytes() not in tried[k].here]
             result[k] += [w for w in others if w.tobytes() not in tried[k].ever]
         return result
@@ -418,13 +418,13 @@ class _Question:
             the edge of a max that must be small, it is not the right one here.)
         """
         solver, settings, nlp = self.solver, self.solver.settings, self.solver.nlp
-        count, constraints, found = len(solver.pieces), self.void.shape[1], state.best.take(rows)
+        count, constraints, best = len(solver.pieces), self.void.shape[1], state.best.take(rows)
         pressed, apart = np.zeros((len(rows), count)), np.zeros((len(rows), count), dtype=bool)
         if not len(rows):
             return pressed, apart
         weight = np.zeros((nlp.functions.n_rows, len(rows)))
-        weight[:constraints] = found.constraint_multipliers.T
-        weight[nlp.functions.n_constraints :] = (found.goal_multipliers + self.tasks.weights[rows]).T
+        weight[:constraints] = best.constraint_multipliers.T
+        weight[nlp.functions.n_constraints :] = (best.goal_multipliers + self.tasks.weights[rows]).T
         least = settings.press / worth_of(self.tasks.take(rows))
         live, ways = solver.pieces.live(state.ways[rows]), state.ways[rows]
         values, first = self._slopes(rows, state, ways)
@@ -446,8 +446,8 @@ class _Question:
         return pressed, apart
 
     def _slopes(self, rows: np.ndarray, state: _State, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return values and derivatives of all rows where some problems stand, with the given pieces."""
-        tasks, data = self._posed(rows, ways, state.size[rows])
+        """Values and derivatives of all rows at the solutions of problems, with the given pieces."""
+        tasks, data = self._tasks_of(rows, ways, state.size[rows])
         points, ends = state.best.variables[rows], (self.low[rows], self.high[rows])
         return self.solver.nlp.slopes(tasks, data, state.start[rows], points, *ends, self._right_sides())
 
@@ -467,10 +467,10 @@ def _reach(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return reach
 
 
-def _cost(tasks: Tasks, found: Solutions) -> np.ndarray:
+def _cost(tasks: Tasks, solutions: Solutions) -> np.ndarray:
     # An objective that does not count may be infinite; zero times that is no number.
-    counted = np.multiply(tasks.weights, found.phi, where=tasks.weights != 0, out=np.zeros(found.phi.shape))
-    cost: np.ndarray = counted.sum(axis=1) + tasks.t_weight * found.t
+    counted = np.multiply(tasks.weights, solutions.phi, where=tasks.weights != 0, out=np.zeros(solutions.phi.shape))
+    cost: np.ndarray = counted.sum(axis=1) + tasks.t_weight * solutions.t
     return cost
 
 
@@ -509,20 +509,20 @@ class KinkedNlp:
 
         ``rough``: answers may be near optima.
         """
-        found = self.first.solve(tasks, data, start, low, high, bounds, void, workers)
+        solutions = self.first.solve(tasks, data, start, low, high, bounds, void, workers)
         if rough:
-            return found
+            return solutions
         if self.rounded:
             doubtful = np.arange(len(start))
         else:
-            doubtful = np.flatnonzero(self.pieced.doubtful(found, data, low, high))
+            doubtful = np.flatnonzero(self.pieced.doubtful(solutions, data, low, high))
         if not len(doubtful):
-            return found
+            return solutions
         arrays = [np.asarray(x, dtype=float) for x in data]
         sharp = self.pieced.solve(
             tasks.take(doubtful),
             [x if x.ndim == 0 else x[doubtful] for x in arrays],
-            found.variables[doubtful],
+            solutions.variables[doubtful],
             low[doubtful],
             high[doubtful],
             bounds,
@@ -530,14 +530,14 @@ class KinkedNlp:
             workers,
         )
         # An answer to other formulas is none, but may be a design; one to the same formulas may be better.
-        known, missed = found.take(doubtful), self.pieced.nlp_settings.missed
+        known, missed = solutions.take(doubtful), self.pieced.nlp_settings.missed
         lost = (known.violation <= missed) & (sharp.violation > missed)
         if self.rounded:
-            found.converged[doubtful] = False
+            solutions.converged[doubtful] = False
         else:
             cost, before = _cost(tasks.take(doubtful), sharp), _cost(tasks.take(doubtful), known)
             least = self.pieced.settings.gain / worth_of(tasks.take(doubtful))
             held = (known.violation <= missed) & known.converged
             lost |= held & (before < cost - least)
-        found.put(doubtful[~lost], sharp.take(~lost))
-        return found
+        solutions.put(doubtful[~lost], sharp.take(~lost))
+        return solutions

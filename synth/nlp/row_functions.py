@@ -200,10 +200,12 @@ def _is_input(node: Node) -> bool:
     return bool(node.op == ca.OP_INPUT)
 
 
-def _numpy_code(nodes: Sequence[Node], order: Sequence[int], wanted: Sequence[int], names: dict[int, str]) -> list[str]:
-    """Return lines that compute some nodes from others that have names; constants are written out."""
+def _numpy_code(
+    nodes: Sequence[Node], order: Sequence[int], outputs: Sequence[int], names: dict[int, str]
+) -> list[str]:
+    """Lines that compute the outputs from named nodes; constants are written out."""
     last_use = {a: k for k in order for a in nodes[k].args}
-    last_use.update(dict.fromkeys(wanted, len(nodes)))
+    last_use.update(dict.fromkeys(outputs, len(nodes)))
     names = dict(names)
     register: dict[int, int] = {}
     free: list[int] = []
@@ -225,7 +227,7 @@ def _numpy_code(nodes: Sequence[Node], order: Sequence[int], wanted: Sequence[in
         register[k] = slot
         names[k] = f"r{slot}"
         lines.append(f"    r{slot} = {code}")
-    lines.append("    return [" + ", ".join(name(k) for k in wanted) + "]")
+    lines.append("    return [" + ", ".join(name(k) for k in outputs) + "]")
     return lines
 
 

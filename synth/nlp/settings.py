@@ -53,8 +53,8 @@ class InteriorPointSettings:
         Multipliers stay within this factor of those that the point itself implies.
     inside : float
         Share of the width that a start keeps from its bounds.
-    first_room : float
-        That t leaves at a start.
+    first_slack : float
+        Slack that t leaves in the worst row at a start.
     pinned_width : float
         A variable whose bounds (or their logarithms) are closer does not move.
     least_pivot : float
@@ -97,7 +97,7 @@ class InteriorPointSettings:
     stuck_barrier: float = 1e-9
     multiplier_spread: float = 1e4
     inside: float = 1e-2
-    first_room: float = 0.1
+    first_slack: float = 0.1
     pinned_width: float = 1e-10
     least_pivot: float = 1e-13
     first_shift: float = 1e-6
@@ -109,7 +109,7 @@ class InteriorPointSettings:
 
 @dataclass(frozen=True, kw_only=True)
 class PieceSettings:
-    """How the pieces of a problem are gone through.
+    """How the search among the pieces of a problem proceeds.
 
     Parameters
     ----------
@@ -123,8 +123,8 @@ class PieceSettings:
         By which a comparison holds: on its border, the formulas of the other side may be the true ones.
     jump : float
         Rows that differ by more between two pieces where they meet do not meet.
-    turns : int
-        How often pieces are exchanged, at most.
+    exchanges : int
+        Exchanges of pieces, at most.
     """
 
     tie: float = 1e-6
@@ -132,7 +132,7 @@ class PieceSettings:
     gain: float = 1e-10
     margin: float = 1e-9
     jump: float = 1e-6
-    turns: int = 12
+    exchanges: int = 12
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -124,11 +124,11 @@ def power(a: Interval, b: Interval) -> Interval:
                 return p, q
             return np.where((a[0] <= 0) & (a[1] >= 0), 0.0, np.minimum(p, q)), np.maximum(p, q)
         return invert(power(a, (-exponent, -exponent)))
-    return whole(a, b)
+    return unbounded(a, b)
 
 
-def whole(*parts: Interval) -> Interval:
-    """The interval of all numbers, in the shape of some others."""
+def unbounded(*parts: Interval) -> Interval:
+    """Unbounded interval, in the shape of other intervals."""
     size = sum(p[0] for p in parts) * 0.0
     return size - np.inf, size + np.inf
 

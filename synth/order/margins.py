@@ -19,10 +19,10 @@ class Margins:
 
     Parameters
     ----------
-    stated : float
-        Relative. Of numbers that were stated, once in each of two units or files: a few roundings.
+    conversion : float
+        Relative. Between two entries of one number, in different units or files: a few roundings.
     end : float
-        Relative. By how much something may lie beyond the end of a range that was stated: both may have been written
+        Relative. By how much something may lie beyond the end of a given range: both may have been written
         with nine digits.
     step : float
         Share of a step, or of a whole number, by which a value may miss it and still be on it.
@@ -30,7 +30,7 @@ class Margins:
         Relative. Of numbers that were computed in two ways, or saved and computed again.
     """
 
-    stated: float = 1e-12
+    conversion: float = 1e-12
     end: float = 1e-9
     step: float = 1e-9
     same: float = 1e-9

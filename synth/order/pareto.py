@@ -40,7 +40,7 @@ def extremes(phi: np.ndarray) -> list[int]:
 
 
 def spread_subset(phi: np.ndarray, count: int, first: Sequence[int] | None = None) -> np.ndarray:
-    """Return positions of at most ``count`` rows: the ``first``, then always the one farthest from those taken.
+    """Positions of at most ``count`` rows: the ``first``, then always the one farthest from those chosen.
 
     The extremes are the first ones by default.
     """
@@ -48,17 +48,17 @@ def spread_subset(phi: np.ndarray, count: int, first: Sequence[int] | None = Non
         return np.arange(len(phi))
     span = np.maximum(phi.max(axis=0) - phi.min(axis=0), 1e-300)
     unit = (phi - phi.min(axis=0)) / span
-    taken = list(dict.fromkeys(extremes(unit) if first is None else first))[:count]
+    chosen = list(dict.fromkeys(extremes(unit) if first is None else first))[:count]
     # Column by column: rows are many and short.
     columns = np.ascontiguousarray(unit.T)
     distance = np.full(len(unit), np.inf)
-    for row in taken:
+    for row in chosen:
         np.minimum(distance, _distances(columns, row), out=distance)
-    while len(taken) < count:
+    while len(chosen) < count:
         farthest = int(np.argmax(distance))
-        taken.append(farthest)
+        chosen.append(farthest)
         np.minimum(distance, _distances(columns, farthest), out=distance)
-    return np.sort(np.array(taken))
+    return np.sort(np.array(chosen))
 
 
 def _distances(columns: np.ndarray, row: int) -> np.ndarray:
@@ -100,19 +100,19 @@ class Scale:
         return Scale(signed.min(axis=0), np.maximum(near, _worst_at_ends(signed, near)))
 
     def begun_at(self, signed: np.ndarray) -> Scale:
-        """Return the same for designs that are listed: from what is best among them, at most to what they cost."""
-        own = Scale.of(signed)
-        return Scale(own.ideal, np.clip(self.nadir, own.ideal, own.nadir))
+        """Scale of listed designs: from the best among them, at most to their own nadir."""
+        listed = Scale.of(signed)
+        return Scale(listed.ideal, np.clip(self.nadir, listed.ideal, listed.nadir))
 
-    def told(self, objectives: Mapping[str, str]) -> dict[str, list[float]]:
-        """Return ideal and nadir of each objective in SI, as ``read`` takes them."""
-        ends = np.stack([self.ideal, self.nadir], axis=1) * signs_of(objectives)[:, None]
+    def as_record(self, objectives: Mapping[str, str]) -> dict[str, list[float]]:
+        """Ideal and nadir of each objective in SI, the record that ``read`` reads."""
+        ends = np.stack([self.ideal, self.nadir], axis=1) * senses_of(objectives)[:, None]
         return dict(zip(objectives, ends.tolist(), strict=True))
 
     @staticmethod
-    def read(told: Mapping[str, Sequence[float]], objectives: Mapping[str, str]) -> Scale:
-        """Fields of a message of ``told``; a ValueError where an end is no number."""
-        ends = np.array([told[name] for name in objectives], dtype=float) * signs_of(objectives)[:, None]
+    def read(record: Mapping[str, Sequence[float]], objectives: Mapping[str, str]) -> Scale:
+        """Scale of a record of ``as_record``; a ValueError where an end is no number."""
+        ends = np.array([record[name] for name in objectives], dtype=float) * senses_of(objectives)[:, None]
         if not np.isfinite(ends).all():
             raise ValueError("scale: an end is no number")
         return Scale(ends[:, 0], ends[:, 1])
@@ -179,8 +179,8 @@ KNEE = "knee"
 AT_A_PRICE = ", whose last 0.5 % costs much"
 
 
-def signs_of(objectives: Mapping[str, str]) -> np.ndarray:
-    """Return 1 for what is to be small and -1 for what is to be large."""
+def senses_of(objectives: Mapping[str, str]) -> np.ndarray:
+    """Sense of each objective: 1 to minimise, -1 to maximise."""
     return np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
 
 
@@ -210,7 +210,7 @@ def rank(
     -------
     Ranking
     """
-    signed = values * signs_of(objectives)
+    signed = values * senses_of(objectives)
     scale = Scale.of(signed) if scale is None else scale.begun_at(signed)
     unit, scores = scale.units(signed), np.round(scale.scores(signed, weights), SAME)
     keys = [*(np.round(signed[:, k], 15) for k in reversed(range(signed.shape[1]))), scores]

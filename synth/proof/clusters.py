@@ -38,15 +38,15 @@ class Clusters:
             number = len(self._children)
             if parent >= 0:
                 self._children[parent][side] = number
-            own = values[rows]
-            void = np.isnan(own)
+            subset = values[rows]
+            void = np.isnan(subset)
             empty = void.all(axis=0)
-            low.append(np.where(empty, 1.0, np.where(void, INF, own).min(axis=0)))
-            high.append(np.where(empty, 1.0, np.where(void, -INF, own).max(axis=0)))
+            low.append(np.where(empty, 1.0, np.where(void, INF, subset).min(axis=0)))
+            high.append(np.where(empty, 1.0, np.where(void, -INF, subset).max(axis=0)))
             lacking.append(void.any(axis=0))
             self._first.append(int(rows[0]))
             self._children.append([-1, -1])
-            below, width = self._halves(own, void, low[-1], high[-1], log, scale)
+            below, width = self._halves(subset, void, low[-1], high[-1], log, scale)
             spread.append(width)
             if below is not None:
                 waiting += [(rows[~below], number, 1), (rows[below], number, 0)]
@@ -56,7 +56,7 @@ class Clusters:
 
     @staticmethod
     def _halves(
-        own: np.ndarray, void: np.ndarray, low: np.ndarray, high: np.ndarray, log: np.ndarray, scale: np.ndarray
+        values: np.ndarray, void: np.ndarray, low: np.ndarray, high: np.ndarray, log: np.ndarray, scale: np.ndarray
     ) -> tuple[np.ndarray | None, float]:
         """Rows that go to the left, and the distance between rows."""
         partly = void.any(axis=0) & ~void.all(axis=0)
@@ -68,7 +68,7 @@ class Clusters:
         k = int(np.argmax(width))
         if width[k] == 0:
             return None, 0.0
-        column = own[:, k]
+        column = values[:, k]
         finite = column[np.isfinite(column)]
         middle = math.sqrt(low[k] * high[k]) if log[k] else 0.5 * (finite.min() + finite.max())
         below = column <= middle

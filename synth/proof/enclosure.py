@@ -39,7 +39,7 @@ class Enclosed:
     """What is known of one instruction over a box: see the head of this module.
 
     ``sign`` is that of the range, 0 where zero may lie in it; ``log`` tells that the slopes are those of log|value|;
-    ``whole`` that they bound all derivatives, jumps apart, so that nothing of them is hidden in the center.
+    ``complete`` that they bound all derivatives, jumps apart, so that nothing of them is hidden in the center.
     """
 
     range: Pair
@@ -50,7 +50,7 @@ class Enclosed:
     narrow: Pair = ANYTHING
     uncut: Pair = ANYTHING  # the narrow range before the limits of this very value cut it
     least: float = 0.0  # what |value| surely is at least, in all boxes
-    whole: bool = True
+    complete: bool = True
 
     @classmethod
     def constant(cls, value: float) -> Enclosed:
@@ -134,20 +134,20 @@ class Encloser(Ranges):
         prefix: Key = (),
     ) -> dict[int, Enclosed]:
         """Return the enclosures of instructions; narrow ranges only where cuts are given."""
-        found: dict[int, Enclosed] = {}
+        enclosed: dict[int, Enclosed] = {}
         for k in order:
             node = nodes[k]
             if node.op == ca.OP_CONST:
-                found[k] = Enclosed.constant(node.constant)
+                enclosed[k] = Enclosed.constant(node.constant)
             elif node.op == ca.OP_INPUT:
-                found[k] = inputs[int(node.constant)]
+                enclosed[k] = inputs[int(node.constant)]
             else:
-                found[k] = self._settled(node, [found[a] for a in node.args], (*prefix, k))
+                enclosed[k] = self._settled(node, [enclosed[a] for a in node.args], (*prefix, k))
             if not prefix and k in self.lifted:
-                self.made[k], found[k] = found[k], replace(self.lifted[k])
+                self.made[k], enclosed[k] = enclosed[k], replace(self.lifted[k])
             if cuts is not None:
-                self._narrow(k, node, found, cuts)
-        return found
+                self._narrow(k, node, enclosed, cuts)
+        return enclosed
 
     # -- ranges, centers, signs ----------------------------------------------------------------
 
@@ -161,7 +161,7 @@ class Encloser(Ranges):
         first = [args[0].range] if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) else [args[0].center]
         v = Enclosed(r, r if jumps else self.range_of(node, first + [a.center for a in args[1:]]))
         shown = args[1:] if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) else args
-        v.whole = is_thin(r) or (not jumps and all(a.whole for a in shown))
+        v.complete = is_thin(r) or (not jumps and all(a.complete for a in shown))
         clip = None if jumps or len(key) > 1 else self._clip_of(key[0], v)
         v.sign = 0 if clip else self._sign(v, key)
         if not jumps and self.with_slopes and any(a.slopes for a in args):
@@ -171,7 +171,7 @@ class Encloser(Ranges):
         if clip:
             self._clip(v, *clip)
         elif self.known is not None:
-            self._signs_of_slopes(v, self.known.known[key])
+            self._settle_slopes(v, self.known.known[key])
         return v
 
     def _clip_of(self, k: int, v: Enclosed) -> tuple[float | None, float | None] | None:
@@ -204,7 +204,7 @@ class Encloser(Ranges):
             if isinstance(x, Ref):
                 x.sign = sign
 
-    def _signs_of_slopes(self, v: Enclosed, root: Known) -> None:
+    def _settle_slopes(self, v: Enclosed, root: Known) -> None:
         """Slopes over a part of the root box lie within those over the whole."""
         if v.log == root.log:
             for k, (low, high) in root.slopes.items():
@@ -233,7 +233,7 @@ class Encloser(Ranges):
         v.slopes, v.log = self.logarithmic(v), True
 
     def _raised(self, node: Node, args: list[Enclosed], above: tuple[int, int], key: Key) -> list[Enclosed]:
-        """Return the arguments of a special function that exists only where one of them is above another.
+        """Arguments of a special function that exists only where one of them is above another.
 
         The first is clipped half-way between the least that feasible designs have of it and the other.
         """
@@ -245,9 +245,9 @@ class Encloser(Ranges):
         limit = (self.record if self.known is None else self.known).raised.get(key)
         if limit is None:
             return args
-        own = replace(args[first])
-        self._clip(own, limit, None)
-        return [own if j == first else a for j, a in enumerate(args)]
+        raised = replace(args[first])
+        self._clip(raised, limit, None)
+        return [raised if j == first else a for j, a in enumerate(args)]
 
     # -- slopes --------------------------------------------------------------------------------
 
@@ -265,20 +265,20 @@ class Encloser(Ranges):
     def _slopes(self, node: Node, args: list[Enclosed], v: Enclosed, key: Key) -> None:
         op = node.op
         if op == OP_SPECIAL:
-            found = self._special_slopes(node, args, v, key) if v.sign else None
-            v.log = found is not None
+            slopes = self._special_slopes(node, args, v, key) if v.sign else None
+            v.log = slopes is not None
         elif op in (ca.OP_ADD, ca.OP_SUB):
-            found = self._sum_slopes(args, v, 1 if op == ca.OP_ADD else -1)
+            slopes = self._sum_slopes(args, v, 1 if op == ca.OP_ADD else -1)
         elif op in (OP_SELECT, ca.OP_IF_ELSE_ZERO, ca.OP_FMIN, ca.OP_FMAX):
-            found = self._choice_slopes(op, args, v)
+            slopes = self._choice_slopes(op, args, v)
         elif len(args) == 2:
-            found = self._product_slopes(node, args, v)
+            slopes = self._product_slopes(node, args, v)
         else:
-            found = self._unary_slopes(op, args[0], v)
-        if found is None:  # nothing is known but the range
-            v.log, v.whole, v.center = False, False, v.range
+            slopes = self._unary_slopes(op, args[0], v)
+        if slopes is None:  # nothing is known but the range
+            v.log, v.complete, v.center = False, False, v.range
         else:
-            v.slopes = found
+            v.slopes = slopes
 
     def merged(self, a: Slopes, b: Slopes, rule: Callable[[Pair, Pair], Pair]) -> Slopes:
         """Return the slopes of what a rule makes of two values."""
@@ -287,22 +287,22 @@ class Encloser(Ranges):
     def _product_slopes(self, node: Node, args: list[Enclosed], v: Enclosed) -> Slopes | None:
         a, b = args
         op = node.op
-        signs = a.sign and b.sign and v.sign
+        signed = a.sign and b.sign and v.sign
         if op == ca.OP_MUL:
             if node.args[0] == node.args[1]:
                 return self._unary_slopes(ca.OP_SQ, a, v)
-            if signs:
+            if signed:
                 v.log = True
                 return self.merged(self.logarithmic(a), self.logarithmic(b), self.add)
             return self.merged(self._scaled(self.linear(a), b.range), self._scaled(self.linear(b), a.range), self.add)
         if op == ca.OP_DIV:
-            if signs:
+            if signed:
                 v.log = True
                 return self.merged(self.logarithmic(a), self.logarithmic(b), self.subtract)
             # Anything where the divisor may be zero.
-            own = {k: self.divide(s, b.range) for k, s in self.linear(a).items()}
+            dividend = {k: self.divide(s, b.range) for k, s in self.linear(a).items()}
             its = {k: self.divide(s, b.range) for k, s in self.linear(b).items()}
-            return self.merged(own, self._scaled(its, v.range), self.subtract)
+            return self.merged(dividend, self._scaled(its, v.range), self.subtract)
         if op in (ca.OP_POW, ca.OP_CONSTPOW):
             return self._power_slopes(a, b, v)
         if op == ca.OP_HYPOT and v.sign > 0:
@@ -336,33 +336,33 @@ class Encloser(Ranges):
         other = b.range if sign > 0 else self.negative(b.range)
         if a.sign == sign * b.sign:
             # Shares of the sum, both within 0 and 1.
-            own, its = self.size(a.range), self.size(b.range)
+            size_a, size_b = self.size(a.range), self.size(b.range)
             do = self.do
             share = (
-                do("divide", its[0], do("add", its[0], own[1])),
-                do("divide", its[1], do("add", its[1], own[0])),
+                do("divide", size_b[0], do("add", size_b[0], size_a[1])),
+                do("divide", size_b[1], do("add", size_b[1], size_a[0])),
             )
             side = 1
         else:
             share = self.divide(other, v.range)
             side = 1 if sign * b.sign == v.sign else -1
-        rest = self.subtract((1.0, 1.0), share)
+        complement = self.subtract((1.0, 1.0), share)
         self._mark(side, *share)
-        self._mark(1 if a.sign == v.sign else -1, *rest)
+        self._mark(1 if a.sign == v.sign else -1, *complement)
         return self.merged(
-            self.logarithmic(a), self.logarithmic(b), lambda own, its: self._weighted(rest, own, share, its)
+            self.logarithmic(a), self.logarithmic(b), lambda x, y: self._weighted(complement, x, share, y)
         )
 
-    def _weighted(self, rest: Pair, own: Pair, share: Pair, its: Pair) -> Pair:
-        """Return rest*own + share*its with rest = 1 - share: linear in the share, so one of its ends decides."""
-        if its == ZERO or own == ZERO:
-            return self.multiply(rest, own) if its == ZERO else self.multiply(share, its)
+    def _weighted(self, complement: Pair, slope_a: Pair, share: Pair, slope_b: Pair) -> Pair:
+        """(1 - share)*slope_a + share*slope_b: linear in the share, so one of its ends decides."""
+        if slope_b == ZERO or slope_a == ZERO:
+            return self.multiply(complement, slope_a) if slope_b == ZERO else self.multiply(share, slope_b)
 
         def end(weight: Expr, other: Expr, side: int) -> Expr:
-            x = self.do("multiply", other, own[side if sign_of(other) > 0 else 1 - side])
-            return self.do("add", x, self.do("multiply", weight, its[side if sign_of(weight) > 0 else 1 - side]))
+            x = self.do("multiply", other, slope_a[side if sign_of(other) > 0 else 1 - side])
+            return self.do("add", x, self.do("multiply", weight, slope_b[side if sign_of(weight) > 0 else 1 - side]))
 
-        ends = ((share[0], rest[1]), (share[1], rest[0]))
+        ends = ((share[0], complement[1]), (share[1], complement[0]))
         return (
             self.do("minimum", *(end(w, o, 0) for w, o in ends)),
             self.do("maximum", *(end(w, o, 1) for w, o in ends)),
@@ -474,15 +474,15 @@ class Encloser(Ranges):
             self._inner[position] = Program(symbols, [function.formula(*symbols)])
         inner = self._inner[position]
         moving = [bool(a.slopes) for a in args]
-        own = [
+        inner_inputs = [
             Enclosed(a.range, a.center, log=move, slopes={j: (1.0, 1.0)} if move else {}, sign=1)
             for j, (a, move) in enumerate(zip(args, moving, strict=True))
         ]
-        result = self.run(inner.nodes, inner.needed(inner.outputs), own, prefix=key)[inner.outputs[0]]
+        result = self.run(inner.nodes, inner.needed(inner.outputs), inner_inputs, prefix=key)[inner.outputs[0]]
         # What declares its elasticities is continuous, so that the slopes hold across the switches of its formula. The
         # range of the value is known better than that of the last instruction.
         local = result.slopes if result.log else {j: self.divide(s, v.range) for j, s in result.slopes.items()}
-        local = local if result.whole else {}
+        local = local if result.complete else {}
         slopes: Slopes = {}
         for j, a in enumerate(args):
             if moving[j]:
@@ -495,10 +495,10 @@ class Encloser(Ranges):
     # -- narrow ranges: forward and back -------------------------------------------------------
 
     def _narrow(
-        self, k: int, node: Node, found: Mapping[int, Enclosed], cuts: Mapping[int, Sequence[NodeComparison]]
+        self, k: int, node: Node, enclosed: Mapping[int, Enclosed], cuts: Mapping[int, Sequence[NodeComparison]]
     ) -> None:
-        v = found[k]
-        args = [found[a] for a in node.args]
+        v = enclosed[k]
+        args = [enclosed[a] for a in node.args]
         if k in self.made:
             made = self.made[k]
             made.narrow = made.uncut = self.meet(self.range_of(node, [a.narrow for a in args]), made.range)
@@ -513,15 +513,15 @@ class Encloser(Ranges):
         v.uncut = v.narrow
         for cut in cuts.get(k, ()):
             if isinstance(cut.other, int):
-                if cut.other not in found:
+                if cut.other not in enclosed:
                     continue  # the cut of the later one by this one does the same
-                other = found[cut.other].narrow
+                other = enclosed[cut.other].narrow
             else:
                 other = (cut.other, cut.other)
             low, high = v.narrow
-            if cut.terms is not None and cut.terms not in found:
+            if cut.terms is not None and cut.terms not in enclosed:
                 continue  # its size is not known yet; the row of the limit says the same
-            scale: Expr = cut.scale if cut.terms is None else found[cut.terms].range[1]
+            scale: Expr = cut.scale if cut.terms is None else enclosed[cut.terms].range[1]
             if cut.sense >= 0:
                 high = self.do("fmin", high, self._loosened(other[1], cut.loose, scale))
             if cut.sense <= 0:
@@ -537,29 +537,29 @@ class Encloser(Ranges):
         return self.do("add", end, self.do("multiply", share, size))
 
     def carried_back(
-        self, nodes: Sequence[Node], order: Sequence[int], found: Mapping[int, Enclosed]
+        self, nodes: Sequence[Node], order: Sequence[int], enclosed: Mapping[int, Enclosed]
     ) -> dict[int, Pair]:
         """Return the narrow ranges after the cuts were carried back from results to what they are made of."""
-        now = {k: found[k].narrow for k in order}
-        changed = {k for k in order if now[k][0] is not found[k].uncut[0] or now[k][1] is not found[k].uncut[1]}
+        now = {k: enclosed[k].narrow for k in order}
+        changed = {k for k in order if now[k][0] is not enclosed[k].uncut[0] or now[k][1] is not enclosed[k].uncut[1]}
         changed |= self.made.keys()
 
         def put(k: int, pair: Pair | None) -> None:
-            if pair is None or is_thin(found[k].range):
+            if pair is None or is_thin(enclosed[k].range):
                 return
             now[k] = self.meet(now[k], pair)
-            if found[k].sign:
-                self._mark(found[k].sign, *now[k])
+            if enclosed[k].sign:
+                self._mark(enclosed[k].sign, *now[k])
             changed.add(k)
 
         for k in reversed(order):
             if k in changed:
-                for a, pair in self._backward(nodes[k], k, now, found):
+                for a, pair in self._backward(nodes[k], k, now, enclosed):
                     put(a, pair)
         return now
 
     def _backward(
-        self, node: Node, k: int, now: Mapping[int, Pair], found: Mapping[int, Enclosed]
+        self, node: Node, k: int, now: Mapping[int, Pair], enclosed: Mapping[int, Enclosed]
     ) -> Iterable[tuple[int, Pair | None]]:
         """Yield what the range of a result leaves of its arguments."""
         op, y = node.op, now[k]
@@ -573,27 +573,27 @@ class Encloser(Ranges):
                 yield b, self._widened(self.subtract(now[a], y), y, now[a])
         elif op == ca.OP_MUL and node.args[0] != node.args[1]:
             a, b = node.args
-            yield a, self.divide(y, now[b]) if found[b].sign else None
-            yield b, self.divide(y, now[a]) if found[a].sign else None
+            yield a, self.divide(y, now[b]) if enclosed[b].sign else None
+            yield b, self.divide(y, now[a]) if enclosed[a].sign else None
         elif op == ca.OP_DIV:
             a, b = node.args
-            yield a, self.multiply(y, now[b]) if found[b].sign else None
-            yield b, self.divide(now[a], y) if found[k].sign else None
+            yield a, self.multiply(y, now[b]) if enclosed[b].sign else None
+            yield b, self.divide(now[a], y) if enclosed[k].sign else None
         elif op in (ca.OP_SQ, ca.OP_MUL):
-            yield node.args[0], self.rising("sqrt", y) if found[node.args[0]].sign > 0 and found[k].sign else None
+            yield node.args[0], self.rising("sqrt", y) if enclosed[node.args[0]].sign > 0 and enclosed[k].sign else None
         elif op == ca.OP_NEG:
             yield node.args[0], self.negative(y)
         elif op == ca.OP_TWICE:
             yield node.args[0], self.multiply((0.5, 0.5), y)
         elif op == ca.OP_SQRT:
-            yield node.args[0], self.square(y) if found[k].sign > 0 else None
+            yield node.args[0], self.square(y) if enclosed[k].sign > 0 else None
         elif op == ca.OP_INV:
-            yield node.args[0], self.divide((1.0, 1.0), y) if found[k].sign else None
+            yield node.args[0], self.divide((1.0, 1.0), y) if enclosed[k].sign else None
         elif op in (ca.OP_EXP, ca.OP_LOG, ca.OP_LOG1P, ca.OP_EXPM1):
             inverse = {ca.OP_EXP: "log", ca.OP_LOG: "exp", ca.OP_LOG1P: "expm1", ca.OP_EXPM1: "log1p"}[op]
             if op in (ca.OP_EXP, ca.OP_EXPM1):
                 y = self._blurred(y, -1.0 if op == ca.OP_EXPM1 else 0.0)
-            yield node.args[0], self.rising(inverse, y) if op != ca.OP_EXP or found[k].sign > 0 else None
+            yield node.args[0], self.rising(inverse, y) if op != ca.OP_EXP or enclosed[k].sign > 0 else None
 
     def _blurred(self, y: Pair, least: float) -> Pair:
         """Return ends widened by their rounding, which a logarithm magnifies close to its border ``least``."""

@@ -45,7 +45,7 @@ def prove_regions(
     every = at_once.growth(ends, confirm)
     every.go_on(limits.at_once + limits.at_once_each * len(ends), deadline)
     levels = ends_and_others(ends) if every.under_way else []
-    each = [guided().growth(ends[own], confirm, [near[k] for k in own]) for own in levels]
+    each = [guided().growth(ends[group], confirm, [near[k] for k in group]) for group in levels]
     turn = limits.turn
     while (growing := _growing(every, each)) and time.monotonic() <= deadline:
         if every.nodes + sum(one.nodes for one in each) > limits.most_nodes:
@@ -57,22 +57,22 @@ def prove_regions(
         turn *= 2
     nodes = every.nodes + sum(one.nodes for one in each)
     witness = next((one.witness for one in (*each, every) if one.witness is not None), None)
-    left = {int(own[k]) for own, one in zip(levels, each, strict=True) for k in one.open_regions}
-    left = (left if levels else set(range(len(ends)))) & every.open_regions
-    return ProofOutcome(witness is None and not left, nodes, witness, tuple(sorted(left)))
+    unproven = {int(group[k]) for group, one in zip(levels, each, strict=True) for k in one.open_regions}
+    unproven = (unproven if levels else set(range(len(ends)))) & every.open_regions
+    return ProofOutcome(witness is None and not unproven, nodes, witness, tuple(sorted(unproven)))
 
 
 def ends_and_others(ends: np.ndarray) -> list[list[int]]:
-    """Return regions in groups: those that reach least far in an objective by themselves, then all others.
+    """Regions in groups: each extreme point of an objective by itself, then all others.
 
     Examples
     --------
     >>> ends_and_others(np.array([[2.0, 2.0], [1.0, 9.0], [3.0, 1.5], [9.0, 1.0]]))
     [[1], [3], [0, 2]]
     """
-    alone = sorted({int(k) for k in np.argmin(ends, axis=0)})
-    others = [k for k in range(len(ends)) if k not in alone]
-    return [*([k] for k in alone), *([others] if others else [])]
+    extreme = sorted({int(k) for k in np.argmin(ends, axis=0)})
+    others = [k for k in range(len(ends)) if k not in extreme]
+    return [*([k] for k in extreme), *([others] if others else [])]
 
 
 def _growing(every: ProofGrowth, each: Sequence[ProofGrowth]) -> list[ProofGrowth]:

@@ -85,10 +85,10 @@ class StraightRows:
         """
         from scipy.optimize import linprog  # costly to import; few proofs need it
 
-        told = [float(np.asarray(x).ravel()[0]) for x in self._kernel.run(box)]
+        outputs = [float(np.asarray(x).ravel()[0]) for x in self._kernel.run(box)]
         count, width = self._shape
-        centers, slopes = np.minimum(told[:count], 0.0), np.zeros(self._shape)  # what the design is off counts as none
-        for (i, k), low, high in zip(self._at, told[count::2], told[count + 1 :: 2], strict=True):
+        centers, slopes = np.minimum(outputs[:count], 0.0), np.zeros(self._shape)  # the design's offset counts as none
+        for (i, k), low, high in zip(self._at, outputs[count::2], outputs[count + 1 :: 2], strict=True):
             slopes[i, k] = 0.5 * (low + high)
         with np.errstate(invalid="ignore"):
             across = slopes * halves  # where a design stands at an end of what a logarithm reaches nothing is told

@@ -97,20 +97,20 @@ class _Step:
         floors = [do("add", x, level) for x, level in zip(floors, levels, strict=False)]
         return [worst, *(x for x, _ in ends), *(x for _, x in ends), *floors, *scores, middle]
 
-    def _tighten(self, slopes: Slopes, room: Expr) -> None:
-        """Keep inputs from going farther from their best ends than the room of a row lets them."""
+    def _tighten(self, slopes: Slopes, slack: Expr) -> None:
+        """Keep inputs within the distance from their best ends that the slack of a row allows."""
         do = self._do
         for k, (low, high) in slopes.items():
             if sign_of(high) >= 0:
-                self._up[k] = do("fmin", self._up[k], self._distance(room, low))
+                self._up[k] = do("fmin", self._up[k], self._distance(slack, low))
             if sign_of(low) <= 0:
-                self._down[k] = do("fmin", self._down[k], self._distance(room, do("negative", high)))
+                self._down[k] = do("fmin", self._down[k], self._distance(slack, do("negative", high)))
 
-    def _distance(self, room: Expr, slope: Expr) -> Expr:
-        """Room of an input from its best end, at a slope of at least this; unlimited where it falls."""
+    def _distance(self, slack: Expr, slope: Expr) -> Expr:
+        """Greatest distance of an input from its best end at a slope of at least this; unlimited where it falls."""
         if sign_of(slope) < 0 or (not isinstance(slope, Ref) and slope == 0):
             return INF
-        return self._do("divide", room, self._do("fmax", slope, TINY * TINY) if isinstance(slope, Ref) else slope)
+        return self._do("divide", slack, self._do("fmax", slope, TINY * TINY) if isinstance(slope, Ref) else slope)
 
     def _within(self, k: int, pair: Pair) -> Pair:
         """Return the ends of a coordinate met with others, which are given some room for rounding."""

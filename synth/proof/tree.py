@@ -42,17 +42,17 @@ from synth.special import expanded
 
 @dataclass
 class ProofBoxes:
-    """Open boxes: ends of the continuous variables, and ends of ladders, nodes of slots and of the regions."""
+    """Unresolved boxes: ends of the continuous variables, and ends of ladders, nodes of slots and of the regions."""
 
     real: np.ndarray  # (2 variables, boxes): low ends, then high ends
-    whole: np.ndarray  # (2 ladders + slots + 1, boxes): first ends, last ends, nodes
+    discrete: np.ndarray  # (2 ladders + slots + 1, boxes): first ends, last ends, nodes
 
     def __len__(self) -> int:
-        return int(self.whole.shape[1])
+        return int(self.discrete.shape[1])
 
     def take(self, which: Any) -> ProofBoxes:
-        """Return some of the boxes."""
-        return ProofBoxes(self.real[:, which], self.whole[:, which])
+        """Boxes of a mask or of positions."""
+        return ProofBoxes(self.real[:, which], self.discrete[:, which])
 
     def each(self) -> Iterator[ProofBoxes]:
         """Yield the boxes one by one."""
@@ -60,20 +60,20 @@ class ProofBoxes:
 
     @staticmethod
     def joined(parts: Sequence[ProofBoxes]) -> ProofBoxes:
-        """Return several batches as one."""
+        """One batch of several."""
         return ProofBoxes(
-            np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.whole for p in parts], axis=1)
+            np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.discrete for p in parts], axis=1)
         )
 
 
 def void_without(model: Model) -> dict[str, list[int]]:
-    """Return, per limit of the family, the data inputs without a value for which it does not count."""
+    """Data inputs, per limit of the family, without which the limit is void."""
     optional = {str(e.sx): k for k, e in enumerate(model.data_inputs) if not e.required}
-    found: dict[str, list[int]] = {}
+    result: dict[str, list[int]] = {}
     for limit in model.limits:
         sides = expanded(ca.vertcat(limit.value, limit.limit), model.calls) if optional else ca.SX()
-        found[limit.name] = sorted(optional[str(s)] for s in ca.symvar(sides) if str(s) in optional)
-    return found
+        result[limit.name] = sorted(optional[str(s)] for s in ca.symvar(sides) if str(s) in optional)
+    return result
 
 
 def moved_limits(instance: Instance) -> dict[str, bool]:
@@ -214,8 +214,8 @@ class ProofTree:
                 self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, terms, void, limit.guard, share))
         for x in self.instance.limits.judging:
             value = next(outputs)
-            own = LimitSides(value, float(x.bound), x.sense, x.scale, self._terms.of([value]))
-            self._limits.append(replace(own, share=self._shares[x.name]))
+            sides = LimitSides(value, float(x.bound), x.sense, x.scale, self._terms.of([value]))
+            self._limits.append(replace(sides, share=self._shares[x.name]))
         self._refusals = list(outputs)
 
     def _in_order(self) -> list[int]:
@@ -246,10 +246,10 @@ class ProofTree:
     # -- the root box --------------------------------------------------------------------------
 
     def _root(self) -> list[Enclosed]:
-        return [self._whole(x) if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
+        return [self._full_range(x) if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
 
-    def _whole(self, k: int) -> Enclosed:
-        """Return a coordinate over all of its range."""
+    def _full_range(self, k: int) -> Enclosed:
+        """Enclosure of a coordinate over its full range."""
         c = self._coordinates[k]
         pair = (c.low, c.high)
         middle = math.sqrt(c.low * c.high) if c.log else 0.5 * (c.low + c.high)
@@ -257,25 +257,25 @@ class ProofTree:
         return Enclosed(pair, (middle, middle), c.log, {k: (1.0, 1.0)}, sign, pair, pair, c.least)
 
     def _tighten_root(self) -> bool:
-        """Cut the ranges of all inputs to what the limits leave; tell whether anything is left."""
+        """Contract the ranges of all inputs by the limits; False where they become empty."""
         nodes, cuts = self.program.nodes, self._cuts()
         pad = self.limits.pad
         for _ in range(self.limits.sweeps):
             encloser = Encloser(Tape(), self.program, slopes=False)
-            found = encloser.run(nodes, self._order, self._root(), cuts)
-            self._certain = encloser.carried_back(nodes, self._order, found)
-            for k, given in enumerate(self._inputs):
-                if isinstance(given, int):
-                    c = self._coordinates[given]
+            enclosed = encloser.run(nodes, self._order, self._root(), cuts)
+            self._certain = encloser.carried_back(nodes, self._order, enclosed)
+            for k, source in enumerate(self._inputs):
+                if isinstance(source, int):
+                    c = self._coordinates[source]
                     low, high = self._certain[self.program.input_nodes[k]]
                     low, high = np.fmax(c.low, low - pad * abs(low)), np.fmin(c.high, high + pad * abs(high))
                     if low > high:
                         return False
-                    self._coordinates[given] = replace(c, low=float(low), high=float(high))
+                    self._coordinates[source] = replace(c, low=float(low), high=float(high))
         return True
 
     def _keep_inside(self) -> bool:
-        """Leave out values of ladders and rows that the root box does not reach; tell whether any are left."""
+        """Drop values of ladders and rows outside the root box; False where none remain."""
         self._rows, snap = [np.arange(len(table)) for table in self._tables], self.limits.snap
         for k, c in enumerate(self._coordinates):
             if c.kind == "ladder":
@@ -298,9 +298,9 @@ class ProofTree:
                 self._coordinates[k] = replace(c, low=low, high=high)
         self._slots = []
         for group, table in enumerate(self._tables):
-            own = [c for c in self._coordinates if c.kind == "column" and c.group == group]
-            scale = np.array([max(abs(c.low), abs(c.high)) or 1.0 for c in own])
-            self._slots.append(Clusters(table[self._rows[group]], np.array([c.log for c in own]), scale))
+            columns = [c for c in self._coordinates if c.kind == "column" and c.group == group]
+            scale = np.array([max(abs(c.low), abs(c.high)) or 1.0 for c in columns])
+            self._slots.append(Clusters(table[self._rows[group]], np.array([c.log for c in columns]), scale))
         return True
 
     # -- recording what is done with a batch of boxes ------------------------------------------
@@ -309,7 +309,7 @@ class ProofTree:
         """Record the work on a batch of boxes: narrow ranges, then slopes; both give tightened ends."""
         if self.guided:
             self._carry_along()
-        lifted = {node: self._whole(k) for node, k in self._lifted.items()}
+        lifted = {node: self._full_range(k) for node, k in self._lifted.items()}
         scout = Encloser(Tape(), self.program, certain=self._certain, lifted=lifted)
         seen = scout.run(self.program.nodes, self._order, self._root())
         self.positive = [seen[g].sign > 0 and sense > 0 for g, sense in zip(self._goals, self._senses, strict=True)]
@@ -335,30 +335,31 @@ class ProofTree:
         for goal, sense, cap in zip(self._goals, self._senses, caps, strict=True):
             cuts.setdefault(goal, []).append(NodeComparison(cap, sense, loose=0.0))
         inputs = [leaves[x] if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
-        found = encloser.run(self.program.nodes, self._order, inputs, cuts)
-        rows = [self._goal_row(encloser, found, k, levels[k]) for k in range(len(self._goals))]
+        enclosed = encloser.run(self.program.nodes, self._order, inputs, cuts)
+        rows = [self._goal_row(encloser, enclosed, k, levels[k]) for k in range(len(self._goals))]
         for limit in self._limits:
-            rows += self._limit_rows(encloser, found, limit, masks)
+            rows += self._limit_rows(encloser, enclosed, limit, masks)
         for node, made in encloser.made.items():
             same = LimitSides(node, node, "equal", 0.0)
-            rows += [self._limit_row(encloser, *two, same, None) for two in ((made, found[node]), (found[node], made))]
+            sides = made, enclosed[node]
+            rows += [self._limit_row(encloser, *two, same, None) for two in (sides, sides[::-1])]
         for k in self._refusals:
-            surely = encloser.do("subtract", found[k].narrow[0], 0.5)
+            surely = encloser.do("subtract", enclosed[k].narrow[0], 0.5)
             rows.append(ProofRow(surely, surely, surely, {}))
 
         step = _Step(
             encloser, ends, halves, self._coordinates, [self._group_of(c) for c in self._coordinates], self.limits.pad
         )
         handed = [x for pair in ends for x in pair] + levels + caps + list(masks.values())
-        back = encloser.carried_back(self.program.nodes, self._order, found)
+        back = encloser.carried_back(self.program.nodes, self._order, enclosed)
         place = {x: self.program.input_nodes[k] for k, x in enumerate(self._inputs) if isinstance(x, int)}
         place |= {k: node for node, k in self._lifted.items()}
         self._narrowing = tape.kernel(handed, step.narrowed(rows, levels, [back[place[k]] for k in range(len(ends))]))
         handed += middles + halves + widths
         self._emphasised = len(rows)
         emphasis: list[Expr] = [tape.leaf(1) for _ in rows] if self.guided else [1.0] * len(rows)
-        told = step.sloped(rows, levels, widths, self._groups, emphasis)
-        self._sloping = tape.kernel(handed + (emphasis if self.guided else []), told)
+        outputs = step.sloped(rows, levels, widths, self._groups, emphasis)
+        self._sloping = tape.kernel(handed + (emphasis if self.guided else []), outputs)
         if self.guided:
             self._straight = StraightRows(tape, rows, handed, len(self._coordinates))
 
@@ -384,8 +385,8 @@ class ProofTree:
         first = {"variable": 0, "ladder": len(self._variables), "column": len(self._variables) + len(self._ladders)}
         return first[c.kind] + c.group
 
-    def _goal_row(self, encloser: Encloser, found: Mapping[int, Enclosed], k: int, level: Ref) -> ProofRow:
-        v, do = found[self._goals[k]], encloser.do
+    def _goal_row(self, encloser: Encloser, enclosed: Mapping[int, Enclosed], k: int, level: Ref) -> ProofRow:
+        v, do = enclosed[self._goals[k]], encloser.do
         if self.positive[k]:
             ends = (do("log", v.uncut[0]), do("log", v.range[0]), do("log", v.center[0]))
             slopes = encloser.logarithmic(v)
@@ -398,11 +399,11 @@ class ProofTree:
         return ProofRow(least, anywhere, center, slopes)
 
     def _limit_rows(
-        self, encloser: Encloser, found: Mapping[int, Enclosed], x: LimitSides, masks: Mapping[Any, Ref]
+        self, encloser: Encloser, enclosed: Mapping[int, Enclosed], x: LimitSides, masks: Mapping[Any, Ref]
     ) -> list[ProofRow]:
-        value = found[x.value]
-        bound = found[x.bound] if isinstance(x.bound, int) else Enclosed.constant(x.bound)
-        terms = None if x.terms is None else found[x.terms]
+        value = enclosed[x.value]
+        bound = enclosed[x.bound] if isinstance(x.bound, int) else Enclosed.constant(x.bound)
+        terms = None if x.terms is None else enclosed[x.terms]
         void = masks[x.void] if x.void else None
         rows = []
         if x.sense in ("at_most", "equal"):
@@ -478,26 +479,26 @@ class ProofTree:
 
     def _emphasis(self, regions: Clusters, levels: np.ndarray, near: Sequence[Sequence[Point]]) -> np.ndarray:
         """Weight of each row (rows, clusters of regions), by the designs near the regions."""
-        found = np.zeros((self._emphasised, len(regions.first)))
+        weights = np.zeros((self._emphasised, len(regions.first)))
         for node in reversed(range(len(regions.first))):  # what a cluster is split into comes after it
             if regions.left[node] < 0:
                 k = regions.first[node]
                 for point in near[k]:
-                    found[:, node] += self._straight.multipliers(*self._around(point, levels[k]))
+                    weights[:, node] += self._straight.multipliers(*self._around(point, levels[k]))
             else:
-                found[:, node] = found[:, regions.left[node]] + found[:, regions.right[node]]
-        most = found.max(axis=0)
-        return np.where(most > 0, found / np.where(most > 0, most, 1.0), 1.0) + self.limits.faint
+                weights[:, node] = weights[:, regions.left[node]] + weights[:, regions.right[node]]
+        most = weights.max(axis=0)
+        return np.where(most > 0, weights / np.where(most > 0, most, 1.0), 1.0) + self.limits.faint
 
     def _around(self, point: Point, levels: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
         """Inputs of a kernel for a small box around a design, and half of its widths; its parts stay."""
         inputs = [*point.variables, *point.data]
         values = np.ones(len(self._coordinates))
         free = np.zeros(len(self._coordinates), dtype=bool)
-        for k, given in enumerate(self._inputs):
-            if isinstance(given, int):
-                values[given] = 1.0 if math.isnan(inputs[k]) else inputs[k]
-                free[given] = k < len(self.instance.model.variables)
+        for k, source in enumerate(self._inputs):
+            if isinstance(source, int):
+                values[source] = 1.0 if math.isnan(inputs[k]) else inputs[k]
+                free[source] = k < len(self.instance.model.variables)
         nodes = list(self._lifted)
         for node, value in zip(nodes, self.program.compile(nodes)(inputs) if nodes else [], strict=True):
             values[self._lifted[node]], free[self._lifted[node]] = value, True
@@ -513,16 +514,16 @@ class ProofTree:
         halves = 0.5 * np.where(log, np.log(high / low), high - low)
         lacking = [float(any(math.isnan(inputs[self._inputs.index(x)]) for x in void)) for void in self._masks]
         ends = [np.exp(x) if p else s * x for x, p, s in zip(levels, self.positive, self._senses, strict=True)]
-        told = [x for pair in zip(low, high, strict=True) for x in pair] + [*levels, *ends]
-        box = [np.array([x]) for x in told] + [np.array([x > 0]) for x in lacking]
+        arguments = [x for pair in zip(low, high, strict=True) for x in pair] + [*levels, *ends]
+        box = [np.array([x]) for x in arguments] + [np.array([x > 0]) for x in lacking]
         return box + [np.array([x]) for x in (*middle, *halves, *np.zeros(len(levels)))], halves
 
     def _begin(self, regions: Clusters) -> ProofBoxes:
-        """Return boxes that cover everything, split blindly to a useful number."""
+        """Boxes that cover everything, split blindly to a useful number."""
         real = [c.low for c in self._coordinates if c.kind == "variable"]
         real += [c.high for c in self._coordinates if c.kind == "variable"]
-        whole = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
-        boxes = ProofBoxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
+        integer = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
+        boxes = ProofBoxes(np.array(real, dtype=float).reshape(-1, 1), np.array(integer, dtype=np.int64).reshape(-1, 1))
         while len(boxes) < (1 if self.guided else self.limits.first):
             widths = self._widths(boxes, regions)
             if not np.any(widths > 0):
@@ -542,7 +543,7 @@ class ProofTree:
             return boxes, np.zeros((self._groups, 0)), np.zeros(0)
         count = len(boxes)
         result = self._sloping.run(
-            [*self._handed(boxes, regions, True), *(() if emphasis is None else emphasis[:, boxes.whole[-1]])]
+            [*self._handed(boxes, regions, True), *(() if emphasis is None else emphasis[:, boxes.discrete[-1]])]
         )
         boxes, kept = self._placed(boxes, regions, result)
         scores = np.array([np.broadcast_to(x, count)[kept] for x in result[-self._groups - 1 : -1]])
@@ -550,9 +551,9 @@ class ProofTree:
         return boxes, np.where(np.isfinite(scores), scores, FAR), np.broadcast_to(result[-1], count)[kept]
 
     def _handed(self, boxes: ProofBoxes, regions: Clusters, slopes: bool) -> list[np.ndarray]:
-        """Return the arrays that a kernel takes, in its order."""
+        """Arrays that a kernel reads, in its order."""
         v, m = len(self._variables), len(self._ladders)
-        nodes, region = boxes.whole[2 * m : -1], boxes.whole[-1]
+        nodes, region = boxes.discrete[2 * m : -1], boxes.discrete[-1]
         tables = [(slot.low[:, node], slot.high[:, node]) for slot, node in zip(self._slots, nodes, strict=True)]
         ends = []
         for c in self._coordinates:
@@ -560,7 +561,7 @@ class ProofTree:
                 ends.append((boxes.real[c.group], boxes.real[v + c.group]))
             elif c.kind == "ladder":
                 values = self._ladders[c.group]
-                ends.append((values[boxes.whole[c.group]], values[boxes.whole[m + c.group]]))
+                ends.append((values[boxes.discrete[c.group]], values[boxes.discrete[m + c.group]]))
             else:
                 low, high = tables[c.group]
                 ends.append((low[c.column], high[c.column]))
@@ -595,7 +596,7 @@ class ProofTree:
         low, high = [x[alive] for x in low], [x[alive] for x in high]
         floor = np.array([np.broadcast_to(x, count)[alive] for x in result[1 + 2 * n : 1 + 2 * n + len(self._goals)]])
         v, m = len(self._variables), len(self._ladders)
-        real, whole = boxes.real[:, alive], boxes.whole[:, alive]
+        real, discrete = boxes.real[:, alive], boxes.discrete[:, alive]
         kept = np.ones(len(alive), dtype=bool)
         for k, c in enumerate(self._coordinates):
             if c.kind == "variable":
@@ -603,20 +604,20 @@ class ProofTree:
             elif c.kind == "ladder":
                 values = self._ladders[c.group]
                 reach = self.limits.snap * np.maximum(np.abs(low[k]), np.abs(high[k]))
-                first = np.maximum(np.searchsorted(values, low[k] - reach), whole[c.group])
-                last = np.minimum(np.searchsorted(values, high[k] + reach, side="right") - 1, whole[m + c.group])
+                first = np.maximum(np.searchsorted(values, low[k] - reach), discrete[c.group])
+                last = np.minimum(np.searchsorted(values, high[k] + reach, side="right") - 1, discrete[m + c.group])
                 kept &= first <= last
-                whole[c.group], whole[m + c.group] = first, last
+                discrete[c.group], discrete[m + c.group] = first, last
         for group, slot in enumerate(self._slots):
-            own = [k for k, c in enumerate(self._coordinates) if c.kind == "column" and c.group == group]
-            least, most = np.array([low[k] for k in own]), np.array([high[k] for k in own])
+            columns = [k for k, c in enumerate(self._coordinates) if c.kind == "column" and c.group == group]
+            least, most = np.array([low[k] for k in columns]), np.array([high[k] for k in columns])
             reach = self.limits.snap * np.maximum(np.abs(least), np.abs(most))
-            whole[2 * m + group] = slot.narrowed(whole[2 * m + group], least - reach, most + reach)
-            kept &= whole[2 * m + group] >= 0
+            discrete[2 * m + group] = slot.narrowed(discrete[2 * m + group], least - reach, most + reach)
+            kept &= discrete[2 * m + group] >= 0
         floor = np.where(np.isnan(floor), -INF, floor)
-        whole[-1] = regions.narrowed(whole[-1], floor, np.full(floor.shape, INF))
-        kept &= whole[-1] >= 0
-        return ProofBoxes(real[:, kept], whole[:, kept]), alive[kept]
+        discrete[-1] = regions.narrowed(discrete[-1], floor, np.full(floor.shape, INF))
+        kept &= discrete[-1] >= 0
+        return ProofBoxes(real[:, kept], discrete[:, kept]), alive[kept]
 
     def _widths(self, boxes: ProofBoxes, regions: Clusters) -> np.ndarray:
         """Width of each group of a box; 0 where it cannot be split."""
@@ -629,22 +630,22 @@ class ProofTree:
                 low, high = boxes.real[c.group], boxes.real[v + c.group]
             else:
                 values = self._ladders[c.group]
-                low, high = values[boxes.whole[c.group]], values[boxes.whole[m + c.group]]
+                low, high = values[boxes.discrete[c.group]], values[boxes.discrete[m + c.group]]
             width = np.log(high / low) if c.log else (high - low) / max(c.high - c.low, 1e-300)
             thin = self.limits.thin if c.kind == "variable" else 0.0
             result[self._group_of(c)] = np.where(width > thin, width, 0.0)
         for group, slot in enumerate(self._slots):
-            result[v + m + group] = slot.spread[boxes.whole[2 * m + group]]
-        result[-1] = regions.spread[boxes.whole[-1]]
+            result[v + m + group] = slot.spread[boxes.discrete[2 * m + group]]
+        result[-1] = regions.spread[boxes.discrete[-1]]
         return result
 
     def _single(self, boxes: ProofBoxes) -> np.ndarray:
-        """Tell which boxes are a single design in all that the question sees; regions may be many."""
+        """Mask of boxes that are a single design as far as the question is concerned; regions may be many."""
         v, m = len(self._variables), len(self._ladders)
-        own = v - len(self._lifted)  # what is carried along follows from the rest
-        single: np.ndarray = np.all(boxes.real[:own] == boxes.real[v : v + own], axis=0)
-        single &= np.all(boxes.whole[:m] == boxes.whole[m : 2 * m], axis=0)
-        for slot, nodes in zip(self._slots, boxes.whole[2 * m : -1], strict=True):
+        free = v - len(self._lifted)  # lifted values follow from the other variables
+        single: np.ndarray = np.all(boxes.real[:free] == boxes.real[v : v + free], axis=0)
+        single &= np.all(boxes.discrete[:m] == boxes.discrete[m : 2 * m], axis=0)
+        for slot, nodes in zip(self._slots, boxes.discrete[2 * m : -1], strict=True):
             single &= slot.left[nodes] < 0
         return single
 
@@ -662,10 +663,10 @@ class ProofTree:
             scores, widths = np.concatenate([scores, scores], axis=1), self._widths(boxes, regions)
 
     def _halved(self, boxes: ProofBoxes, group: np.ndarray, regions: Clusters) -> ProofBoxes:
-        """Return all left halves, then all right halves."""
+        """All left halves, then all right halves."""
         v, m = len(self._variables), len(self._ladders)
-        left = ProofBoxes(boxes.real.copy(), boxes.whole.copy())
-        right = ProofBoxes(boxes.real.copy(), boxes.whole.copy())
+        left = ProofBoxes(boxes.real.copy(), boxes.discrete.copy())
+        right = ProofBoxes(boxes.real.copy(), boxes.discrete.copy())
         for c in self._coordinates:
             at = np.flatnonzero(group == self._group_of(c)) if c.kind != "column" else np.empty(0, dtype=np.int64)
             if not len(at):
@@ -676,38 +677,38 @@ class ProofTree:
                 left.real[v + c.group, at] = right.real[c.group, at] = middle
             else:
                 values = self._ladders[c.group]
-                first, last = boxes.whole[c.group, at], boxes.whole[m + c.group, at]
+                first, last = boxes.discrete[c.group, at], boxes.discrete[m + c.group, at]
                 low, high = values[first], values[last]
                 middle = np.sqrt(low * high) if c.log else 0.5 * (low + high)
                 cut = np.clip(np.searchsorted(values, middle, side="right") - 1, first, last - 1)
-                left.whole[m + c.group, at], right.whole[c.group, at] = cut, cut + 1
+                left.discrete[m + c.group, at], right.discrete[c.group, at] = cut, cut + 1
         for k, tree in enumerate([*self._slots, regions]):
             at = np.flatnonzero(group == v + m + k)
-            node = boxes.whole[2 * m + k, at]
-            left.whole[2 * m + k, at], right.whole[2 * m + k, at] = tree.left[node], tree.right[node]
+            node = boxes.discrete[2 * m + k, at]
+            left.discrete[2 * m + k, at], right.discrete[2 * m + k, at] = tree.left[node], tree.right[node]
         return ProofBoxes.joined([left, right])
 
     def _point(self, box: ProofBoxes) -> Point:
-        """Return a design in the middle of a box, of rows and makeable values."""
+        """Design in the middle of a box, of rows and makeable values."""
         model, v, m = self.instance.model, len(self._variables), len(self._ladders)
         values = [0.0] * self.program.n_inputs
-        for k, given in enumerate(self._inputs):
-            if not isinstance(given, int):
-                values[k] = given
+        for k, source in enumerate(self._inputs):
+            if not isinstance(source, int):
+                values[k] = source
                 continue
-            c = self._coordinates[given]
+            c = self._coordinates[source]
             if c.kind == "variable":
                 low, high = float(box.real[c.group, 0]), float(box.real[v + c.group, 0])
                 values[k] = math.sqrt(low * high) if c.log else 0.5 * (low + high)
             elif c.kind == "ladder":
-                values[k] = float(self._ladders[c.group][int(box.whole[[c.group, m + c.group], 0].sum()) // 2])
+                values[k] = float(self._ladders[c.group][int(box.discrete[[c.group, m + c.group], 0].sum()) // 2])
         first = len(model.variables)
         digits: dict[str, int] = {}
         for slot in self.instance.selection.slots:
             group = self._table_of.get(slot.slot)
             row = 0
             if group is not None:
-                node = int(box.whole[2 * m + group, 0])
+                node = int(box.discrete[2 * m + group, 0])
                 row = int(self._rows[group][self._slots[group].first[node]])
             digits[slot.slot] = row
             for k, entry in enumerate(model.data_inputs, start=first):
@@ -717,7 +718,7 @@ class ProofTree:
 
 
 class ProofGrowth:
-    """A proof under way: some regions, and the boxes in which they are not proven yet to hold nothing.
+    """A proof in progress: its regions, and the boxes in which they are not yet proven empty.
 
     Parameters
     ----------
@@ -737,7 +738,7 @@ class ProofGrowth:
         self._stuck: list[np.ndarray] = []  # clusters of regions of boxes that are too small to be split
         self.nodes = 0
         self.witness: Point | None = None
-        self.given_up = False
+        self.abandoned = False
 
     @property
     def closed(self) -> bool:
@@ -746,8 +747,8 @@ class ProofGrowth:
 
     @property
     def under_way(self) -> bool:
-        """Whether going on may still tell something."""
-        return bool(self._pool) and not self.given_up and self.witness is None
+        """True if further work may still settle the proof."""
+        return bool(self._pool) and not self.abandoned and self.witness is None
 
     @property
     def outcome(self) -> ProofOutcome:
@@ -756,17 +757,17 @@ class ProofGrowth:
 
     @property
     def open_regions(self) -> set[int]:
-        """The regions of which boxes are left."""
-        clusters = [boxes.whole[-1] for boxes in self._pool] + self._stuck
+        """Regions with unresolved boxes."""
+        clusters = [boxes.discrete[-1] for boxes in self._pool] + self._stuck
         waiting = np.unique(np.concatenate(clusters)).tolist() if clusters else []
-        found: set[int] = set()
+        regions: set[int] = set()
         while waiting:
             node = waiting.pop()
             if self._regions.left[node] < 0:
-                found.add(int(self._regions.first[node]))
+                regions.add(int(self._regions.first[node]))
             else:
                 waiting += [int(self._regions.left[node]), int(self._regions.right[node])]
-        return found
+        return regions
 
     def go_on(self, boxes: float, deadline: float) -> None:
         """Look into so many boxes more, as far as there are any and time allows."""
@@ -778,7 +779,7 @@ class ProofGrowth:
     def _step(self) -> None:
         tree, regions, limits, pool = self._tree, self._regions, self._tree.limits, self._pool
         if self.nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
-            self.given_up = True
+            self.abandoned = True
             return
         batch = _batch(pool, limits.chunk)
         self.nodes += len(batch)
@@ -788,19 +789,19 @@ class ProofGrowth:
         widths = tree._widths(boxes, regions)
         small = ~np.any(widths > 0, axis=0) | tree._single(boxes)
         # Once more: what is too small to be split has been tightened only now.
-        left = boxes.take(small)
-        left = tree._tightened(left, regions, self._emphasis)[0] if small.any() else left
-        single = tree._single(left)
+        unsplit = boxes.take(small)
+        unsplit = tree._tightened(unsplit, regions, self._emphasis)[0] if small.any() else unsplit
+        single = tree._single(unsplit)
         hopeful = np.argsort(middle)[: limits.tries]
-        few = [left.take(np.flatnonzero(~single)[: limits.tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
+        few = [unsplit.take(np.flatnonzero(~single)[: limits.tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
         # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
-        for point in map(tree._point, ProofBoxes.joined([left.take(single), *few]).each()):
+        for point in map(tree._point, ProofBoxes.joined([unsplit.take(single), *few]).each()):
             if self._confirm(point):
                 self.witness = point
                 return
         if not single.all():
-            self._stuck.append(left.whole[-1, ~single])
-        self.given_up = sum(map(len, self._stuck)) > limits.most_stuck
+            self._stuck.append(unsplit.discrete[-1, ~single])
+        self.abandoned = sum(map(len, self._stuck)) > limits.most_stuck
         if not small.all():
             pool.append(tree._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
 
@@ -812,11 +813,11 @@ def _between(values: np.ndarray, low: float, high: float, snap: float) -> np.nda
 
 def _batch(pool: list[ProofBoxes], chunk: int) -> ProofBoxes:
     """Take boxes from the end of the pool: one chunk, or less where there are fewer."""
-    taken, count = [], 0
+    parts, count = [], 0
     while pool and count < chunk:
-        taken.append(pool.pop())
-        count += len(taken[-1])
-    boxes = ProofBoxes.joined(taken)
+        parts.append(pool.pop())
+        count += len(parts[-1])
+    boxes = ProofBoxes.joined(parts)
     if len(boxes) > chunk:
         pool.append(boxes.take(slice(chunk, None)))
         boxes = boxes.take(slice(0, chunk))

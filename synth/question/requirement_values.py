@@ -153,7 +153,7 @@ def _example(requirement: RequirementRecord) -> str:
 
 
 def _check_range(r: RequirementRecord, typed: Any, value: float) -> None:
-    if within(value, r.lower, r.upper, MARGINS.stated):
+    if within(value, r.lower, r.upper, MARGINS.conversion):
         return
     low, high = typed_quantity(r.lower, r.unit), typed_quantity(r.upper, r.unit)
     if np.isfinite(r.lower) and np.isfinite(r.upper):

@@ -79,7 +79,7 @@ class VariableRanges:
         if k is None:
             return
         v = self.variables[k]
-        if not within(value, v.lower, v.upper, MARGINS.stated):
+        if not within(value, v.lower, v.upper, MARGINS.conversion):
             raise InputError(f"fix: {v.name}", typed, shown_range(v))
         self.lower[k] = self.upper[k] = value
         self.pinned[k] = True
@@ -95,7 +95,7 @@ class VariableRanges:
         result = []
         for k, v in enumerate(self.variables):
             values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
-            inside = within(values, self.lower[k], self.upper[k], MARGINS.stated)
+            inside = within(values, self.lower[k], self.upper[k], MARGINS.conversion)
             if len(values) and not inside.any():
                 low, high = typed_quantity(self.lower[k], v.unit), typed_quantity(self.upper[k], v.unit)
                 right = "a range that holds a makeable value (or grid: false)"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from synth.order.feasibility import Status
-from synth.order.pareto import Scale, rank, signs_of
+from synth.order.pareto import Scale, rank, senses_of
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame
 from synth.results.front import ParetoFront
@@ -60,7 +60,7 @@ def scale_of(designs: Sequence[Design], objectives: Mapping[str, str], scale: Sc
     """
     if not designs or len(objectives) < 2:
         return None
-    signed = _objectives(designs, objectives) * signs_of(objectives)
+    signed = _objectives(designs, objectives) * senses_of(objectives)
     return Scale.of(signed) if scale is None else scale.begun_at(signed)
 
 

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import InputError
-from synth.folders.files import found_from, named_from, yaml_text
+from synth.folders.files import named_from, resolved_source, yaml_text
 from synth.order.feasibility import Status, binds
 from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
@@ -96,7 +96,7 @@ class Frame:
 
     def located(self, folder: Path) -> Frame:
         """Return the frame with tables that files in a folder name found again."""
-        return self._renamed(lambda text: found_from(text, folder))
+        return self._renamed(lambda text: resolved_source(text, folder))
 
     def _renamed(self, rename: Callable[[str], str]) -> Frame:
         named = self.restated.get("catalogs")

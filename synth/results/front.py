@@ -388,7 +388,7 @@ def front_record(front: ParetoFront, digests: Mapping[str, str] = MappingProxyTy
         "statistics": plain(front.statistics),
         "explanation": plain(front.explanation),
         "parts": rows,
-        **({"scale": front.scale.told(frame.objectives)} if front.scale is not None else {}),
+        **({"scale": front.scale.as_record(frame.objectives)} if front.scale is not None else {}),
         **digests,
         "designs": [design_record(d) for d in front.designs],
     }

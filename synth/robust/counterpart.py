@@ -35,13 +35,13 @@ if TYPE_CHECKING:
     from synth.model.model import Model
     from synth.results import Design
 
-# Part of what is asked, not of how it is searched: search, check and verification pose the same corners.
-MOST_OPEN = 3  # things of unknown direction that all corners are posed of
+# Part of the question, not of the search: search, check and verification pose the same corners.
+MOST_OPEN = 3  # quantities of unknown direction that all corners are posed of
 Position = tuple[float | None, ...]
 
 
 def robust_counterpart(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None) -> DesignProblem:
-    """Return a problem whose limits hold over a range; the problem itself where designs are only rated.
+    """Problem whose limits hold over a range; the problem itself where designs are only rated.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def robust_counterpart(problem: DesignProblem, robust: Any, limits: Mapping[str,
     limits : mapping or None
         The user's own limits, which are to hold over the range as well.
     """
-    asked = read_remaining(robust)
-    return problem if asked is None or asked.mode == RATE else RobustProblem(nominal(problem), asked, limits or {})
+    block = read_remaining(robust)
+    return problem if block is None or block.mode == RATE else RobustProblem(nominal(problem), block, limits or {})
 
 
 def nominal(problem: DesignProblem) -> DesignProblem:
@@ -66,41 +66,41 @@ class RobustProblem(DesignProblem):
     Parameters
     ----------
     base : DesignProblem
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     limits : mapping
         The user's own limits.
     """
 
-    def __init__(self, base: DesignProblem, asked: Uncertainty, limits: Mapping[str, Any]) -> None:
+    def __init__(self, base: DesignProblem, uncertainty: Uncertainty, limits: Mapping[str, Any]) -> None:
         self.name, self.title, self.sources = base.name, base.title, base.sources
         super().__init__(**base.options)
-        self.base, self.asked, self.own_limits = base, asked, limits
+        self.base, self.uncertainty, self.user_limits = base, uncertainty, limits
         self.simulation_settings, self.understands = base.simulation_settings, base.understands
         self.operating_point = base.operating_point
-        self.restated = {**base.restated, "robust": asked.block()}
+        self.restated = {**base.restated, "robust": uncertainty.block()}
 
     def declare(self, d: Declaration) -> None:
         """Declare the problem, then its limits at corners of the range."""
         self.base.declare(d)
-        things = scattered(self.asked, d)
-        stated = [d.requirements[m.name].sx is not None for x in things for m in x.members if m.kind == "requirement"]
+        quantities = scattered(self.uncertainty, d)
+        symbols = [d.requirements[m.name].sx for x in quantities for m in x.members if m.kind == "requirement"]
         complete = all(r.given or r.optional or r.default is not None for r in d.requirements.values())
-        if not complete or not all(stated):
-            return  # nothing can be asked of this yet
-        corners = _Corners(self, d, things)
+        if not complete or any(x is None for x in symbols):
+            return  # an incomplete declaration has no corners yet
+        corners = _Corners(self, d, quantities)
         shifted: dict[Position, _Shifted] = {}
-        for limit, position in corners.wanted():
+        for limit, position in corners.cases():
             # What a limit does not depend on may stand anywhere.
             place = tuple(0.0 if p is None else p for p in position)
             if place not in shifted:
-                shifted[place] = _Shifted(d, things, place)
+                shifted[place] = _Shifted(d, quantities, place)
                 self.base.declare(shifted[place])
-            shown = ", ".join(x.shown(p) for x, p in zip(things, position, strict=True) if p is not None)
+            shown = ", ".join(x.shown(p) for x, p in zip(quantities, position, strict=True) if p is not None)
             name = f"{limit.name} ({shown})"
             if name not in d.limits:
-                d.limits[name] = _posed(limit, shifted[place], name)
-        _refuse(d, things, shifted.values())
+                d.limits[name] = _as_limit(limit, shifted[place], name)
+        _refuse(d, quantities, shifted.values())
 
     @property
     def declared_by(self) -> type[DesignProblem]:
@@ -124,43 +124,43 @@ class RobustProblem(DesignProblem):
         return self.base.state(spec, design, point)
 
 
-def _posed(limit: Constraint, d: Declaration, name: str) -> Limit:
-    """Return a limit as a declaration at a corner has it."""
+def _as_limit(limit: Constraint, d: Declaration, name: str) -> Limit:
+    """A limit as the declaration at a corner has it."""
     there = limit.declared(d.derived[limit.quantity].sx) if limit.quantity else d.limits[limit.name]
     return replace(there, name=name, origin=Origin.RANGE)
 
 
 class _Corners:
-    """Which limits are posed where."""
+    """Corners at which each limit is posed."""
 
-    def __init__(self, problem: RobustProblem, d: Declaration, things: Sequence[Scattered]) -> None:
-        self.things, self.d, self.asked = things, d, problem.asked
-        given = frozenset(name for name, r in d.requirements.items() if r.given)
-        self.model: Model = problem.base.model(given, d.catalogs)
+    def __init__(self, problem: RobustProblem, d: Declaration, quantities: Sequence[Scattered]) -> None:
+        self.quantities, self.d, self.uncertainty = quantities, d, problem.uncertainty
+        specified = frozenset(name for name, r in d.requirements.items() if r.given)
+        self.model: Model = problem.base.model(specified, d.catalogs)
         self.shapes = classify(self.model, *declared_ranges(self.model, d.catalogs))
         number = self.model.input_number
-        self.inputs = [[number[m.key] for m in x.members if m.key in number] for x in things]
+        self.inputs = [[number[m.key] for m in x.members if m.key in number] for x in quantities]
         self.marked = [self.model.program.dependence(k) for k in self.inputs]
-        self.own = self._of_the_user(problem.own_limits)
+        self.user_limits = self._of_the_user(problem.user_limits)
 
     def _of_the_user(self, limits: Mapping[str, Any]) -> list[Constraint]:
         check_number_of_limits(limits)
-        found: list[Constraint] = []
+        constraints: list[Constraint] = []
         for word, texts in limits.items():
             name = self.d.names().get(str(word), "")
             if name not in self.d.derived:
                 continue  # bounds of variables and counts; what is unknown is refused elsewhere
             unit = self.d.derived[name].unit
-            found += [
+            constraints += [
                 self.model.constraint_on(name, sense, bound) for sense, bound, _ in read_limits(name, unit, texts)
             ]
-        return found
+        return constraints
 
-    def wanted(self) -> list[tuple[Constraint, Position]]:
-        """Return the limits with the positions at which they are posed."""
-        found = []
+    def cases(self) -> list[tuple[Constraint, Position]]:
+        """Limits, each with a position at which it is posed."""
+        result = []
         # The shape of a limit is turned already so that small is good; that of a quantity is not.
-        for limit in (*self.model.constraints, *self.own):
+        for limit in (*self.model.constraints, *self.user_limits):
             if limit.sense == "equal":
                 continue
             on_quantity = bool(limit.quantity)
@@ -168,18 +168,18 @@ class _Corners:
             turned = -1 if on_quantity and limit.sense == "at_least" else 1
             ends = [
                 self._ends(j, shape, any(self.marked[j][k] for k in limit.nodes), turned)
-                for j in range(len(self.things))
+                for j in range(len(self.quantities))
             ]
             if all(e == (None,) for e in ends):
                 continue
             if sum(len(e) > 1 for e in ends) <= MOST_OPEN:
-                found += [(limit, position) for position in product(*ends)]
-            for scenario in self.asked.scenarios.get(limit.name, ()):
-                found.append((limit, tuple(None if e == (None,) else p for e, p in zip(ends, scenario, strict=True))))
-        return found
+                result += [(limit, position) for position in product(*ends)]
+            for scenario in self.uncertainty.scenarios.get(limit.name, ()):
+                result.append((limit, tuple(None if e == (None,) else p for e, p in zip(ends, scenario, strict=True))))
+        return result
 
     def _ends(self, j: int, shape: Shape, matters: bool, turned: int) -> tuple[float | None, ...]:
-        """Return the positions of one thing at which a limit may be worst."""
+        """Positions of one scattering quantity at which a limit may be worst."""
         if not matters:
             return (None,)
         if shape.sign != 1:
@@ -202,16 +202,16 @@ class _ShiftedPart(Part):
 class _Shifted(Declaration):
     """The declaration of a problem at one position of the range, on the symbols of the nominal one."""
 
-    def __init__(self, around: Declaration, things: Sequence[Scattered], position: Sequence[float | None]) -> None:
-        super().__init__(*around.asked())
+    def __init__(self, around: Declaration, quantities: Sequence[Scattered], position: Sequence[float | None]) -> None:
+        super().__init__(*around.purpose())
         self._around = around
-        self._moves = {m.key: (x, p) for x, p in zip(things, position, strict=True) for m in x.members}
+        self._moves = {m.key: (x, p) for x, p in zip(quantities, position, strict=True) for m in x.members}
 
     def _moved(self, member: Member, symbol: Any) -> Any:
-        thing, position = self._moves.get(member.key, (None, None))
-        if thing is None or position is None:
+        quantity, position = self._moves.get(member.key, (None, None))
+        if quantity is None or position is None:
             return symbol
-        return thing.moved(member, lambda m: symbol if m == member else self._nominal(m), position, self._column)
+        return quantity.moved(member, lambda m: symbol if m == member else self._nominal(m), position, self._column)
 
     def _nominal(self, member: Member) -> Any:
         if member.kind == "part":
@@ -247,8 +247,8 @@ class _Shifted(Declaration):
     def part(self, slot: str, *args: Any, **details: Any) -> Part:
         """Declare a slot; return the part with its columns moved."""
         super().part(slot, *args, **details)
-        own = self._around.slots[slot]
-        fields = (own.slot, own.table, own.where, own.symbol, own.text, own.source, own.is_slot, own.known, own.columns)
+        row = self._around.slots[slot]
+        fields = (row.slot, row.table, row.where, row.symbol, row.text, row.source, row.is_slot, row.known, row.columns)
         return _ShiftedPart(*fields, _move=self._moved)
 
     def row(self, table: str, designation: str) -> Part:
@@ -256,10 +256,10 @@ class _Shifted(Declaration):
         return self._around.rows[f"{table}:{designation}"]
 
 
-def _refuse(d: Declaration, things: Sequence[Scattered], corners: Iterable[Declaration]) -> None:
-    """Refuse as well what the family refuses at a corner."""
+def _refuse(d: Declaration, quantities: Sequence[Scattered], corners: Iterable[Declaration]) -> None:
+    """Add the refusals of the family at the corners."""
     moved: dict[str, str] = {}
-    for x in things:
+    for x in quantities:
         for m in x.members:
             if m.kind == "requirement":
                 moved[str(d.requirements[m.name].sx)] = x.name
@@ -267,9 +267,9 @@ def _refuse(d: Declaration, things: Sequence[Scattered], corners: Iterable[Decla
                 moved[str(d.slots[m.name].columns[m.column].sx)] = x.name
     nominal_ones, seen = list(d.refusals), set[str]()
     for corner in corners:
-        for own, there in zip(nominal_ones, corner.refusals, strict=True):
-            names = dict.fromkeys(moved[str(s)] for s in ca.symvar(own.when) if str(s) in moved)
-            if names and (text := f"{own.code} {there.when}") not in seen:
+        for nominal, there in zip(nominal_ones, corner.refusals, strict=True):
+            names = dict.fromkeys(moved[str(s)] for s in ca.symvar(nominal.when) if str(s) in moved)
+            if names and (text := f"{nominal.code} {there.when}") not in seen:
                 seen.add(text)
-                message = f"{own.message}, over the whole range of {' and '.join(names)}"
+                message = f"{nominal.message}, over the whole range of {' and '.join(names)}"
                 d.refusals.append(replace(there, message=message))

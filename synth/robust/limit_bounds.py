@@ -1,4 +1,4 @@
-"""What intervals prove of limits while things scatter around one design.
+"""What intervals prove of limits while quantities scatter around one design.
 
 A limit says ``small <= large``. Where the slopes of both sides show that it only rises or only falls with each thing
 that scatters, its worst point is a known corner. Elsewhere monotone directions are held at their worst end, and the
@@ -24,15 +24,15 @@ from synth.proof.interval_arithmetic import ZERO, Pair, is_thin
 from synth.proof.tape import Expr, Ref, Tape
 from synth.robust.settings import RobustLimits
 
-Box: TypeAlias = tuple[np.ndarray, np.ndarray]  # lower and upper positions (things,), or of many boxes (boxes, things)
+Box: TypeAlias = tuple[np.ndarray, np.ndarray]  # lower and upper ends (quantities,) or (boxes, quantities)
 WHERE = (OP_SELECT, ca.OP_IF_ELSE_ZERO)
 
 
 @dataclass(frozen=True)
 class MovingInput:
-    """An input of the program that moves with a thing that scatters, and its values at positions of the range."""
+    """An input of the program that moves with a scattering quantity, and its values at positions of the range."""
 
-    thing: int
+    quantity: int
     number: int
     at: Callable[[Any], Any]
 
@@ -77,10 +77,10 @@ class LimitBounds:
     values : list of float
         Inputs of the program at the nominal point.
     moving : list of MovingInput
-    things : int
+    quantities : int
         How many scatter.
     matters : mapping
-        Limit -> for each thing whether it depends on it.
+        Limit -> for each quantity whether the limit depends on it.
     settings : RobustLimits
     """
 
@@ -89,24 +89,24 @@ class LimitBounds:
         program: Program,
         values: Sequence[float],
         moving: Sequence[MovingInput],
-        things: int,
+        quantities: int,
         matters: Mapping[str, Sequence[bool]],
         settings: RobustLimits,
     ) -> None:
         self.program, self.values, self.moving = program, values, moving
-        self.things, self.matters, self.settings = things, matters, settings
+        self.quantities, self.matters, self.settings = quantities, matters, settings
 
     def monotone(self, limits: Sequence[Constraint]) -> list[MonotoneLimit]:
         """Directions of limits over the whole range."""
-        whole = np.zeros(self.things), np.ones(self.things)
-        _, inputs = self.leaves(whole)
+        full_range = np.zeros(self.quantities), np.ones(self.quantities)
+        _, inputs = self.leaves(full_range)
         encloser = Encloser(Tape(), self.program)
-        found = encloser.run(self.program.nodes, self.needed(limits), inputs)
-        regularity = _Regularity(encloser, found)
-        return [self._direction(_Sides(encloser, found, regularity, x, self.things), x) for x in limits]
+        enclosed = encloser.run(self.program.nodes, self.needed(limits), inputs)
+        regularity = _Regularity(encloser, enclosed)
+        return [self._direction(_Sides(encloser, enclosed, regularity, x, self.quantities), x) for x in limits]
 
     def _direction(self, sides: _Sides, limit: Constraint) -> MonotoneLimit:
-        worst = np.full(self.things, math.nan)
+        worst = np.full(self.quantities, math.nan)
         worst[np.logical_not(self.matters[limit.name])] = 1.0  # anywhere
         if sides.regular.smooth and sides.regular.defined:
             rises, falls = _directions(np.array(sides.slopes, dtype=float), self.settings.steep)
@@ -124,7 +124,7 @@ class LimitBounds:
         known : MonotoneLimit
             Its directions over the whole range.
         residual : callable
-            Residuals of the limit at positions (points, things).
+            Residuals of the limit at positions (points, quantities).
         """
         settings = self.settings
         low = np.where(np.isnan(known.worst), 0.0, known.worst)
@@ -137,8 +137,8 @@ class LimitBounds:
             lows, highs = (side[-settings.batch :] for side in waiting)
             waiting = waiting[0][: -len(lows)], waiting[1][: -len(lows)]
             spent += len(lows)
-            found = bounds.of(lows, highs)
-            unproven = ~found.holds
+            current = bounds.of(lows, highs)
+            unproven = ~current.holds
             if not unproven.any():
                 continue
             lows, highs = lows[unproven], highs[unproven]
@@ -148,7 +148,7 @@ class LimitBounds:
                 return RangeSearch(violated=middles[np.argmax(r)])
             if (highs - lows).max(axis=1).min() < settings.narrowest:
                 return RangeSearch()  # a point that is too close to its limit, or to a pole
-            parts = _parts(lows, highs, found.rises[unproven], found.falls[unproven], found.reach[unproven])
+            parts = _parts(lows, highs, current.rises[unproven], current.falls[unproven], current.reach[unproven])
             waiting = np.concatenate([waiting[0], parts[0]]), np.concatenate([waiting[1], parts[1]])
         return RangeSearch(proven=bool(bounds.leaves))
 
@@ -157,12 +157,12 @@ class LimitBounds:
         return self.program.needed([k for x in limits for k in x.nodes])
 
     def leaves(self, box: Box) -> tuple[list[_Leaf], list[Enclosed]]:
-        """Return the inputs that move over a part of the range, and all inputs as enclosures."""
+        """Inputs that move over a part of the range, and all inputs as enclosures."""
         inputs = [Enclosed.constant(float(x)) for x in self.values]
         leaves: list[_Leaf] = []
         groups: dict[int, list[MovingInput]] = {}
         for x in self.moving:
-            groups.setdefault(x.thing, []).append(x)
+            groups.setdefault(x.quantity, []).append(x)
         for j, members in groups.items():
             ends = [tuple(float(x.at(float(side[j]))) for side in box) for x in members]
             log = all(min(pair) > 0 for pair in ends)
@@ -179,12 +179,12 @@ class LimitBounds:
 
 def _parts(lows: np.ndarray, highs: np.ndarray, rises: np.ndarray, falls: np.ndarray, reach: np.ndarray) -> Box:
     """Boxes with monotone directions held at their worst end; where there are none, halves across the steepest."""
-    wide = highs > lows
-    held = ((rises | falls) & wide).any(axis=1)
+    divisible = highs > lows
+    held = ((rises | falls) & divisible).any(axis=1)
     low, high = np.where(rises, highs, lows)[held], np.where(falls, lows, highs)[held]
-    lows, highs, wide, reach = lows[~held], highs[~held], wide[~held], reach[~held]
+    lows, highs, divisible, reach = lows[~held], highs[~held], divisible[~held], reach[~held]
     known = np.isfinite(reach).all(axis=1, keepdims=True)
-    across = np.argmax(np.where(wide, np.where(known, reach, highs - lows), -1.0), axis=1)
+    across = np.argmax(np.where(divisible, np.where(known, reach, highs - lows), -1.0), axis=1)
     rows = np.arange(len(lows))
     left, right = highs.copy(), lows.copy()
     left[rows, across] = right[rows, across] = 0.5 * (lows + highs)[rows, across]
@@ -193,11 +193,11 @@ def _parts(lows: np.ndarray, highs: np.ndarray, rises: np.ndarray, falls: np.nda
 
 @dataclass(frozen=True)
 class _Leaf:
-    """An input that moves, as enclosures begin with it: its range, and how it moves with its thing."""
+    """A moving input as leaf of enclosures: its range, and its slope along the scattering quantity."""
 
     moving: MovingInput
     log: bool
-    slope: float  # by the distance of the leading member of its thing, negative where it falls with the position
+    slope: float  # by the distance of the leading member of its quantity, negative where it falls with the position
     ends: tuple[float, float]
     leads: bool
 
@@ -206,7 +206,7 @@ class _Leaf:
         low, high = self.ends
         sign = 1 if low > 0 else -1 if high < 0 else 0
         least = min(abs(low), abs(high)) if sign else 0.0
-        slopes = {self.moving.thing: (self.slope, self.slope)} if low < high else {}
+        slopes = {self.moving.quantity: (self.slope, self.slope)} if low < high else {}
         return Enclosed(pair, (middle, middle), self.log, slopes, sign, pair, pair, least)
 
     def middle(self, low: Any, high: Any) -> Any:
@@ -227,28 +227,28 @@ class _Regular:
 
 
 class _Regularity:
-    """How regular instructions surely are over a box, or over many boxes."""
+    """Proven regularity of instructions over a box, or over many boxes."""
 
-    def __init__(self, encloser: Encloser, found: Mapping[int, Enclosed]) -> None:
-        self._encloser, self._found, self._do = encloser, found, encloser.do
+    def __init__(self, encloser: Encloser, enclosed: Mapping[int, Enclosed]) -> None:
+        self._encloser, self._enclosed, self._do = encloser, enclosed, encloser.do
         self._known: dict[int, _Regular] = {}
-        for k in found:
+        for k in enclosed:
             self._known[k] = self._of(encloser.program.nodes[k])
 
     def of(self, nodes: Iterable[int]) -> _Regular:
         """Regularity of several instructions together."""
         known = [self._known[k] for k in nodes]
-        whole = all(self._found[k].whole for k in nodes)
-        smooth = self._all(x.smooth for x in known) if whole else False
+        complete = all(self._enclosed[k].complete for k in nodes)
+        smooth = self._all(x.smooth for x in known) if complete else False
         return _Regular(self._all(x.defined for x in known), smooth)
 
     def _of(self, node: Node) -> _Regular:
         if node.op in (ca.OP_CONST, ca.OP_INPUT):
             return _Regular(True, True)
         args = [self._known[a] for a in node.args]
-        ranges = [self._found[a].range for a in node.args]
+        ranges = [self._enclosed[a].range for a in node.args]
         if node.op not in WHERE:
-            defined = self._all([*(x.defined for x in args), self._own(node, ranges)])
+            defined = self._all([*(x.defined for x in args), self._defined_for(node, ranges)])
             return _Regular(defined, self._all(x.smooth for x in args))
         # The side that is not taken may be anything.
         yes, no = self._encloser.truth(ranges[0])
@@ -257,7 +257,7 @@ class _Regularity:
         smooth = self._all([self._either(yes, no), *(self._either(other, x.smooth) for other, x in sides)])
         return _Regular(defined, smooth)
 
-    def _own(self, node: Node, r: Sequence[Pair]) -> Expr:
+    def _defined_for(self, node: Node, r: Sequence[Pair]) -> Expr:
         """Mask of boxes in which an instruction is defined for all its arguments."""
         do, op = self._do, node.op
         domain = OPERATIONS[op].domain if op in OPERATIONS else None
@@ -305,19 +305,19 @@ class _Sides:
     def __init__(
         self,
         encloser: Encloser,
-        found: Mapping[int, Enclosed],
+        enclosed: Mapping[int, Enclosed],
         regularity: _Regularity,
         limit: Constraint,
-        things: int,
+        quantities: int,
     ) -> None:
-        sides = [found[n] if isinstance(n, int) else Enclosed.constant(float(n)) for n in (limit.value, limit.bound)]
+        sides = [enclosed[n] if isinstance(n, int) else Enclosed.constant(float(n)) for n in (limit.value, limit.bound)]
         self.small, self.large = sides if limit.sense == "at_most" else sides[::-1]
         self.regular = regularity.of(limit.nodes)
         self.log = self.small.sign > 0 and self.large.sign > 0
-        own = encloser.logarithmic(self.small) if self.log else encloser.linear(self.small)
-        its = encloser.logarithmic(self.large) if self.log else encloser.linear(self.large)
-        slopes: Slopes = encloser.merged(own, its, encloser.subtract)
-        self.slopes: list[Pair] = [slopes.get(k, ZERO) for k in range(things)]
+        small_slopes = encloser.logarithmic(self.small) if self.log else encloser.linear(self.small)
+        large_slopes = encloser.logarithmic(self.large) if self.log else encloser.linear(self.large)
+        slopes: Slopes = encloser.merged(small_slopes, large_slopes, encloser.subtract)
+        self.slopes: list[Pair] = [slopes.get(k, ZERO) for k in range(quantities)]
 
 
 def _directions(slopes: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
@@ -331,7 +331,7 @@ def _directions(slopes: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarra
 
 @dataclass(frozen=True)
 class _PartBounds:
-    """What is proven of many boxes: where the limit holds; per thing where it is monotone, and by how much it moves."""
+    """Bounds of many boxes: where the limit holds; per quantity where it is monotone, and by how much it moves."""
 
     holds: np.ndarray
     rises: np.ndarray
@@ -344,7 +344,7 @@ class _RecordedBounds:
 
     def __init__(self, around: LimitBounds, limit: Constraint, box: Box, size: float) -> None:
         self._limit, self._size, self._settings = limit, size, around.settings
-        program, things = around.program, around.things
+        program, quantities = around.program, around.quantities
         leaves, inputs = around.leaves(box)
         self.leaves = [leaf for leaf in leaves if leaf.ends[0] < leaf.ends[1]]
         order = around.needed([limit])
@@ -358,32 +358,32 @@ class _RecordedBounds:
                 handed += refs
                 inputs[leaf.moving.number] = leaf.enclosed((refs[0], refs[1]), refs[2])
             encloser = Encloser(tape, program, known=scout.record)
-            found = encloser.run(program.nodes, order, inputs)
-            sides = _Sides(encloser, found, _Regularity(encloser, found), limit, things)
+            enclosed = encloser.run(program.nodes, order, inputs)
+            sides = _Sides(encloser, enclosed, _Regularity(encloser, enclosed), limit, quantities)
         self._log = sides.log
-        told = [sides.small.range[1], sides.large.range[0], sides.small.center[1], sides.large.center[0]]
+        ends = [sides.small.range[1], sides.large.range[0], sides.small.center[1], sides.large.center[0]]
         slopes = [end for pair in sides.slopes for end in pair]
-        self._kernel = tape.kernel(handed, [sides.regular.defined, sides.regular.smooth, *told, *slopes])
+        self._kernel = tape.kernel(handed, [sides.regular.defined, sides.regular.smooth, *ends, *slopes])
 
     def of(self, lows: np.ndarray, highs: np.ndarray) -> _PartBounds:
-        """Bounds over boxes (boxes, things)."""
+        """Bounds over boxes (boxes, quantities)."""
         handed: list[np.ndarray] = []
         halves = np.zeros_like(lows)
         for leaf in self.leaves:
-            j = leaf.moving.thing
+            j = leaf.moving.quantity
             ends = [np.asarray(leaf.moving.at(side[:, j]), dtype=float) for side in (lows, highs)]
             low, high = np.minimum(*ends), np.maximum(*ends)
             handed += [low, high, leaf.middle(low, high)]
             if leaf.leads:
                 halves[:, j] = leaf.half(low, high)
         with np.errstate(all="ignore"):
-            told = [np.broadcast_to(np.asarray(x, dtype=float), (len(lows),)) for x in self._kernel.run(handed)]
-            defined, smooth = told[0] > 0.5, told[1] > 0.5
-            slopes = np.stack(told[6:], axis=-1).reshape(*lows.shape, 2)
+            outputs = [np.broadcast_to(np.asarray(x, dtype=float), (len(lows),)) for x in self._kernel.run(handed)]
+            defined, smooth = outputs[0] > 0.5, outputs[1] > 0.5
+            slopes = np.stack(outputs[6:], axis=-1).reshape(*lows.shape, 2)
             reach = np.where(halves > 0, np.abs(slopes).max(axis=2) * halves, 0.0)
             rises, falls = _directions(slopes, self._settings.steep)
             certain = (smooth & defined)[:, None]
-            proven = defined & self._below(told[2:6], reach.sum(axis=1))
+            proven = defined & self._below(outputs[2:6], reach.sum(axis=1))
         return _PartBounds(proven, rises & certain, falls & certain, reach)
 
     def _below(self, ends: list[np.ndarray], reach: np.ndarray) -> np.ndarray:

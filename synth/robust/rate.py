@@ -53,7 +53,7 @@ class Ratings:
 
     def files(self) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text."""
-        told = {
+        record = {
             "family": self.designs[0].frame.family if self.designs else None,
             "robust": dict(self.asked),
             "rated": len(self.designs),
@@ -65,7 +65,7 @@ class Ratings:
         return {
             "rating.csv": csv_text(*self._table()),
             "robust.csv": csv_text(*limits_table(self.designs)),
-            "rating.json": json.dumps(told, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
+            "rating.json": json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
         }
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
@@ -83,13 +83,13 @@ class Ratings:
         return columns, [[d.rank, *rating_row(d), *design_row(d.frame, d)] for d in self.designs]
 
 
-def rater_for(frame: Frame, asked: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:
+def rater_for(frame: Frame, uncertainty: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:
     """Rating function for the designs of a frame.
 
     Parameters
     ----------
     frame : Frame
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     problem, catalogs : optional
         As for :func:`rate`.
@@ -99,10 +99,10 @@ def rater_for(frame: Frame, asked: Uncertainty, problem: Any = None, catalogs: A
     InputError
         When the block does not fit the family, or its tables cannot be had.
     """
-    own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
-    tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
+    base = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
+    tables = catalogs_for(base, frame.restated.get("catalogs") if catalogs is None else catalogs)
     limits = frame.restated.get("limits") or {}
-    return Rater(Request(problem=own, requirements=frame.requirements, catalogs=tables, limits=limits), asked)
+    return Rater(Request(problem=base, requirements=frame.requirements, catalogs=tables, limits=limits), uncertainty)
 
 
 def rate(
@@ -150,12 +150,12 @@ def rate(
     if not designs:
         raise InputError("front", "no designs", "a front with designs")
     frame = designs[0].frame
-    asked = read_block(frame.restated.get("robust") if robust is None else robust)
+    uncertainty = read_block(frame.restated.get("robust") if robust is None else robust)
     question = source.question if isinstance(source, ParetoFront) else None
     if question is not None and problem is None:
         problem, catalogs = nominal(question.problem), question.catalogs if catalogs is None else catalogs
-    rater = rater_for(frame, asked, problem, catalogs)
+    rater = rater_for(frame, uncertainty, problem, catalogs)
     deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
-    found, stopped = rater.rate(designs, progress, deadline)
-    rated = [replace(d, robust=r) for d, r in zip(designs, found, strict=False)]
-    return Ratings(rated, asked.block(), len(designs) - len(rated), stopped)
+    ratings, stopped = rater.rate(designs, progress, deadline)
+    rated = [replace(d, robust=r) for d, r in zip(designs, ratings, strict=False)]
+    return Ratings(rated, uncertainty.block(), len(designs) - len(rated), stopped)

@@ -44,7 +44,7 @@ class Rater:
     ----------
     request : Request
         The problem without limits over the range, its requirements, tables and the user's own limits count.
-    asked : Uncertainty
+    uncertainty : Uncertainty
         What scatters.
     settings : RobustLimits, optional
 
@@ -54,21 +54,21 @@ class Rater:
         When the problem has no such thing.
     """
 
-    def __init__(self, request: Request, asked: Uncertainty, settings: RobustLimits = ROBUST) -> None:
+    def __init__(self, request: Request, uncertainty: Uncertainty, settings: RobustLimits = ROBUST) -> None:
         self.settings = settings
         self.instance = Instance(replace(request, parts={}, fix={}), restrict=False)
-        self.model, self.asked = self.instance.model, asked
+        self.model, self.uncertainty = self.instance.model, uncertainty
         d = self.model.declaration
-        self.things = scattered(asked, d)
-        check_values(self.things, d, self.instance.values.requirements)
-        self.units = {x.name: x.unit for x in self.things}
+        self.quantities = scattered(uncertainty, d)
+        check_values(self.quantities, d, self.instance.values.requirements)
+        self.units = {x.name: x.unit for x in self.quantities}
         known = self.model.input_number
-        moving = [(j, m, known[m.key]) for j, x in enumerate(self.things) for m in x.members if m.key in known]
+        moving = [(j, m, known[m.key]) for j, x in enumerate(self.quantities) for m in x.members if m.key in known]
         self.moving: list[tuple[int, Member, int]] = moving  # thing, member, number of the input
         self.limits = [x for x in self.instance.constraints if x.sense != "equal"]
-        count = len(self.things)
+        count = len(self.quantities)
         self.corners = np.array(list(product((0.0, 1.0), repeat=count)))
-        self.samples = _sobol(count, asked.samples, asked.seed)
+        self.samples = _sobol(count, uncertainty.samples, uncertainty.seed)
         program = self.model.program
         # What a limit depends on, per thing.
         marked = [program.dependence([k for i, _, k in self.moving if i == j]) for j in range(count)]
@@ -116,13 +116,13 @@ class Rater:
         corners, samples = self.residuals(design, self.corners), self.residuals(design, self.samples)
         with np.errstate(all="ignore"):
             worst = self._worst_points(design, np.concatenate([corners, samples], axis=1))
-        sides = self.sides(design, np.array([w.position for w in worst]).reshape(-1, len(self.things)))
-        told: dict[str, LimitRating] = {}
+        sides = self.sides(design, np.array([w.position for w in worst]).reshape(-1, len(self.quantities)))
+        limit_ratings: dict[str, LimitRating] = {}
         for j, (limit, w) in enumerate(zip(self.limits, worst, strict=True)):
             if w.residual == -math.inf:
                 continue
             value, bound = float(sides[j][0][j]), float(sides[j][1][j])
-            told[limit.name] = LimitRating(
+            limit_ratings[limit.name] = LimitRating(
                 holds=w.holds,
                 proof=w.proof,
                 residual=_finite(w.residual),
@@ -132,38 +132,38 @@ class Rater:
                 at=self.at(design, w.position, limit.name),
                 position=[float(p) for p in w.position],
             )
-        return self._summary(told, samples)
+        return self._summary(limit_ratings, samples)
 
-    def _summary(self, told: dict[str, LimitRating], samples: np.ndarray) -> DesignRating:
+    def _summary(self, limit_ratings: dict[str, LimitRating], samples: np.ndarray) -> DesignRating:
         fine = np.ones(samples.shape[1], dtype=bool)
-        for x, own in zip(self.limits, samples, strict=True):
-            fine &= holds(own, x.guard)
+        for x, residual in zip(self.limits, samples, strict=True):
+            fine &= holds(residual, x.guard)
         hits, count = int(fine.sum()), samples.shape[1]
-        verdicts = [x["holds"] for x in told.values()]
+        verdicts = [x["holds"] for x in limit_ratings.values()]
         holding = False if False in verdicts else None if None in verdicts else True
-        low, high = (1.0, 1.0) if holding else _interval(hits, count, self.asked.confidence)
+        low, high = (1.0, 1.0) if holding else _interval(hits, count, self.uncertainty.confidence)
         share = hits / count if holding or hits < count else low  # samples alone never show a yield of 1
         if holding is False:
             high = min(high, math.nextafter(1.0, 0.0))
         # What decides comes first: limits that fail, then those that are not shown to hold.
-        leading = {name: x["utilisation"] for name, x in told.items() if x["holds"] is holding}
+        leading = {name: x["utilisation"] for name, x in limit_ratings.items() if x["holds"] is holding}
         # What has no share to tell is past all bounds, or cannot be computed.
         name = next(iter(most_used({n: math.inf if used is None else used for n, used in leading.items()})), "")
-        proven = holding or (holding is False and told[name]["proof"] == PROVEN)
+        proven = holding or (holding is False and limit_ratings[name]["proof"] == PROVEN)
         return DesignRating(
             holds=holding,
             proof=PROVEN if proven else SAMPLED,
             share_good=share,
             yield_low=low,
             yield_high=high,
-            confidence=self.asked.confidence,
+            confidence=self.uncertainty.confidence,
             samples=count,
             worst_limit=name,
-            worst_utilisation=told[name]["utilisation"] if told else None,
-            worst_residual=told[name]["residual"] if told else None,
-            worst_at=told[name]["at"] if told else {},
+            worst_utilisation=limit_ratings[name]["utilisation"] if limit_ratings else None,
+            worst_residual=limit_ratings[name]["residual"] if limit_ratings else None,
+            worst_at=limit_ratings[name]["at"] if limit_ratings else {},
             units=dict(self.units),
-            limits=told,
+            limits=limit_ratings,
         )
 
     def sides(self, design: Design, positions: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -187,12 +187,12 @@ class Rater:
         """Return the values of what scatters at a position, in SI, as far as a limit depends on it."""
         return {
             x.name: float(self._moved(design, j, x.members[0], float(position[j])))
-            for j, x in enumerate(self.things)
+            for j, x in enumerate(self.quantities)
             if self.matters[limit][j]
         }
 
     def _moved(self, design: Design, j: int, member: Member, position: Any) -> Any:
-        return self.things[j].moved(
+        return self.quantities[j].moved(
             member, lambda m: self._nominal(design, m), position, lambda s, c: self._cell(design, s, c)
         )
 
@@ -236,7 +236,7 @@ class Rater:
     # -- worst points --------------------------------------------------------------------------
 
     def _worst_points(self, design: Design, residuals: np.ndarray) -> list[_Worst]:
-        """Worst point of every limit, and what is known of the rest of the range.
+        """Worst point of every limit, and its verdict over the whole range.
 
         Parameters
         ----------
@@ -246,31 +246,31 @@ class Rater:
         """
         moving = [MovingInput(j, k, partial(self._moved, design, j, m)) for j, m, k in self.moving]
         values = [*(float(design.values[v.name]) for v in self.model.variables), *self._data(design)]
-        bounds = LimitBounds(self.model.program, values, moving, len(self.things), self.matters, self.settings)
+        bounds = LimitBounds(self.model.program, values, moving, len(self.quantities), self.matters, self.settings)
         at_corners = self.sides(design, self.corners)
         worst: list[_Worst] = []
         for j, monotone in enumerate(bounds.monotone(self.limits)):
-            limit, own = self.limits[j], residuals[j]
-            if own.max() == -math.inf:
+            limit, sampled = self.limits[j], residuals[j]
+            if sampled.max() == -math.inf:
                 worst.append(_Worst(self.corners[0], -math.inf, PROVEN, True))  # void for these parts
                 continue
             if monotone.complete:
                 row = int(np.flatnonzero((self.corners == monotone.worst).all(1))[0])
-                fails = not holds(own[row], limit.guard)
+                fails = not holds(sampled[row], limit.guard)
                 value, bound = (float(side[row]) for side in at_corners[j])
                 proven = fails or (
-                    bool(np.all(holds(own, limit.guard))) and monotone.holds_everywhere(limit, value, bound)
+                    bool(np.all(holds(sampled, limit.guard))) and monotone.holds_everywhere(limit, value, bound)
                 )
                 if proven:
-                    worst.append(_Worst(self.corners[row], float(own[row]), PROVEN, not fails))
+                    worst.append(_Worst(self.corners[row], float(sampled[row]), PROVEN, not fails))
                     continue
-            worst.append(self._searched(design, j, own, bounds, monotone))
+            worst.append(self._searched(design, j, sampled, bounds, monotone))
         return worst
 
     def _searched(
-        self, design: Design, j: int, own: np.ndarray, bounds: LimitBounds, monotone: MonotoneLimit
+        self, design: Design, j: int, sampled: np.ndarray, bounds: LimitBounds, monotone: MonotoneLimit
     ) -> _Worst:
-        """Worst point found of a limit that is not shown to be monotone, and whether bounds show that it holds."""
+        """Worst point found of a limit not shown to be monotone, and whether bounds show that it holds."""
         limit = self.limits[j]
 
         def residual(positions: np.ndarray) -> np.ndarray:
@@ -278,22 +278,22 @@ class Rater:
 
         def used(positions: np.ndarray) -> np.ndarray:
             result = self.instance.evaluate(*self._inputs(design, positions))
-            own, share = _residual_of(result, limit), limit_residual(*result.limits[limit.name], limit.sense, SMALLEST)
-            return np.where(np.isfinite(own) & ~np.isnan(share), share, own)
+            raw, share = _residual_of(result, limit), limit_residual(*result.limits[limit.name], limit.sense, SMALLEST)
+            return np.where(np.isfinite(raw) & ~np.isnan(share), share, raw)
 
         points = np.concatenate([self.corners, self.samples])
-        row = int(np.argmax(own))
+        row = int(np.argmax(sampled))
         free = np.flatnonzero(np.isnan(monotone.worst))
         starts = np.concatenate([points, stretched(self.samples)])
         starts = np.where(np.isnan(monotone.worst), starts, monotone.worst)
         place, r = worst_point(residual, starts, free, self.settings.ascent)
-        if own[row] > r:
-            place, r = points[row], float(own[row])
+        if sampled[row] > r:
+            place, r = points[row], float(sampled[row])
         if not holds(r, limit.guard):
             return _Worst(place, r, SAMPLED, False)
-        found = bounds.search(limit, monotone, residual)
-        if found.violated is not None:
-            place, r = worst_point(residual, found.violated[None, :], free, self.settings.ascent)
+        outcome = bounds.search(limit, monotone, residual)
+        if outcome.violated is not None:
+            place, r = worst_point(residual, outcome.violated[None, :], free, self.settings.ascent)
             return _Worst(place, r, SAMPLED, False)
         if limit.terms is not None:
             # It holds as far as is known: people read where most of it is used, whatever the size of its terms is.
@@ -301,7 +301,7 @@ class Rater:
             r = float(residual(place[None, :])[0])
             if not holds(r, limit.guard):
                 return _Worst(place, r, SAMPLED, False)
-        return _Worst(place, r, BOUNDED, True) if found.proven else _Worst(place, r, SAMPLED, None)
+        return _Worst(place, r, BOUNDED, True) if outcome.proven else _Worst(place, r, SAMPLED, None)
 
 
 @dataclass(frozen=True)
@@ -329,15 +329,15 @@ def _sobol(dimensions: int, count: int, seed: int) -> np.ndarray:
 
 
 def _interval(hits: int, count: int, confidence: float) -> tuple[float, float]:
-    """Return the Clopper-Pearson interval of a share.
+    """Clopper-Pearson interval of a share.
 
     C. J. Clopper, E. S. Pearson: The use of confidence or fiducial limits illustrated in the case of the binomial.
     Biometrika 26 (1934) 404-413.
     """
     from scipy.stats import binomtest  # costly to import
 
-    found = binomtest(hits, count).proportion_ci(confidence_level=confidence, method="exact")
-    return float(found.low), float(found.high)
+    interval = binomtest(hits, count).proportion_ci(confidence_level=confidence, method="exact")
+    return float(interval.low), float(interval.high)
 
 
 def _finite(value: float) -> float | None:

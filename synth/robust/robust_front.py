@@ -21,7 +21,7 @@ from synth.robust.rating import Rater
 from synth.robust.settings import RobustLimits
 from synth.robust.uncertainty import check_rows
 
-GRACE = 2.0  # s, in which designs that were found are rated although time is over
+GRACE = 2.0  # s, in which known designs are rated although time is over
 NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
 
 
@@ -77,7 +77,7 @@ def robust_front(
     Parameters
     ----------
     pose : callable
-        Returns the question with the limits posed that a block asks for.
+        Returns the question with the limits that a block poses.
     rater : Rater
         Rates designs of the nominal problem.
     progress, time_limit
@@ -89,45 +89,45 @@ def robust_front(
     """
     deadline = math.inf if time_limit is None else time.monotonic() + time_limit
 
-    def ask(asked: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _RatedFront:
-        question = pose(asked)
-        check_rows(rater.things, question.instance.selection.slots)
+    def ask(uncertainty: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _RatedFront:
+        question = pose(uncertainty)
+        check_rows(rater.quantities, question.instance.selection.slots)
         if front is None:
-            left = None if time_limit is None else max(deadline - time.monotonic(), LEAST_SECONDS)
-            front = question.within(left).answer(progress, known)
+            remaining = None if time_limit is None else max(deadline - time.monotonic(), LEAST_SECONDS)
+            front = question.within(remaining).answer(progress, known)
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         more = len(question.instance.model.limits) - len(rater.model.limits)
-        return _RatedFront(asked, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
+        return _RatedFront(uncertainty, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
 
-    got, searches = ask(rater.asked, known, first), 1
-    while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
+    got, searches = ask(rater.uncertainty, known, first), 1
+    while got.uncertainty.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
         try:
-            better = ask(got.asked.with_scenarios(got.scenarios()), got.front.designs)
+            better = ask(got.uncertainty.with_scenarios(got.scenarios()), got.front.designs)
         except KeyboardInterrupt:
             got = replace(got, stopped="interrupted")
             break
         searches += 1
         # A search that was not finished counts only where it brought more designs that hold.
         got = replace(got, stopped=better.stopped) if better.stopped and better.holding <= got.holding else better
-    return got.told(searches)
+    return got.with_ratings(searches)
 
 
 @dataclass(frozen=True)
 class _RatedFront:
     """A front with the ratings of its designs, and what stopped the work if something did."""
 
-    asked: Uncertainty
+    uncertainty: Uncertainty
     front: ParetoFront
     ratings: list[DesignRating]
     stopped: str
-    posed: int  # limits beside those of the problem
+    added_limits: int  # limits beside those of the problem
     limits: RobustLimits
 
     @property
     def failing(self) -> list[int]:
-        """Return the places of the designs that break a limit somewhere in the range."""
-        return [j for j, told in enumerate(self.ratings) if told["holds"] is False]
+        """Positions of the designs that break a limit somewhere in the range."""
+        return [j for j, rating in enumerate(self.ratings) if rating["holds"] is False]
 
     @property
     def holding(self) -> int:
@@ -135,33 +135,33 @@ class _RatedFront:
         return len(self.ratings) - len(self.failing)
 
     def scenarios(self) -> dict[str, list[tuple[float, ...]]]:
-        """Return the points at which limits fail, the worst first, and a few of each limit."""
-        found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
+        """Points at which limits fail, the worst first, and a few of each limit."""
+        by_limit: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
         for j in self.failing:
             for name, limit in self.ratings[j]["limits"].items():
                 if limit["holds"] is False:
                     worst = math.inf if limit["residual"] is None else limit["residual"]
-                    found.setdefault(name, []).append((worst, tuple(limit["position"])))
-        few = {name: sorted(points, key=lambda x: -x[0])[: self.limits.scenarios] for name, points in found.items()}
+                    by_limit.setdefault(name, []).append((worst, tuple(limit["position"])))
+        few = {name: sorted(points, key=lambda x: -x[0])[: self.limits.scenarios] for name, points in by_limit.items()}
         return {name: [point for _, point in points] for name, points in few.items()}
 
-    def told(self, searches: int) -> ParetoFront:
-        """Return the front: its designs tell how they stand the range, its question repeats what scatters."""
-        front, block = self.front, self.asked.block()
-        counts = RatingCounts(searches=searches, rated=len(self.ratings), samples=self.asked.samples)
-        if self.asked.mode == LIMITS:
-            counts = structs.replace(counts, limits_posed=self.posed, taken_off=len(self.failing))
+    def with_ratings(self, searches: int) -> ParetoFront:
+        """The front with the ratings of its designs and, in its question, the block of scatter."""
+        front, block = self.front, self.uncertainty.block()
+        counts = RatingCounts(searches=searches, rated=len(self.ratings), samples=self.uncertainty.samples)
+        if self.uncertainty.mode == LIMITS:
+            counts = structs.replace(counts, limits_posed=self.added_limits, taken_off=len(self.failing))
         frame = replace(front.frame, restated={**front.frame.restated, "robust": block})
         known = [*self.ratings, *(DesignRating() for _ in range(len(front.designs) - len(self.ratings)))]
         done = replace(
             front,
             frame=frame,
-            designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
+            designs=[replace(d, frame=frame, robust=rating) for d, rating in zip(front.designs, known, strict=True)],
             statistics=structs.replace(front.statistics, robust=counts),
             settings=structs.replace(front.settings, robust=block),
             interrupted=self.stopped,
         )
-        return _without(done, self.failing) if self.asked.mode == LIMITS and self.failing else done
+        return _without(done, self.failing) if self.uncertainty.mode == LIMITS and self.failing else done
 
 
 def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:

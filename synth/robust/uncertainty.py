@@ -83,7 +83,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Scattered:
-    """One thing that scatters: its range, and what moves with it; further members move in proportion to the first."""
+    """A scattering quantity: its range and its members; further members move in proportion to the first."""
 
     name: str
     unit: str
@@ -92,7 +92,7 @@ class Scattered:
     text: str
 
     def ends(self, column: Callable[[str, str], Any]) -> tuple[Any, Any] | None:
-        """Return the ends that stand in columns of the part; None where the range has its own."""
+        """Ends from columns of the part; None where the range has its own."""
         slot = self.members[0].name
         return (column(slot, LEAST), column(slot, MOST)) if self.range.kind == "columns" else None
 
@@ -116,7 +116,7 @@ class Scattered:
 # ---- what the block means for a problem -----------------------------------------------------------------------------
 
 
-def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list[Scattered]:
+def scattered(uncertainty: Uncertainty, d: Declaration, where: str = "robust") -> list[Scattered]:
     """Scattering quantities of a problem, in the order of the block, tolerances last.
 
     Raises
@@ -125,28 +125,28 @@ def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list
         When the problem has no such thing, or it cannot scatter so.
     """
     reader = _RangeReader(d, where)
-    found: list[Scattered] = []
-    for key, text in asked.ranges.items():
+    result: list[Scattered] = []
+    for key, text in uncertainty.ranges.items():
         with at("robust", key):
             if key == "friction":
-                found += reader.friction(text)
+                result += reader.friction(text)
             elif key == "wear":
-                found.append(reader.wear(text))
+                result.append(reader.wear(text))
             else:
-                found.append(reader.named(key, text))
-    for key, text in asked.tolerance.items():
+                result.append(reader.named(key, text))
+    for key, text in uncertainty.tolerance.items():
         with at("robust", "tolerance", key):
-            found.append(reader.tolerance(key, text))
-    check_number_of_ranges(len(found), where)  # friction may be that of several slots
-    keys = [(member.key, x.name) for x in found for member in x.members]
+            result.append(reader.tolerance(key, text))
+    check_number_of_ranges(len(result), where)  # friction may be that of several slots
+    keys = [(member.key, x.name) for x in result for member in x.members]
     for k, (moved, name) in enumerate(keys):
         if any(moved == other for other, _ in keys[:k]):
             raise InputError(f"{where}: {name}", name, "each thing that scatters once", ("robust", name))
-    for name, points in asked.scenarios.items():
-        if any(len(p) != len(found) for p in points):
-            right = f"positions of {len(found)} ranges each"
+    for name, points in uncertainty.scenarios.items():
+        if any(len(p) != len(result) for p in points):
+            right = f"positions of {len(result)} ranges each"
             raise InputError(f"{where}: scenarios: {name}", points, right, ("robust", "scenarios", name))
-    return found
+    return result
 
 
 class _RangeReader:
@@ -156,21 +156,21 @@ class _RangeReader:
         self.d, self.where = d, where
 
     def friction(self, text: str) -> list[Scattered]:
-        """Return the friction of every slot whose table tells how it scatters."""
+        """Friction of every slot whose table holds its scatter."""
         slots = [part for part in self.d.slots.values() if {SLIDING, LEAST, MOST} <= part.known]
         slots = [part for part in slots if any(c.startswith("mu_") for c in part.columns)]
         if not slots:
             expected = f"a family that uses the friction of a table; {self.d.problem} does not"
             raise InputError(f"{self.where}: friction", text, expected)
-        taken = [part.slot for part in slots if LEAST in part.columns or MOST in part.columns]
-        if taken:
+        ranged = [part.slot for part in slots if LEAST in part.columns or MOST in part.columns]
+        if ranged:
             raise InputError(
                 f"{self.where}: friction",
                 text,
-                f"no friction here: the limits of {self.d.problem} hold from {LEAST} to {MOST} of {taken[0]} already, "
+                f"no friction here: the limits of {self.d.problem} hold from {LEAST} to {MOST} of {ranged[0]} already, "
                 "as it is or with these options",
             )
-        found = []
+        result = []
         for part in slots:
             field = f"{self.where}: friction"
             words = f"'{CATALOGUE}' or "
@@ -181,8 +181,8 @@ class _RangeReader:
             moving = [SLIDING, *(c for c in part.columns if c.startswith("mu_") and c in part.known and c != SLIDING)]
             members = tuple(Member("part", part.slot, c) for c in moving)
             name = "friction" if len(slots) == 1 else f"friction of {part.slot}"
-            found.append(Scattered(name, "-", span, members, text))
-        return found
+            result.append(Scattered(name, "-", span, members, text))
+        return result
 
     def wear(self, text: str) -> Scattered:
         """Return the requirements that say how far something wears."""
@@ -226,7 +226,7 @@ class _RangeReader:
             r = self.d.requirements[name]
             span = self._range(text, r.unit, field)
             if span.kind == "ends" and not all(
-                within(x, r.lower, r.upper, MARGINS.stated) for x in (span.low, span.high)
+                within(x, r.lower, r.upper, MARGINS.conversion) for x in (span.low, span.high)
             ):
                 low, high = (typed_quantity(x, r.unit) if math.isfinite(x) else "any" for x in (r.lower, r.upper))
                 raise InputError(field, text, f"a range within {low} .. {high}")
@@ -279,23 +279,23 @@ def _difference(unit: str) -> str:
 
 
 def _ends(text: str, unit: str, field: str, words: str = "") -> tuple[float, float]:
-    """Return two values with one sign between them; a unit of the last counts for both."""
+    """The two values of a range; a unit of the last counts for both."""
     first, sign, last = text.partition("..") if ".." in text else text.partition(":")
     if not sign or ":" in last or (".." in text and ":" in text) or not first.strip() or not last.strip():
         raise InputError(field, text, f"{words}a range, for example {EXAMPLE}")
     if NUMBER.match(first):
-        own = re.sub(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "", as_decimal(last))
-        first = f"{first.strip()} {own.strip()}".strip()
+        written_unit = re.sub(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "", as_decimal(last))
+        first = f"{first.strip()} {written_unit.strip()}".strip()
     low, high = (parse_quantity(x.strip(), unit, field) for x in (first, last))
     return low, high
 
 
-def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str = "robust") -> None:
+def check_rows(quantities: Sequence[Scattered], slots: Iterable[SlotRows], where: str = "robust") -> None:
     """Refuse a range of a column that holds the nominal value of none of the rows offered.
 
     Parameters
     ----------
-    found : list of Scattered
+    quantities : list of Scattered
     slots : iterable of SlotRows
         What may fill the slots.
 
@@ -305,7 +305,7 @@ def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str
         When there is such a range.
     """
     rows = {s.slot: s for s in slots}
-    for x in found:
+    for x in quantities:
         first = x.members[0]
         if first.kind != "part" or x.range.kind != "ends" or first.name not in rows:
             continue
@@ -318,13 +318,13 @@ def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str
 
 
 def check_values(
-    found: Sequence[Scattered], d: Declaration, values: Mapping[str, float], where: str = "robust"
+    quantities: Sequence[Scattered], d: Declaration, values: Mapping[str, float], where: str = "robust"
 ) -> None:
     """Refuse ranges of requirements that do not fit what is stated.
 
     Parameters
     ----------
-    found : list of Scattered
+    quantities : list of Scattered
     d : Declaration
     values : mapping
         Requirements in SI.
@@ -334,7 +334,7 @@ def check_values(
     InputError
         When one is not given, lies outside its range, or the range leaves what the family allows.
     """
-    for x in found:
+    for x in quantities:
         for member in x.members:
             if member.kind != "requirement":
                 continue
@@ -342,11 +342,11 @@ def check_values(
             if member.name not in values:
                 right = f"requirement {member.name} to be given as well: its nominal value"
                 raise InputError(field, x.text, right, path)
-            own = values[member.name]
+            nominal = values[member.name]
             low, high = (x.moved(member, lambda m: values[m.name], p, None) for p in (0.0, 1.0))
             slack = MARGINS.end * max(abs(low), abs(high))
-            if not low - slack <= own <= high + slack:
-                right = f"a range that holds the nominal {typed_quantity(own, r.unit)}"
+            if not low - slack <= nominal <= high + slack:
+                right = f"a range that holds the nominal {typed_quantity(nominal, r.unit)}"
                 raise InputError(field, x.text, right, path)
             if low < r.lower - slack or high > r.upper + slack:
                 shown = [typed_quantity(end, r.unit) for end in (low, high)]

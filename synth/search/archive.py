@@ -121,14 +121,14 @@ def distinct(
     worse = phi + np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), equal)
     gone = np.zeros(len(phi), dtype=bool)
     for first in range(0, len(phi), at_once):
-        own = slice(first, first + at_once)
+        part = slice(first, first + at_once)
         # Column by column: few rows beat each other, and only those are looked at closely.
-        beaten = np.ones((len(phi), len(phi[own])), dtype=bool)
+        dominated = np.ones((len(phi), len(phi[part])), dtype=bool)
         for k in range(m):
-            beaten &= phi[:, None, k] <= worse[None, own, k]
-        by, which = np.nonzero(beaten)
+            dominated &= phi[:, None, k] <= worse[None, part, k]
+        by, which = np.nonzero(dominated)
         which += first
         beats = np.all(phi[which] <= worse[by], axis=1)
         # Of those that beat each other by rounding alone the first stays.
         gone[which[~beats | (by < which)]] = True
-    return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]
+    return [c for c, dropped in zip(candidates, gone, strict=True) if not dropped]

@@ -1,4 +1,4 @@
-"""The tree that goes on where a first search has left boxes open: what promises most comes first.
+"""Best-first search of the boxes that a first search has left unresolved.
 
 The first search, depth first, takes the boxes that were split last, so that few wait at a time; what it leaves open
 tells little. Here the boxes from which a design could gain most are split first, so that the gap that is proven becomes
@@ -25,7 +25,7 @@ from synth.search.settings import SearchEffort
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """What tells whether boxes keep closing.
+    """Measure of whether boxes keep closing.
 
     Parameters
     ----------
@@ -42,12 +42,12 @@ class Progress:
     extent: float
 
     def after(self, known: Progress, closing: float) -> Progress | None:
-        """Return the least that is known now, where less is open than was known; None where nothing has closed.
+        """Least progress measure so far, where less is unresolved than before; None where nothing has closed.
 
         Of the extent a share of at least ``closing`` counts. Less than that adds up, because nothing is returned then.
         """
-        as_many = self.highest >= known.highest and self.waiting >= known.waiting
-        if as_many and self.extent > (1 - closing) * known.extent:
+        no_fewer = self.highest >= known.highest and self.waiting >= known.waiting
+        if no_fewer and self.extent > (1 - closing) * known.extent:
             return None
         return Progress(
             highest=min(self.highest, known.highest),
@@ -76,7 +76,7 @@ class OpenBoxes:
         return int(self.counts.sum())
 
     def add(self, boxes: Boxes) -> None:
-        """Take boxes; those of no use are dropped."""
+        """Add boxes; those that cannot improve are dropped."""
         gain = self.rule.possible_gain(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
         useful = gain > 0
         boxes, gain = boxes.take(useful), gain[useful]
@@ -88,33 +88,33 @@ class OpenBoxes:
         )
         level = np.ceil(level).astype(int)
         for k in np.unique(level).tolist():
-            own = boxes.take(level == k)
-            self.levels[k].append(own)
-            self.counts[k] += len(own)
+            entering = boxes.take(level == k)
+            self.levels[k].append(entering)
+            self.counts[k] += len(entering)
             if len(self.levels[k]) > self.tree.level_batches:
                 self.levels[k] = [Boxes.joined(self.levels[k])]
 
     def next(self) -> Boxes:
-        """Take a batch of the boxes with the largest possible gain; of those with the least where too many wait."""
+        """Pop a batch of the boxes with the largest possible gain; of those with the least where too many wait."""
         filled = np.flatnonzero(self.counts)
-        taken, count = list[Boxes](), 0
+        parts, count = list[Boxes](), 0
         for k in (filled if len(self) > self.most else filled[::-1]).tolist():
             level = self.levels[k]
             while level and count < self.tree.batch:
-                own = level.pop()
-                if count + len(own) > self.tree.batch:
-                    left = count + len(own) - self.tree.batch
-                    level.append(own.take(slice(0, left)))
-                    own = own.take(slice(left, None))
-                taken.append(own)
-                count += len(own)
-                self.counts[k] -= len(own)
-        return Boxes.joined(taken)
+                batch = level.pop()
+                if count + len(batch) > self.tree.batch:
+                    excess = count + len(batch) - self.tree.batch
+                    level.append(batch.take(slice(0, excess)))
+                    batch = batch.take(slice(excess, None))
+                parts.append(batch)
+                count += len(batch)
+                self.counts[k] -= len(batch)
+        return Boxes.joined(parts)
 
     @property
     def batches(self) -> list[Boxes]:
-        """All that wait."""
-        return [b for own in self.levels for b in own]
+        """All waiting boxes."""
+        return [b for level in self.levels for b in level]
 
     def progress(self) -> Progress:
         """Number of unresolved boxes."""
@@ -175,7 +175,7 @@ def best_first(
         looked += seen
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck
-    left = Boxes.joined([stuck, *waiting.batches])
+    kept = Boxes.joined([stuck, *waiting.batches])
     return TreeOutcome(
-        left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0), looked, spent=spent
+        kept.take(rule.possible_gain(form.objectives.phi_of(kept.bounds), kept.cell) > 0), looked, spent=spent
     )

@@ -62,7 +62,7 @@ class BoxOperations:
 
     def root(self, passes: int = 3) -> Boxes:
         """Return the box of everything, tightened; no box where nothing is feasible."""
-        boxes = self._boxes(self.cells.whole())
+        boxes = self._boxes(self.cells.all_combinations())
         if self.bounding.question.root.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
         # With the instructions that all other boxes are tightened with: cutoffs of infinity say nothing.
@@ -85,15 +85,15 @@ class BoxOperations:
 
     def nothing(self) -> Boxes:
         """Return no boxes."""
-        return self._boxes(self.cells.whole()).take(slice(0, 0))
+        return self._boxes(self.cells.all_combinations()).take(slice(0, 0))
 
     def leaves(self, combinations: np.ndarray, low: np.ndarray | None = None, high: np.ndarray | None = None) -> Boxes:
-        """Return a box per combination, over the whole range of the variables unless ends are given."""
+        """A box per combination, over the full range of the variables unless ends are given."""
         boxes = self._boxes(self.cell_of(combinations))
         return boxes if low is None or high is None else replace(boxes, low=low, high=high)
 
-    def whole(self, combination: int) -> Boxes:
-        """Return the box of one combination over the whole range of the variables."""
+    def box_of(self, combination: int) -> Boxes:
+        """Box of one combination over the full range of the variables."""
         digits = [int(x[0]) for x in self.instance.combinations.digits(np.array([combination]))]
         return self._boxes(self.cells.leaf_of(digits))
 
@@ -144,10 +144,10 @@ class BoxOperations:
         deadline.check()
         values = None if cutoffs is None else self.objectives.values_of(cutoffs)
         self.counters.contracted += len(boxes)
-        found = self.bounding.kernel.contract(boxes, values, passes, every_goal)
-        if found is None:
-            found = self._over_arrays(boxes, values, passes, every_goal)
-        return self._without_refused(found)
+        contracted = self.bounding.kernel.contract(boxes, values, passes, every_goal)
+        if contracted is None:
+            contracted = self._over_arrays(boxes, values, passes, every_goal)
+        return self._without_refused(contracted)
 
     def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int) -> Growth | None:
         """Begin to tighten and split boxes, and what comes of them; None where there is no kernel.
@@ -165,10 +165,10 @@ class BoxOperations:
         growth = self.bounding.kernel.grow(boxes, cutoffs, self.tuning.tree.sweeps, levels)
         return None if growth is None else growth.then(self._allowed)
 
-    def _allowed(self, found: Subtrees) -> Subtrees:
-        """Return the subtrees without what is refused; count them."""
-        self.counters.contracted += found.looked
-        return Subtrees(self._without_refused(found.halves), self._without_refused(found.small), found.looked)
+    def _allowed(self, subtrees: Subtrees) -> Subtrees:
+        """Subtrees without refused combinations; counts them."""
+        self.counters.contracted += subtrees.looked
+        return Subtrees(self._without_refused(subtrees.halves), self._without_refused(subtrees.small), subtrees.looked)
 
     def _with_auxiliary(self, boxes: Boxes) -> Boxes:
         """Return boxes of variables with all that the auxiliary variables could be."""
@@ -184,19 +184,19 @@ class BoxOperations:
         for first in range(0, len(boxes), at_once):
             deadline.check()
             rows = slice(first, first + at_once)
-            own = values if values is None or values.ndim == 1 else values[rows]
-            kept.append(self._propagated(boxes.take(rows), own, passes, every))
+            row_values = values if values is None or values.ndim == 1 else values[rows]
+            kept.append(self._propagated(boxes.take(rows), row_values, passes, every))
         return Boxes.joined(kept)
 
     def _propagated(self, boxes: Boxes, values: np.ndarray | None, passes: int, every: bool) -> Boxes:
-        found = self.bounding.propagation.run(boxes, values, passes, every)
-        low, high = found.low, found.high
-        alive = found.alive & self._snap(low, high)
+        propagated = self.bounding.propagation.run(boxes, values, passes, every)
+        low, high = propagated.low, propagated.high
+        alive = propagated.alive & self._snap(low, high)
         bounds = boxes.bounds.copy()
-        for j, least in enumerate(found.goals):
+        for j, least in enumerate(propagated.goals):
             bounds[:, j] = np.fmax(bounds[:, j], least)
         tightened = replace(boxes, low=low, high=high, bounds=bounds)
-        scores = self.bounding.branching.scores(tightened, found.undecided, len(found.goals), values)
+        scores = self.bounding.branching.scores(tightened, propagated.undecided, len(propagated.goals), values)
         return replace(tightened, scores=scores).take(alive)
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
@@ -237,9 +237,9 @@ class BoxOperations:
         self.bounding.branching.focus(known.variables[rows], known.combination[rows])
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
-        """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
-        found = self.bounding.kernel.split(boxes) if len(boxes) else None
-        return self._split(boxes) if found is None else found
+        """Halves of all boxes that can be split, and the boxes that are too small to be split."""
+        halves = self.bounding.kernel.split(boxes) if len(boxes) else None
+        return self._split(boxes) if halves is None else halves
 
     def _split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         n, count = self.width, len(boxes)
@@ -256,26 +256,26 @@ class BoxOperations:
             parts = np.full((int(flat.sum()), factors), 1e3)
             score[flat] = np.where(can[flat], np.concatenate([width[flat], parts], axis=1), -1.0)
         small = ~np.any(can, axis=1)
-        rest, whole = boxes.take(small), boxes.take(~small)
-        return self._halves(whole, np.argmax(score[~small], axis=1)), rest
+        unsplit, splittable = boxes.take(small), boxes.take(~small)
+        return self._halves(splittable, np.argmax(score[~small], axis=1)), unsplit
 
-    def _halves(self, whole: Boxes, choice: np.ndarray) -> Boxes:
-        """Return both halves of boxes, each split along the variable or factor of this number."""
-        rows, n = np.arange(len(whole)), self.width
-        left_cell, right_cell = whole.cell.copy(), whole.cell.copy()
-        left_high, right_low = whole.high.copy(), whole.low.copy()
+    def _halves(self, boxes: Boxes, choice: np.ndarray) -> Boxes:
+        """Both halves of boxes, each split along the variable or factor of its choice."""
+        rows, n = np.arange(len(boxes)), self.width
+        first_cell, second_cell = boxes.cell.copy(), boxes.cell.copy()
+        first_high, second_low = boxes.high.copy(), boxes.low.copy()
         by_variable = choice < n
         if by_variable.any():
-            own, variable = rows[by_variable], choice[by_variable]
-            left_end, right_start = self.makeable.middle(variable, whole.low[own, variable], whole.high[own, variable])
-            left_high[own, variable], right_low[own, variable] = left_end, right_start
+            at, variable = rows[by_variable], choice[by_variable]
+            first_end, second_start = self.makeable.middle(variable, boxes.low[at, variable], boxes.high[at, variable])
+            first_high[at, variable], second_low[at, variable] = first_end, second_start
         for f, tree in enumerate(self.cells.trees):
-            own = rows[choice == n + f]
-            if len(own):
-                clusters = whole.cell[own, f]
-                left_cell[own, f], right_cell[own, f] = tree.left[clusters], tree.right[clusters]
+            at = rows[choice == n + f]
+            if len(at):
+                clusters = boxes.cell[at, f]
+                first_cell[at, f], second_cell[at, f] = tree.left[clusters], tree.right[clusters]
         return Boxes.joined(
-            [replace(whole, cell=left_cell, high=left_high), replace(whole, cell=right_cell, low=right_low)]
+            [replace(boxes, cell=first_cell, high=first_high), replace(boxes, cell=second_cell, low=second_low)]
         )
 
     def _splittable(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.bounds.boxes import Boxes, Subtrees
-from synth.search.fathoming import left_open
+from synth.search.fathoming import unresolved_small
 from synth.search.pruning import of_use
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class BoxStep:
-    """A batch of boxes under way; it has to be ended, by finishing it or without.
+    """A batch of boxes in progress, which must be ended: by finishing or by stopping it.
 
     Where the kernel is at it, it goes by what designs must keep to be of use when it begins.
 
@@ -45,7 +45,7 @@ class BoxStep:
         self.form, self.batch, self.rule, self.heuristics, self.together = form, batch, rule, heuristics, together
         # A small batch costs as much as a larger one, so that it is split twice at once.
         self._splits = 2 if together is None and len(batch) < form.tuning.tree.small_batch else 1
-        self._alone = together is None and not heuristics.every_goal
+        self._growable = together is None and not heuristics.every_goal
         self._open: list[Boxes] = []
         self._growth = self._grown(batch, self._splits)
 
@@ -65,17 +65,17 @@ class BoxStep:
         if self._growth is None:
             halves, looked = self._by_steps(), len(self.batch)
         else:
-            found = self._growth.subtrees()
-            halves, looked = self._without_small(found), found.looked
+            subtrees = self._growth.subtrees()
+            halves, looked = self._without_small(subtrees), subtrees.looked
             if len(halves):
-                self.heuristics.look(halves)
+                self.heuristics.search_boxes(halves)
         levels = self.form.tuning.tree.generations
         if self.heuristics.content and len(halves) << levels <= node_limit - looked:
             # It hardly helps to look for designs in between.
             further = self._grown(halves, levels)
             if further is not None:
-                found = further.subtrees()
-                halves, looked = self._without_small(found), looked + found.looked
+                subtrees = further.subtrees()
+                halves, looked = self._without_small(subtrees), looked + subtrees.looked
         nothing = self.batch.take(slice(0, 0))
         return halves, Boxes.joined(self._open) if self._open else nothing, looked
 
@@ -86,7 +86,7 @@ class BoxStep:
 
     def _grown(self, boxes: Boxes, levels: int) -> Growth | None:
         """Begin to take boxes some generations further; None where there is no kernel."""
-        tables = self.rule.tables(self.form) if self._alone and len(boxes) else None
+        tables = self.rule.tables(self.form) if self._growable and len(boxes) else None
         return None if tables is None else self.form.boxes.grow(boxes, tables, levels)
 
     def _by_steps(self) -> Boxes:
@@ -97,13 +97,13 @@ class BoxStep:
             boxes = together.tighten(boxes, rule.cutoffs(form.objectives.phi_of(boxes.bounds), boxes.cell))
             boxes = boxes.take(rule.possible_gain(form.objectives.phi_of(boxes.bounds), boxes.cell) > 0)
         if len(boxes):
-            self.heuristics.look(boxes)
+            self.heuristics.search_boxes(boxes)
             for _ in range(self._splits):
                 boxes = self._without_small(Subtrees(*form.boxes.split(boxes), looked=0))
         return boxes
 
-    def _without_small(self, found: Subtrees) -> Boxes:
+    def _without_small(self, subtrees: Subtrees) -> Boxes:
         """Boxes that can be split; the others are evaluated, and noted if they stay open."""
-        if len(found.small):
-            self._open.append(left_open(self.form, found.small, self.rule, self.heuristics))
-        return found.halves
+        if len(subtrees.small):
+            self._open.append(unresolved_small(self.form, subtrees.small, self.rule, self.heuristics))
+        return subtrees.halves

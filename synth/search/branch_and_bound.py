@@ -25,16 +25,16 @@ from synth.search.relaxed_boxes import RelaxedBoxes
 
 @dataclass(frozen=True)
 class TreeOutcome:
-    """What a tree left open, how many boxes were looked into, and why it stopped.
+    """Unresolved boxes of a tree, the number of boxes processed, and why it stopped.
 
-    ``full``: enough is known; ``spent``: its time was over; ``given_up``: so much was open that it hardly closes.
+    ``full``: enough is known; ``spent``: its time was over; ``abandoned``: so much was open that it hardly closes.
     """
 
     open: Boxes
     looked: int
     full: bool = False
     spent: bool = False
-    given_up: bool = False
+    abandoned: bool = False
 
     @property
     def closed(self) -> bool:
@@ -83,7 +83,7 @@ def branch_and_bound(
     heuristics, looked = PrimalHeuristics(form, rule, rng, every), 0
     boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
-    queue, fresh, stuck, given_up = nothing, [boxes], nothing, False
+    queue, fresh, stuck, abandoned = nothing, [boxes], nothing, False
     steps: list[BoxStep] = []  # the batch at hand, and the next one, which the kernel is at meanwhile
     try:
         while (steps or len(queue) or fresh) and looked <= node_limit:
@@ -96,7 +96,7 @@ def branch_and_bound(
             if enough is not None and len(form.archive) > enough:
                 return TreeOutcome(Boxes.joined(opened), looked, True)
             if hopeless(looked, sum(len(b) for b in opened)):
-                given_up = True
+                abandoned = True
                 break
             while len(queue) and len(steps) < 2 and looked + sum(len(s.batch) for s in steps) <= node_limit:
                 batch, queue = queue.take(slice(0, at_once)), queue.take(slice(at_once, None))
@@ -111,9 +111,9 @@ def branch_and_bound(
     finally:
         for step in steps:
             step.stop()
-    left = Boxes.joined([*(s.batch for s in steps), queue, *fresh, stuck])
-    left = left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0)
-    return TreeOutcome(left, looked, given_up=given_up)
+    unresolved = Boxes.joined([*(s.batch for s in steps), queue, *fresh, stuck])
+    unresolved = unresolved.take(rule.possible_gain(form.objectives.phi_of(unresolved.bounds), unresolved.cell) > 0)
+    return TreeOutcome(unresolved, looked, abandoned=abandoned)
 
 
 def best(
@@ -169,15 +169,15 @@ def cover_of_one(form: Formulation, column: int, tolerance: float, fixed_cutoffs
 
 def _latest(fresh: list[Boxes], generation: int) -> Boxes:
     """Take the next generation off the end of a list: the boxes that were split last, so that few wait at a time."""
-    taken: list[Boxes] = []
+    parts: list[Boxes] = []
     count = 0
     while fresh and count < generation:
-        taken.append(fresh.pop())
-        count += len(taken[-1])
+        parts.append(fresh.pop())
+        count += len(parts[-1])
     if count > generation:
-        fresh.append(taken[-1].take(slice(0, count - generation)))
-        taken[-1] = taken[-1].take(slice(count - generation, None))
-    return Boxes.joined(taken[::-1])
+        fresh.append(parts[-1].take(slice(0, count - generation)))
+        parts[-1] = parts[-1].take(slice(count - generation, None))
+    return Boxes.joined(parts[::-1])
 
 
 def _most_open(form: Formulation, waiting: Boxes, rule: PruningRule) -> Boxes:

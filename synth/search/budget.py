@@ -17,15 +17,15 @@ __all__ = ["Clock", "Stopped"]
 
 @dataclass
 class Clock:
-    """The time that is left, the boxes that are open, and the way to say how far the search has come."""
+    """Remaining time, unresolved boxes, and reports of progress."""
 
     deadline: float = np.inf
     report: Callable[[int], None] = lambda open_boxes: None
     open: list[Boxes] = field(default_factory=list)
 
-    def open_of(self, left: Boxes, under_way: bool) -> Boxes:
+    def open_of(self, remaining: Boxes, under_way: bool) -> Boxes:
         """Unresolved boxes of a tree: those at hand where it was stopped under way, else those it has left."""
-        return Boxes.joined(self.open) if under_way and self.open else left
+        return Boxes.joined(self.open) if under_way and self.open else remaining
 
     def check(self, boxes: Sequence[Boxes] = ()) -> None:
         """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""

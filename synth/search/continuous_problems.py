@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.bounds.branching import BranchingWeights
 from synth.bounds.question_bounds import QuestionBounds
-from synth.kernels.loading import native_wanted
+from synth.kernels.loading import native_enabled
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
 from synth.model.program import InputValue
 from synth.nlp.batch import BatchNlp, Solutions, Tasks
@@ -111,7 +111,7 @@ class ContinuousProblems:
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
         edge = nlp.edge if self.has_edges else 0.0
         first: BatchNlp = model.function(
-            ("batch", rows, edge, nlp, native_wanted()),
+            ("batch", rows, edge, nlp, native_enabled()),
             lambda: BatchNlp(model.program, self.n, rows, edge, settings=nlp),
         )
         if not kinks:
@@ -122,10 +122,10 @@ class ContinuousProblems:
             pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
             return KinkedNlp(first, PiecedNlp(pieces, nlp))
 
-        kinked: KinkedNlp = model.function(("kinked", rows, edge, kinks, positive, nlp, native_wanted()), made)
+        kinked: KinkedNlp = model.function(("kinked", rows, edge, kinks, positive, nlp, native_enabled()), made)
         return kinked
 
-    def solve_many(
+    def solve_batch(
         self,
         tasks: Tasks,
         combinations: np.ndarray,
@@ -167,10 +167,10 @@ class ContinuousProblems:
             return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers, rough)
         return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers)
 
-    def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
-        """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
-        prices = np.concatenate([found.constraint_multipliers, found.goal_multipliers + tasks.weights], axis=1)
-        self.branching.learn(prices[found.converged], importance[found.converged])
+    def learn(self, tasks: Tasks, solutions: Solutions, importance: np.ndarray) -> None:
+        """Update the branching weights by the multipliers of solved problems; ``importance`` per problem."""
+        prices = np.concatenate([solutions.constraint_multipliers, solutions.goal_multipliers + tasks.weights], axis=1)
+        self.branching.learn(prices[solutions.converged], importance[solutions.converged])
 
     def _positive(self, node: int | None) -> bool:
         return node is not None and not self.question.root.empty and self.question.surely_positive(node)

@@ -83,7 +83,7 @@ class _Order:
     def before(self, lower: np.ndarray) -> np.ndarray:
         """Number of points that cover each box in each objective alone (objectives, boxes): the first in its order."""
         pairs = zip(self.ordered, lower.T, strict=True)
-        result = np.stack([np.searchsorted(x, own, self._side) for x, own in pairs])
+        result = np.stack([np.searchsorted(x, ends, self._side) for x, ends in pairs])
         result[np.isnan(lower.T)] = 0
         return result
 
@@ -123,7 +123,7 @@ class CornerTable:
         self._numbers = {"points": count, "shift": shift, "blocks": blocks, "strict": int(strict)}
 
     def least(self, lower: np.ndarray, code: DominanceCode | None = None) -> np.ndarray:
-        """Return, per box, the least value of each objective among the points that cover it in all other objectives."""
+        """Least value of each objective, per box, among the points that cover it in all other objectives."""
         if code is not None:
             arrays = {"place": self._place, "value": self._value, "corner": self._corner}
             return code.from_table(self._numbers, {"ordered": self._order.ordered, **arrays}, lower)
@@ -131,13 +131,14 @@ class CornerTable:
         result = np.empty(lower.shape)
         for k, (a, b) in enumerate(PAIRS):
             first, second = before[a] // self._block, before[b] // self._block
-            own = self._corner[k, first, second]
-            begun = np.flatnonzero(self._corner[k, first + 1, second + 1] < own)
+            least = self._corner[k, first, second]
+            begun = np.flatnonzero(self._corner[k, first + 1, second + 1] < least)
             for at in range(0, len(begun), self._settings.boxes):
                 rows = begun[at : at + self._settings.boxes]
                 for x, y in ((a, b), (b, a)):
-                    own[rows] = np.minimum(own[rows], self._least_of_block(k, (x, y), before[x, rows], before[y, rows]))
-            result[:, k] = own
+                    of_block = self._least_of_block(k, (x, y), before[x, rows], before[y, rows])
+                    least[rows] = np.minimum(least[rows], of_block)
+            result[:, k] = least
         return result
 
     def _least_of_block(self, k: int, pair: tuple[int, int], before: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -179,7 +180,7 @@ class CoverSets:
         self._numbers["strict"] = int(strict)
 
     def least(self, lower: np.ndarray, code: DominanceCode | None = None) -> np.ndarray:
-        """Return, per box, the least value of each objective among the points that cover it in all other objectives."""
+        """Least value of each objective, per box, among the points that cover it in all other objectives."""
         if code is not None:
             arrays = {"ordered": self._order.ordered, "place": self._order.place, "inside": self._inside}
             return code.from_sets(self._numbers, arrays, lower)
@@ -203,8 +204,8 @@ class CoverSets:
         while len(box):
             word = np.argmax(common != 0, axis=1)
             bits = common[np.arange(len(box)), word]
-            some = bits != 0
-            box, common, word, bits = box[some], common[some], word[some], bits[some]
+            nonzero = bits != 0
+            box, common, word, bits = box[nonzero], common[nonzero], word[nonzero], bits[nonzero]
             least = bits & (~bits + np.uint64(1))
             point = WORD * word + np.log2(least.astype(float)).astype(np.int64)
             covers = (self._order.place[k, others][:, point] < before[others][:, box]).all(axis=0)

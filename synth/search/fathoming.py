@@ -10,8 +10,8 @@ from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule
 
 
-def left_open(form: Formulation, small: Boxes, rule: PruningRule, heuristics: PrimalHeuristics) -> Boxes:
-    """Evaluate boxes that are too small to be split; return those that may hold something nothing known covers.
+def unresolved_small(form: Formulation, small: Boxes, rule: PruningRule, heuristics: PrimalHeuristics) -> Boxes:
+    """Evaluate boxes that are too small to be split; return those that may hold a design no known one covers.
 
     Parameters
     ----------
@@ -29,15 +29,15 @@ def left_open(form: Formulation, small: Boxes, rule: PruningRule, heuristics: Pr
         single point that was evaluated.
     """
     heuristics.offer(form.boxes.inside(small, 0.5), form.boxes.combination(small))
-    rest = small.take(rule.possible_gain(form.objectives.phi_of(small.bounds), small.cell) > 0)
-    # What is left is feasible by the tolerance alone, or nearly so.
-    _, stood_for = heuristics.on_edge(form.boxes.inside(rest, 0.5), form.boxes.combination(rest), len(rest))
-    low, high = form.boxes.ends(rest)
-    left = np.any(high - low > form.tuning.tolerances.point * np.abs(high), axis=1)
-    phi = form.objectives.phi_of(rest.bounds)
+    kept = small.take(rule.possible_gain(form.objectives.phi_of(small.bounds), small.cell) > 0)
+    # The boxes kept are feasible by the tolerance alone, or nearly so.
+    _, stood_for = heuristics.on_edge(form.boxes.inside(kept, 0.5), form.boxes.combination(kept), len(kept))
+    low, high = form.boxes.ends(kept)
+    extended = np.any(high - low > form.tuning.tolerances.point * np.abs(high), axis=1)
+    phi = form.objectives.phi_of(kept.bounds)
     # Whatever the tolerance of the rule, what a design gains by using up the tolerance is not worth telling apart.
-    left[stood_for] = True
+    extended[stood_for] = True
     worth = np.zeros(phi.shape[1])
     worth[rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - rule.tolerance, 0.0)
     phi[stood_for] += worth
-    return rest.take(left & (rule.possible_gain(phi, rest.cell) > 0))
+    return kept.take(extended & (rule.possible_gain(phi, kept.cell) > 0))

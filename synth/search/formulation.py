@@ -94,7 +94,7 @@ class Formulation:
         self._begin(SearchCounters() if counters is None else counters)
 
     def among(self, instance: SearchSpace, workers: int = 1) -> Formulation | None:
-        """Return the same for some of the questions it was made for, whose numbers lie within those known here.
+        """Formulation of a subset of its questions, whose data lie within those of this one.
 
         Parameters
         ----------
@@ -111,10 +111,10 @@ class Formulation:
         bounding = self.bounding.among(instance, workers)
         if bounding is None:
             return None
-        own = copy.copy(self)
-        own.instance, own.bounding, own.workers = instance, bounding, workers
-        own._begin(SearchCounters())
-        return own
+        new = copy.copy(self)
+        new.instance, new.bounding, new.workers = instance, bounding, workers
+        new._begin(SearchCounters())
+        return new
 
     def _begin(self, counters: SearchCounters) -> None:
         """Know no design yet, and count from here."""

@@ -10,7 +10,7 @@ import numpy as np
 from synth.results import Design
 from synth.search.front_state import FrontState
 from synth.search.proven_gap import Bound, least_gap
-from synth.search.resolution import ROOM, ranges, rounded_up
+from synth.search.resolution import ROUNDING, ranges, rounded_up
 
 
 def proven_gap(state: FrontState) -> float | None:
@@ -57,7 +57,7 @@ def gap_amounts(state: FrontState, gap: float, designs: Sequence[Design]) -> dic
     least = gap * _sizes(state)
     if m > 1:
         # The range of a few designs may be less than that of the front they were chosen from.
-        least = np.maximum(least, state.rule.tolerance + ROOM)
+        least = np.maximum(least, state.rule.tolerance + ROUNDING)
     amounts = least * form.objectives.scales[:m]
     if m == 1 and not form.objectives.declared[0]:
         (name,) = state.task.chosen
@@ -70,28 +70,28 @@ def gap_amounts(state: FrontState, gap: float, designs: Sequence[Design]) -> dic
 
 
 def finer_than_ties(state: FrontState) -> np.ndarray:
-    """Tell in which objectives the gap is less than what settling ties may give away: nearly zero on this front."""
+    """Mask of the objectives whose gap is less than settling ties may give away: nearly zero on this front."""
     objectives, m = state.form.objectives, state.task.m
-    told_apart = state.task.settings.gap * _sizes(state)
-    finer: np.ndarray = ~objectives.log[:m] & (told_apart < ROOM)
+    resolved = state.task.settings.gap * _sizes(state)
+    finer: np.ndarray = ~objectives.log[:m] & (resolved < ROUNDING)
     return finer
 
 
 def claim_no_less(state: FrontState) -> None:
-    """Where less is proven than was of the given designs, list only those that take their places.
+    """Where less is proven than of the starting front, list only the designs that weakly dominate its designs.
 
-    What improves one of these by more than the gap of the given ones would have improved those as well.
+    Whatever improves one of these by more than the gap of the starting front would have improved that one as well.
     """
-    given, m = state.given, state.task.m
-    if given.gap is None or not len(given.phi) or not state.front:
+    start, m = state.start, state.task.m
+    if start.gap is None or not len(start.phi) or not state.front:
         return
     gap, logs = proven_gap(state), state.form.objectives.log[:m]
-    if (gap is not None and gap <= given.gap) or (logs.any() and given.gap >= 1.0):
+    if (gap is not None and gap <= start.gap) or (logs.any() and start.gap >= 1.0):
         return
-    places = given.places(state.phi_listed(), state.task.tuning.tolerances.rounded)
+    places = start.places(state.phi_listed(), state.task.tuning.tolerances.rounded)
     state.front = [state.front[k] for k in sorted(places)]
-    share = -math.log1p(-given.gap) if logs.any() else 0.0
-    state.proof.note_covered_within(np.where(logs, share, given.amounts / state.form.objectives.scales[:m]))
+    share = -math.log1p(-start.gap) if logs.any() else 0.0
+    state.proof.note_covered_within(np.where(logs, share, start.amounts / state.form.objectives.scales[:m]))
 
 
 def note_open_boxes(state: FrontState) -> None:

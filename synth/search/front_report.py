@@ -18,7 +18,7 @@ from synth.results.least_infeasible import LeastInfeasible
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.search.archive import Candidate, distinct
-from synth.search.found_designs import found_designs
+from synth.search.complete_designs import complete_designs
 from synth.search.front_claim import finer_than_ties, gap_amounts, proven_gap
 from synth.search.front_state import FrontState
 from synth.search.polishing import break_ties
@@ -52,16 +52,16 @@ def settled_designs(
     return ranked(designs, state.task.chosen, weights, state.proof.complete, _scale(state))[1]
 
 
-def designs_as_found(state: FrontState, frame: Frame, weights: Sequence[float]) -> list[Design]:
-    """Return the designs of the front as they are when the search is stopped."""
-    found = distinct(state.form.points.as_they_are(state.front), state.task.m, state.task.tuning)
+def designs_at_stop(state: FrontState, frame: Frame, weights: Sequence[float]) -> list[Design]:
+    """Designs of the front as they are when the search is stopped."""
+    candidates = distinct(state.form.points.as_they_are(state.front), state.task.m, state.task.tuning)
     nothing: Mapping[str, Any] = {"status": Status.FEASIBLE, "gap": None, "alternatives": (), "elasticity": {}}
-    records = _records(state, frame, found, [nothing] * len(found))
+    records = _records(state, frame, candidates, [nothing] * len(candidates))
     return ranked(records, state.task.chosen, weights, scale=_scale(state))[1]
 
 
 def further_designs(state: FrontState, candidates: Sequence[Candidate]) -> list[Design]:
-    """Return designs for candidates that were found after the front, which they join."""
+    """Designs of candidates that are added to a finished front."""
     frame = make_frame(state.task.instance, state.task.chosen)
     designs = settled_designs(state, frame, [1.0] * state.task.m, candidates)
     state.front = [*state.front, *candidates]
@@ -81,12 +81,12 @@ def _records(
     numbers = np.array([c.combination for c in candidates], dtype=np.int64)
     result, instance = state.form.points.evaluate(points, numbers), state.form.instance
     digits = written_digits(instance, points, instance.data(numbers), result, list(frame.objectives))
-    told = [{"digits": least, **known} for least, known in zip(digits, more, strict=True)]
-    return found_designs(state.form, [frame] * len(candidates), candidates, result, told)
+    details = [{"digits": least, **known} for least, known in zip(digits, more, strict=True)]
+    return complete_designs(state.form, [frame] * len(candidates), candidates, result, details)
 
 
 def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Candidate], list[tuple[str, ...]]]:
-    """Settle what the chosen objectives do not see, and name other combinations that tie."""
+    """Settle ties by the other objectives, and name other combinations that tie."""
     form, m, tuning = state.form, state.task.m, state.task.tuning
     chosen, strict = list(designs), finer_than_ties(state)
     if m == 1 and len(form.goals) > 1:
@@ -101,8 +101,8 @@ def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Cand
         settled = break_ties(form, state.pool, chosen, m)
         before = form.points.as_they_are(chosen)
         listed = form.points.as_they_are([c for c, _ in settled])
-        for own, c, (_, a) in zip(before, listed, settled, strict=True):
-            pairs.append((own, ()) if _gives_away(own, c, strict) else (c, a))
+        for original, c, (_, a) in zip(before, listed, settled, strict=True):
+            pairs.append((original, ()) if _gives_away(original, c, strict) else (c, a))
         stay = {id(c) for c in distinct([c for c, _ in pairs], m, tuning)}
         pairs = [pair for pair in pairs if id(pair[0]) in stay]
         # Where settling has made two designs one, others that stand as well take the place.
@@ -111,16 +111,16 @@ def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Cand
     return [c for c, _ in pairs], [a for _, a in pairs]
 
 
-def _gives_away(own: Candidate, other: Candidate, strict: np.ndarray) -> bool:
+def _gives_away(original: Candidate, other: Candidate, strict: np.ndarray) -> bool:
     """True if a design that ties is worse where even what a tie may give away is more than the claim allows."""
     m = len(strict)
-    return bool(np.any(other.phi[:m][strict] > own.phi[:m][strict]))
+    return bool(np.any(other.phi[:m][strict] > original.phi[:m][strict]))
 
 
 # -- the front -------------------------------------------------------------------------------------
 
 
-def front_found(
+def front_result(
     state: FrontState,
     frame: Frame,
     designs: Sequence[Design],

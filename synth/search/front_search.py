@@ -11,9 +11,8 @@ from synth.results import Design, Frame, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.search_record import SettingsRecord
 from synth.search.front_claim import claim_no_less, settle_proof
-from synth.search.front_report import designs_as_found, front_found, settled_designs
+from synth.search.front_report import designs_at_stop, front_result, settled_designs
 from synth.search.front_state import FrontState, FrontTask
-from synth.search.given_front import given_front
 from synth.search.least_infeasible import explain_infeasible
 from synth.search.stages.choosing import choose_designs
 from synth.search.stages.covering import cover_front
@@ -21,6 +20,7 @@ from synth.search.stages.first_by_rank import find_first, first_is_listed
 from synth.search.stages.first_designs import bound_everything, find_first_designs
 from synth.search.stages.one_best import find_extremes
 from synth.search.stages.stopping import stop_early
+from synth.search.starting_front import starting_front
 from synth.system import deadline
 from synth.system.deadline import Stopped
 
@@ -58,8 +58,8 @@ class FrontSearch:
         self.state = FrontState(task, progress)
 
     def begin_from(self, front: ParetoFront) -> None:
-        """Begin with the front of an earlier search of the same question: none of its designs is lost."""
-        self.state.given = given_front(self.state.form, front)
+        """Start from the front of an earlier search of the same question: none of its designs is lost."""
+        self.state.start = starting_front(self.state.form, front)
 
     def run(self, report: Report) -> ParetoFront:
         """Search, and return the front; what stops the search early leaves what is known by then."""
@@ -80,8 +80,8 @@ class FrontSearch:
             interrupted = "interrupted"
         if interrupted:
             stop_early(state)
-            designs = designs_as_found(state, frame, report.weights) if state.front else []
-        return front_found(state, frame, designs, report.settings, explanation, interrupted)
+            designs = designs_at_stop(state, frame, report.weights) if state.front else []
+        return front_result(state, frame, designs, report.settings, explanation, interrupted)
 
 
 def find_designs(state: FrontState) -> None:

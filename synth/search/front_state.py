@@ -18,7 +18,6 @@ from synth.search.archive import Candidate, rows_of
 from synth.search.budget import Clock
 from synth.search.counters import SearchCounters
 from synth.search.formulation import Formulation
-from synth.search.given_front import GivenFront
 from synth.search.goals import goals_of
 from synth.search.joint.joint_optima import SharedBounds
 from synth.search.joint.levels import Cutoffs, LevelProof
@@ -29,6 +28,7 @@ from synth.search.resolution import ranges
 from synth.search.settings import TUNING, TreeLimits, Tuning
 from synth.search.shown_designs import ShownDesigns
 from synth.search.stage_progress import StageProgress
+from synth.search.starting_front import StartingFront
 from synth.search.turns import TurnBudget
 from synth.search.warm_start import WarmStart
 
@@ -74,8 +74,8 @@ class FrontTask:
         return self.node_limit is None
 
     @property
-    def more_than_asked(self) -> int:
-        """Some more designs than asked for: those that turn out to be equal, or beaten by the same one, become one."""
+    def oversampled(self) -> int:
+        """Oversampled number of points: duplicates and dominated designs are dropped later."""
         return self.settings.points + self.settings.points // 3 + 5
 
     def boxes_per_tree(self) -> int:
@@ -204,7 +204,7 @@ class FrontProof:
 
 @dataclass
 class OpenBoxBudget:
-    """The time for boxes that a first search has left open.
+    """Budget for boxes that a first search has left unresolved.
 
     Parameters
     ----------
@@ -213,17 +213,17 @@ class OpenBoxBudget:
     spent : bool
         Whether it was the budget that ended the work on open boxes.
     boxes : float
-        That trees of a front may look into by turns.
+        That alternating trees of a front may process.
     """
 
     seconds: float
     spent: bool = False
     boxes: float = 0.0
 
-    def take(self, turns: TurnBudget) -> None:
-        """Take note of what turns have left."""
-        self.boxes = max(self.boxes - turns.looked, 0.0)
-        self.seconds, self.spent = turns.effort.seconds, self.spent or turns.spent
+    def take(self, budget: TurnBudget) -> None:
+        """Reduce the budget to the rest of that of alternating trees."""
+        self.boxes = max(self.boxes - budget.looked, 0.0)
+        self.seconds, self.spent = budget.effort.seconds, self.spent or budget.spent
 
 
 class FrontState:
@@ -263,14 +263,14 @@ class FrontState:
         self.front: list[Candidate] = []
         self.scored: ScoredFront | None = None  # how its designs are ranked, once that is known
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
-        self.given = GivenFront.nothing(task.m)
+        self.start = StartingFront.nothing(task.m)
         self.by_levels = False  # whether a front at once has turned out to cost too much
         self.learned_at_levels: BranchingStatistics | None = None  # where boxes of levels are worth splitting
         self.looked_harder = False  # whether a few combinations were searched to the bottom
         self._shared: SharedBounds | None = None
         self.sampled = False  # whether parts were drawn for what several levels leave open
         self.may_find_more = True  # unless a try was given up
-        self.left_at_ties: Boxes | None = None  # what a look for all designs has left open; None before the first
+        self.open_at_ties: Boxes | None = None  # boxes left by a cover for all designs; None before it
         self.reporting = False  # whether the designs stand, and are only told
         self.taught = learned is not None and self.form.bounding.branching.adopt(learned)
 
@@ -345,15 +345,15 @@ class FrontState:
         return self.task.m == 2 and looked >= limits.soon and waiting > limits.stays_open * looked
 
     def turn_budget(self) -> TurnBudget:
-        """Return for how long trees may go on by turns."""
+        """Budget of alternating trees."""
         seconds = self.budget.seconds if self.task.thorough else 0.0
         return TurnBudget(self.budget.boxes, replace(self.task.limits.further, seconds=seconds))
 
     # -- boxes ---------------------------------------------------------------------------------
 
     def set_pool(self) -> None:
-        """Begin with the box of everything; what it allows is the first that is proven."""
-        self.pool, self.left_at_ties = self.form.boxes.root(), None
+        """Start from the root box; its lower bounds are the first proven bounds."""
+        self.pool, self.open_at_ties = self.form.boxes.root(), None
         corners = self.form.objectives.phi_of(self.pool.bounds)[:, : self.task.m]
         self.proof.bounds.append(Bound(np.zeros(self.task.m), corners))
 
@@ -397,7 +397,7 @@ class FrontState:
         everything = self.proof.bounds.pop()  # of the new box of everything, measured anew already
         self.proof.measured_by(factor)
         self.proof.bounds.append(everything)
-        self.given = replace(self.given, phi=self.given.phi * factor)
+        self.start = replace(self.start, phi=self.start.phi * factor)
         return True
 
     def loosen_less(self) -> None:
@@ -411,10 +411,10 @@ class FrontState:
             self.begin_again(self.infeasibility_mode)
 
     def go_on_with(self, form: Formulation) -> None:
-        """Go on with an earlier formulation, and keep what is known."""
+        """Switch to an earlier formulation, and keep the known designs."""
         known, self.form, self.infeasibility_mode = self.form.archive, form, form.infeasibility
         form.archive.add(known.combination, known.variables, known.phi)
-        self.rule, self.pool, self.left_at_ties = self.cover_at_gap(None), form.boxes.root(), None
+        self.rule, self.pool, self.open_at_ties = self.cover_at_gap(None), form.boxes.root(), None
 
     def begin_tree(self, tolerance: np.ndarray | None) -> None:
         """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""

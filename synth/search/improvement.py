@@ -61,13 +61,13 @@ def improve(
     check_progress(progress)
     if problem is None and catalogs is None and front.question is not None:
         problem, catalogs = front.question.problem, front.question.catalogs
-    own, tables = problem_of(front, problem, catalogs)
+    loaded, tables = problem_of(front, problem, catalogs)
     kept, frame = front.settings, front.frame
     settings = SearchSettings(
         points=kept["points"], gap=kept["gap"], workers=workers, seed=kept["seed"], time_limit=time_limit
     )
     request = Request(
-        problem=own,
+        problem=loaded,
         requirements=frame.requirements,
         catalogs=tables,
         objectives=dict(frame.objectives),
@@ -135,19 +135,19 @@ def go_on(front: ParetoFront, question: Question, name: str, progress: Progress 
     enough = front.complete or len(front.designs) == settings.points
     if certificate.kind == "global" and (not front.designs or ((certificate.gap or 1.0) <= settings.gap and enough)):
         return front
-    return question.answer(progress, given=front)
+    return question.answer(progress, start=front)
 
 
 def must_be_the_same(front: ParetoFront, question: Question, name: str) -> None:
-    """Refuse a front that answers another question, and say in what it differs."""
-    found = difference(front, question)
-    if found:
+    """Refuse a front that answers another question; the message names the difference."""
+    differing = difference(front, question)
+    if differing:
         place = str(front.folder) if front.folder is not None else front.frame.family
-        raise InputError(name, place, f"a front of the same question; it differs in {found}")
+        raise InputError(name, place, f"a front of the same question; it differs in {differing}")
 
 
 def difference(front: ParetoFront, question: Question) -> str:
-    """Return in words in what the question of a front differs from another one; nothing where they are the same."""
+    """First difference between the question of a front and another one, in words; empty where they are the same."""
     instance, frame = question.instance, front.frame
     if "robust" in frame.restated or "robust" in instance.problem.restated:
         return "the robust block, with which no search goes on"
@@ -158,18 +158,18 @@ def difference(front: ParetoFront, question: Question) -> str:
         if there != option.chosen:  # words as they are declared: yes and no may be stated for on and off
             return f"option {name}: {there} there, {option.chosen} here"
     for key, value in frame.requirement_values.items():
-        own = instance.values.requirements.get(key, math.nan)
-        if not (own == value or math.isclose(own, value, rel_tol=MARGINS.stated)):
-            return f"requirement {key}: {typed_number(value, 12)} there, {typed_number(own, 12)} here (SI)"
+        here = instance.values.requirements.get(key, math.nan)
+        if not (here == value or math.isclose(here, value, rel_tol=MARGINS.conversion)):
+            return f"requirement {key}: {typed_number(value, 12)} there, {typed_number(here, 12)} here (SI)"
     if set(instance.values.requirements) != set(frame.requirement_values):
         more = sorted(set(instance.values.requirements) ^ set(frame.requirement_values))
         return f"requirement {more[0]}, which only one of them has"
     if dict(question.chosen) != dict(frame.objectives):
         return f"the objectives: {', '.join(frame.objectives)} there, {', '.join(question.chosen)} here"
-    asked = question.record()
+    settings = question.record()
     for key in ("parts", "limits", "fix", "grid"):
-        if asked[key] != front.settings[key]:
-            return f"{key}: {front.settings[key]} there, {asked[key]} here"
+        if settings[key] != front.settings[key]:
+            return f"{key}: {front.settings[key]} there, {settings[key]} here"
     for design in front.designs:
         try:
             instance.combinations.number(design)

@@ -28,7 +28,7 @@ def large_neighbourhood_search(
     Parameters
     ----------
     form : Formulation
-        Its archive holds what is known, at least one design, and takes what is found.
+        Its archive holds at least one design; new ones are added.
     columns : list of int
         Numbers of the objectives that are traded off.
     tolerance : array (columns,)
@@ -37,7 +37,7 @@ def large_neighbourhood_search(
     rng : Generator
     """
     limits, failures = form.tuning.heuristics.neighbourhood, 0
-    for turn in range(limits.turns):
+    for turn in range(limits.rounds):
         place = turn % len(columns)
         k = columns[place]
         best = form.archive.phi[:, k].min()
@@ -66,8 +66,8 @@ def _promising(form: Formulation, rule: EpsilonCover, columns: Sequence[int], rn
     weights[:, k] = 1.0
     free = np.full(weights.shape, np.inf)
     tasks = Tasks(weights, np.zeros_like(weights), free, form.objectives.scales, 0.0)
-    found = form.continuous.solve_many(tasks, combinations, start, rough=True)
-    reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
+    solutions = form.continuous.solve_batch(tasks, combinations, start, rough=True)
+    reach = np.where(solutions.violation <= form.tuning.nlp.missed, solutions.phi[:, k], np.nan)
     good = np.flatnonzero(reach < form.archive.phi[:, k].min() - float(rule.tolerance[0]))
     if not len(good):
         return np.zeros(0, dtype=np.int64)

@@ -35,41 +35,41 @@ def explain_infeasible(
     numbers = rng.choice(total, size=limits.tries, replace=False) if total > limits.tries else np.arange(total)
     numbers = numbers + among.start
     tried = np.empty(0, dtype=np.int64)
-    found: list[tuple[float, int, np.ndarray]] = []
+    nearest: list[tuple[float, int, np.ndarray]] = []
     for _ in range(limits.rounds):
         numbers = np.setdiff1d(numbers, tried)
         if not len(numbers):
             break
         tried = np.concatenate([tried, numbers])
-        found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[: limits.parents]
-        near = [instance.combinations.neighbours(combination) for _, combination, _ in found]
+        nearest = sorted([*nearest, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[: limits.parents]
+        near = [instance.combinations.neighbours(combination) for _, combination, _ in nearest]
         numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
         numbers = numbers if len(numbers) <= limits.tries else rng.choice(numbers, size=limits.tries, replace=False)
-    if not found:
+    if not nearest:
         return LeastInfeasible(
             message="no design could be evaluated; check the requirements for values far from each other"
         )
-    if found[0][0] <= 0 and form.gridded.any():
+    if nearest[0][0] <= 0 and form.gridded.any():
         # Something keeps every limit, but only between makeable sizes: what these miss is what is in the way.
-        _, combination, variables = _makeable(form, [x for x in found if x[0] <= 0], rng)
-        return _told(form, combination, variables, proven, BETWEEN)
-    _, combination, variables = found[0]
-    return _told(form, combination, variables, proven)
+        _, combination, variables = _makeable(form, [x for x in nearest if x[0] <= 0], rng)
+        return _explanation(form, combination, variables, proven, BETWEEN)
+    _, combination, variables = nearest[0]
+    return _explanation(form, combination, variables, proven)
 
 
 def _makeable(
-    form: Formulation, found: Sequence[tuple[float, int, np.ndarray]], rng: np.random.Generator
+    form: Formulation, nearest: Sequence[tuple[float, int, np.ndarray]], rng: np.random.Generator
 ) -> tuple[float, int, np.ndarray]:
     """Return the makeable design around designs that keep all limits which misses them by least."""
     limits = form.tuning.heuristics.least_infeasible
-    around = [form.makeable.around(point, limits.tries // len(found), rng) for _, _, point in found]
-    every = np.repeat([combination for _, combination, _ in found], [len(points) for points in around])
+    around = [form.makeable.around(point, limits.tries // len(nearest), rng) for _, _, point in nearest]
+    every = np.repeat([combination for _, combination, _ in nearest], [len(points) for points in around])
     start = np.concatenate(around)
     points = start
     if not form.gridded.all():
         low = np.where(form.gridded, start, form.lower)
         high = np.where(form.gridded, start, form.upper)
-        solved = form.continuous.solve_many(_elastic(form, len(every)), every, start, low, high).variables
+        solved = form.continuous.solve_batch(_elastic(form, len(every)), every, start, low, high).variables
         better = _misses(form, solved, every) <= _misses(form, start, every)
         points = np.where(better[:, None], solved, start)
     misses = _misses(form, points, every)
@@ -96,7 +96,7 @@ def _least_missed(
     every = combinations[number]
     tasks = _elastic(form, len(every))
     start = form.boxes.inside(form.boxes.leaves(every), rng.random((len(every), form.n)))
-    points = form.continuous.solve_many(tasks, every, start).variables if form.n else start
+    points = form.continuous.solve_batch(tasks, every, start).variables if form.n else start
     misses, before = _misses(form, points, every), _misses(form, start, every)
     # Far from everything feasible a solver may end where nothing makes sense: there the place it began at is better.
     worse = ~(misses <= before)
@@ -121,7 +121,7 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
     return worst
 
 
-def _told(
+def _explanation(
     form: Formulation, combination: int, variables: np.ndarray, proven: bool, nearest_is: str = NEAREST
 ) -> LeastInfeasible:
     result = form.points.evaluate(variables[None, :], np.array([combination]))
@@ -136,10 +136,10 @@ def _told(
     nearest |= {n: typed_number(v) for n, v in counts.items()} | dict(choices)
     sentences = "; ".join(c["sentence"] for c in conflicts)
     # What holds by the tolerance of limits alone misses none.
-    told = f"misses {counted(len(conflicts), 'limit')}: {sentences}"
-    told = told if conflicts else "keeps every limit by its tolerance alone"
+    text = f"misses {counted(len(conflicts), 'limit')}: {sentences}"
+    text = text if conflicts else "keeps every limit by its tolerance alone"
     return LeastInfeasible(
-        message=f"{PROVEN if proven else NOT_PROVEN} {nearest_is} {told}.",
+        message=f"{PROVEN if proven else NOT_PROVEN} {nearest_is} {text}.",
         conflicts=conflicts,
         nearest=nearest,
         parts={slot: table.designations[row] for slot, (table, row) in parts.items()},

@@ -48,8 +48,8 @@ class LogObjectives:
             Resolutions in SI, None where the declaration leaves it to the usual size.
         """
         by_logarithm = np.array(log, dtype=bool)
-        stated = np.array([x is not None for x in declared], dtype=bool)
-        return LogObjectives(by_logarithm, *goal_scales(by_logarithm, sizes, declared), stated)
+        declared_so = np.array([x is not None for x in declared], dtype=bool)
+        return LogObjectives(by_logarithm, *goal_scales(by_logarithm, sizes, declared), declared_so)
 
     def again(self, phi: np.ndarray, before: LogObjectives) -> np.ndarray:
         """Phi (batch, objectives) for phi on another scale of the same objectives."""

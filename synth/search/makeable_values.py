@@ -91,14 +91,14 @@ class MakeableValues:
         """
         with np.errstate(all="ignore"):
             middle = np.where(low > 0, np.sqrt(low * high), 0.5 * (low + high))
-        left, right = middle.copy(), middle.copy()
+        below, above = middle.copy(), middle.copy()
         for k, grid in enumerate(self.grids):
             rows = np.flatnonzero(variable == k)
             if len(grid) and len(rows):
                 first, last = self._positions(k, low[rows], high[rows])
                 cut = (first + last) // 2
-                left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
-        return left, right
+                below[rows], above[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
+        return below, above
 
     def _positions(self, k: int, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of the first and last value of a grid within ranges, but for the margins."""

@@ -80,12 +80,12 @@ class NearestIdeal:
         share = self.scored.weights / self.scored.weights.sum()
         counts = (share > 0) & (scale.nadir > scale.ideal)
         parts = share * scale.units(np.nan_to_num(objectives.values_of(lower[:, self.columns]), nan=-np.inf)) ** 2
-        room = self.enough**2 - (parts.sum(axis=1, keepdims=True) - parts)
+        slack = self.enough**2 - (parts.sum(axis=1, keepdims=True) - parts)
         with np.errstate(all="ignore"):
-            unit = np.sqrt(room / share)
-            own = objectives.phi_of(scale.ideal + scale.span * unit)
+            unit = np.sqrt(slack / share)
+            ends = objectives.phi_of(scale.ideal + scale.span * unit)
         cutoffs = np.full(lower.shape, np.inf)
-        cutoffs[:, self.columns] = np.where(room <= 0, -np.inf, np.where(counts, own, np.inf))
+        cutoffs[:, self.columns] = np.where(slack <= 0, -np.inf, np.where(counts, ends, np.inf))
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:

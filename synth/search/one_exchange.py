@@ -20,12 +20,12 @@ from synth.search.refused_cells import not_refused
 
 
 class OneExchange:
-    """Looks for designs beside those that are known.
+    """Local search by exchange of one part of known designs.
 
     Parameters
     ----------
     form : Formulation
-        Its archive holds what is known, and takes what is found.
+        Its archive holds the known designs; new ones are added.
     rule : PruningRule
         Tells which designs are of use, and takes them.
     rng : Generator
@@ -50,15 +50,15 @@ class OneExchange:
             clock.check(clock.open)
             # Every part of a design that nobody asked about yet, one at a time ...
             fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
-            some = spread_subset(archive.phi[fresh][:, self.rule.columns], self.limits.parents)
-            fresh = [fresh[int(k)] for k in some]
+            spread = spread_subset(archive.phi[fresh][:, self.rule.columns], self.limits.parents)
+            fresh = [fresh[int(k)] for k in spread]
             parents = [archive[k] for k in fresh]
             expanded.update(c.combination for c in parents)
-            found = self._reach(*self._exchanged(parents)) if parents else 0
+            added = self._reach(*self._exchanged(parents)) if parents else 0
             # ... and all parts known to be good at all places of the front.
             if len(self.rule.columns) > 1:
-                found += self._reach(*self._elsewhere(placed)) + self._ends(placed)
-            if not found:
+                added += self._reach(*self._elsewhere(placed)) + self._ends(placed)
+            if not added:
                 return
 
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
@@ -105,31 +105,31 @@ class OneExchange:
         return archive.combination[rows], archive.variables[rows], bases
 
     def _ends(self, placed: set[tuple[int, bytes]]) -> int:
-        """Try what is one part away from the design that is best in an objective, for that objective alone."""
-        archive, found = self.form.archive, 0
+        """Exchange one part of the best design in an objective, for that objective alone."""
+        archive, added = self.form.archive, 0
         for k in self.rule.columns:
             parent = archive[int(np.argmin(archive.phi[:, k]))]
             key = (parent.combination, bytes([k]))
             if key not in placed:
                 placed.add(key)
                 combinations, start, _ = self._exchanged([parent])
-                own = np.append(combinations, parent.combination)
-                weights = np.zeros((len(own), len(self.form.goals)))
+                tried = np.append(combinations, parent.combination)
+                weights = np.zeros((len(tried), len(self.form.goals)))
                 weights[:, self.rule.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
-                cutoffs = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
+                cutoffs = np.tile(self.rule.fixed_cutoffs, (len(tried), 1))
                 tasks = Tasks(weights, np.zeros_like(weights), cutoffs, self.form.objectives.scales, 0.0)
-                found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
-        return found
+                added += self._solved(tasks, tried, np.concatenate([start, parent.variables[None, :]]))
+        return added
 
     def _improvement(self) -> EpsilonCover:
-        """Return the rule by which all is of use that no known design beats, by however little."""
+        """Pruning rule by which every non-dominated design is improving, by however little."""
         rule, archive = self.rule, self.form.archive
-        found = EpsilonCover(
+        cover = EpsilonCover(
             rule.columns, np.zeros(len(rule.columns)), rule.fixed_cutoffs, self.form.new_archive(rule.columns)
         )
-        found.take(archive.combination, archive.variables, archive.phi)
-        return found
+        cover.take(archive.combination, archive.variables, archive.phi)
+        return cover
 
     def _reach(self, combinations: np.ndarray, start: np.ndarray, base: np.ndarray) -> int:
         """Solve from each base straight up, or for the one objective; return how many designs are new."""
@@ -138,24 +138,24 @@ class OneExchange:
         return self._solved(self.heuristics.upwards(base), combinations, start)
 
     def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
-        """Solve problems over the whole range of the variables, where that may be of use; return how many are new."""
+        """Solve problems over the full range of the variables, where that may improve; return how many are new."""
         form, columns = self.form, self.rule.columns
         rows = rows_of_use(form, self._improvement(), combinations)
         if not len(rows):
             return 0
         tasks, combinations, start = tasks.take(rows), combinations[rows], start[rows]
-        found = form.continuous.solve_many(tasks, combinations, start)
-        self.heuristics.learn(tasks, combinations, found)
+        ended = form.continuous.solve_batch(tasks, combinations, start)
+        self.heuristics.learn(tasks, combinations, ended)
         if not form.gridded.any():
-            return self.heuristics.offer(found.variables, combinations)
-        phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
-        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
+            return self.heuristics.offer(ended.variables, combinations)
+        phi = ended.phi[:, : form.bounded] if max(columns) < form.bounded else ended.phi
+        good = np.flatnonzero((ended.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
         cell = form.boxes.cell_of(combinations[good])
         gain, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
         good = good[gain > 0][spread_choice(along[gain > 0], gain[gain > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
-        return self.heuristics.round_off(form.boxes.leaves(combinations[good]), found.variables[good], tasks.take(good))
+        return self.heuristics.round_off(form.boxes.leaves(combinations[good]), ended.variables[good], tasks.take(good))
 
 
 def corners(phi: np.ndarray, count: int) -> np.ndarray:

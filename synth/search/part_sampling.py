@@ -26,14 +26,14 @@ from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings
 from synth.search.pruning import PruningRule
 from synth.search.settings import TUNING, Tuning
-from synth.system.file_locks import alone
+from synth.system.file_locks import exclusive_access
 from synth.system.operating_system import cache_home
 
 BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"
 
 
 def sample_parts(
-    form: Formulation, left: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
+    form: Formulation, unresolved: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
     """Look for designs among the combinations of some boxes.
 
@@ -41,8 +41,8 @@ def sample_parts(
     ----------
     form : Formulation
         Its archive is filled.
-    left : Boxes
-        What bounds left open.
+    unresolved : Boxes
+        Unresolved boxes.
     rule : PruningRule
         Takes the designs as well.
     clock : Clock
@@ -59,16 +59,16 @@ def sample_parts(
         Trials of this run.
     """
     if journal is None:
-        return _searched(form, left, rule, clock, None, seed, trials)
-    with alone(journal.with_suffix(".lock")) as own:
-        done = _searched(form, left, rule, clock, journal if own else None, seed, trials)
-        if own:
+        return _searched(form, unresolved, rule, clock, None, seed, trials)
+    with exclusive_access(journal.with_suffix(".lock")) as exclusive:
+        done = _searched(form, unresolved, rule, clock, journal if exclusive else None, seed, trials)
+        if exclusive:
             journal.unlink(missing_ok=True)
     return done
 
 
 def _searched(
-    form: Formulation, left: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
+    form: Formulation, unresolved: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
     """Look for designs as :func:`sample_parts` does, with a study that nobody else is at work on."""
     import optuna  # costly to import; few questions need it
@@ -76,7 +76,7 @@ def _searched(
     from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
 
     optuna.logging.set_verbosity(logging.ERROR)
-    rows, limits = _offered(form, left), form.tuning.heuristics.parts
+    rows, limits = _offered(form, unresolved), form.tuning.heuristics.parts
     columns = rule.columns
     storage = None
     if journal is not None:
@@ -94,17 +94,17 @@ def _searched(
         before = len(study.get_trials(deepcopy=False))
         done = before
         while done < trials:
-            clock.check([left])
-            asked = [study.ask() for _ in range(min(limits.batch, trials - done))]
-            places = [[t.suggest_int(f"factor_{f}", 0, len(r) - 1) for f, r in enumerate(rows)] for t in asked]
-            towards = [t.suggest_int("direction", 0, limits.directions - 1) if len(columns) > 1 else 0 for t in asked]
+            clock.check([unresolved])
+            batch = [study.ask() for _ in range(min(limits.batch, trials - done))]
+            places = [[t.suggest_int(f"factor_{f}", 0, len(r) - 1) for f, r in enumerate(rows)] for t in batch]
+            towards = [t.suggest_int("direction", 0, limits.directions - 1) if len(columns) > 1 else 0 for t in batch]
             digits = [rows[f][np.array([p[f] for p in places])] for f in range(len(rows))]
-            combinations = form.instance.combinations.composed(digits, len(asked))
+            combinations = form.instance.combinations.composed(digits, len(batch))
             values, missed = _inner(form, rule, combinations, np.array(towards))
-            for trial, phi, violation in zip(asked, values, missed, strict=True):
+            for trial, phi, violation in zip(batch, values, missed, strict=True):
                 trial.set_constraint("limits", float(violation))
                 study.tell(trial, [float(x) for x in phi])
-            done += len(asked)
+            done += len(batch)
     return done - before
 
 
@@ -114,14 +114,14 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tun
     What computes the answers belongs to its name: another version or processor must not go on with trials that it
     would value differently.
     """
-    own = instance.fingerprint()
-    asked, computed = hash_of([own.question, list(objectives.items()), seed]), hash_of([own.computation, repr(tuning)])
+    key = instance.fingerprint()
+    question, computed = hash_of([key.question, [*objectives.items()], seed]), hash_of([key.computation, repr(tuning)])
     folder = cache_home() / "clutchsynth" / "studies"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return None
-    return folder / f"{asked[:24]}_{computed[:16]}.journal" if os.access(folder, os.W_OK) else None
+    return folder / f"{question[:24]}_{computed[:16]}.journal" if os.access(folder, os.W_OK) else None
 
 
 def passed_over(journal: Path | None) -> bool:
@@ -131,12 +131,12 @@ def passed_over(journal: Path | None) -> bool:
     return any(journal.parent.glob(f"{journal.stem.split('_')[0]}_*{journal.suffix}"))
 
 
-def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:
-    """Return, per factor, the rows that some open box holds, neighbours in the cluster tree side by side."""
+def _offered(form: Formulation, unresolved: Boxes) -> list[np.ndarray]:
+    """Rows per factor that unresolved boxes hold, neighbours in the cluster tree side by side."""
     result = []
     for f, tree in enumerate(form.boxes.cells.trees):
         held = np.zeros(len(tree.order), dtype=bool)
-        for cluster in np.unique(left.cell[:, f]):
+        for cluster in np.unique(unresolved.cell[:, f]):
             held[tree.start[cluster] : tree.stop[cluster]] = True
         result.append(tree.order[held])
     return result
@@ -157,15 +157,15 @@ def _inner(
         weights, np.zeros((count, goals)), np.tile(rule.fixed_cutoffs, (count, 1)), form.objectives.scales, 0.0
     )
     start = np.tile(form.boxes.inside(form.boxes.leaves(combinations[:1]), 0.5), (count, 1))
-    answer = form.continuous.solve_many(tasks, combinations, start)
+    answer = form.continuous.solve_batch(tasks, combinations, start)
     points, owner = _makeable(form, combinations, answer.variables)
     rows, phi = form.points.feasible_rows(points, combinations[owner])
     values = np.full((count, len(columns)), limits.worst)
     missed = np.maximum(np.nan_to_num(answer.violation, nan=1.0), 1e-6)
     for k in rows:
-        own = phi[k, columns]
-        if np.dot(own, weights[owner[k], columns]) < np.dot(values[owner[k]], weights[owner[k], columns]):
-            values[owner[k]], missed[owner[k]] = own, 0.0
+        point = phi[k, columns]
+        if np.dot(point, weights[owner[k], columns]) < np.dot(values[owner[k]], weights[owner[k], columns]):
+            values[owner[k]], missed[owner[k]] = point, 0.0
     rule.take(combinations[owner][rows], points[rows], phi[rows])
     form.archive.add(combinations[owner][rows], points[rows], phi[rows])
     return values, missed

@@ -51,7 +51,7 @@ class PointEvaluation:
         self.margins = tuning.tolerances
         self.n = len(instance.model.variables)
         self._node_constraints = node_constraints = [NodeConstraint.of(x) for x in constraints]
-        self._signs = np.array([float(g.sign) for g in goals])
+        self._senses = np.array([float(g.sign) for g in goals])
         kinds = [(c.sense, c.guard) for c in node_constraints]
         self._of_kind = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
         self._scales = np.array([c.scale for c in node_constraints], dtype=float)
@@ -96,15 +96,15 @@ class PointEvaluation:
         return rows[~closely], phi
 
     def as_they_are(self, candidates: Sequence[Candidate]) -> list[Candidate]:
-        """Return designs with phi of their values: those on the edge count as worse while they are compared."""
+        """Designs with phi of their values: those on the edge count as worse while they are compared."""
         if not candidates:
             return []
         combinations, variables, _ = rows_of(candidates)
         _, phi = self.feasible_rows(variables.reshape(len(candidates), self.n), combinations)
-        return [replace(c, phi=own) for c, own in zip(candidates, phi, strict=True)]
+        return [replace(c, phi=values) for c, values in zip(candidates, phi, strict=True)]
 
     def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, cutoffs: np.ndarray) -> np.ndarray:
-        """Tell which of many points may be feasible and below cutoffs of phi; ``feasible_rows`` has the last word.
+        """Mask of points that may be feasible and below cutoffs of phi; ``feasible_rows`` decides.
 
         What many points have in common is computed once for them, so this costs much less than to look at each.
 
@@ -121,7 +121,7 @@ class PointEvaluation:
         limits = len(self._node_constraints)
         with np.errstate(all="ignore"):
             sides = self._screen([*variables, *data])
-            for k, sign in enumerate(self._signs[: cutoffs.shape[1]]):
+            for k, sign in enumerate(self._senses[: cutoffs.shape[1]]):
                 keep &= sign * sides[3 * limits + k] <= most[:, k, None]
             for j, constraint in enumerate(self._node_constraints):
                 value, limit, terms = (sides[first + j] for first in (0, limits, 2 * limits))
@@ -141,7 +141,7 @@ class PointEvaluation:
         """Return phi of points, and which of them are feasible with these tolerances of the limits."""
         count = len(combinations)
         if not count:
-            return np.empty((0, len(self._signs))), np.empty(0, dtype=bool)
+            return np.empty((0, len(self._senses))), np.empty(0, dtype=bool)
         data = self.instance.data(np.asarray(combinations))
         with np.errstate(all="ignore"):
             raw = self._screen([variables[:, k] for k in range(self.n)] + list(data))
@@ -149,7 +149,7 @@ class PointEvaluation:
             for row, x in zip(sides, raw, strict=True):
                 row[:] = x
             limits = len(self._node_constraints)
-            phi = self.objectives.phi_of((sides[3 * limits :] * self._signs[:, None]).T)
+            phi = self.objectives.phi_of((sides[3 * limits :] * self._senses[:, None]).T)
             held = void_limits(self.constraints, data, count).T
             for (sense, guard), rows in self._of_kind.items():
                 terms = np.fmin(np.abs(sides[2 * limits + rows]), self._most_terms[rows, None])

@@ -50,47 +50,45 @@ def polish_discrete(
     moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
     for step in steps * form.tuning.heuristics.polishing.moves:
         # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
-        own = np.flatnonzero(idle < len(steps))
-        if not len(own):
+        active = np.flatnonzero(idle < len(steps))
+        if not len(active):
             break
-        known = combinations[own], variables[own], phi[own, :traded]
+        known = combinations[active], variables[active], phi[active, :traded]
         trials = _other_parts(form, *known) if step is None else _other_values(form, step, *known)
-        found = _better(phi[own], _feasible(form, *trials), traded, list(order), form.tuning.tolerances.tie)
-        better = own[found.whose]
-        idle[own] += 1
+        chosen = _better(phi[active], _feasible(form, *trials), traded, list(order), form.tuning.tolerances.tie)
+        better = active[chosen.whose]
+        idle[active] += 1
         idle[better], moved[better] = 0, True
-        combinations[better], variables[better], phi[better] = found.combinations, found.variables, found.phi
-    return [
-        Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else own for k, own in enumerate(candidates)
-    ]
+        combinations[better], variables[better], phi[better] = chosen.combinations, chosen.variables, chosen.phi
+    return [Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else c for k, c in enumerate(candidates)]
 
 
 @dataclass(frozen=True)
-class _Found:
-    """Feasible points to put in place of designs, and whose each is."""
+class _Replacements:
+    """Feasible replacements of designs, each with the position of its design."""
 
     whose: np.ndarray
     combinations: np.ndarray
     variables: np.ndarray
     phi: np.ndarray
 
-    def take(self, rows: np.ndarray) -> _Found:
-        """Return some of them, by mask or positions."""
-        return _Found(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
+    def take(self, rows: np.ndarray) -> _Replacements:
+        """Replacements of a mask or of positions."""
+        return _Replacements(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
 
 
-def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
-    """Return the feasible ones of some points."""
+def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Replacements:
+    """Feasible points of the given ones."""
     rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
     at_once = form.tuning.heuristics.polishing.evaluated_at_once
     for first in range(0, len(whose), at_once):
         deadline.check()
         part = slice(first, first + at_once)
-        own, values = form.points.feasible_rows(variables[part], combinations[part])
-        rows.append(first + own)
-        phi.append(values[own])
+        feasible, values = form.points.feasible_rows(variables[part], combinations[part])
+        rows.append(first + feasible)
+        phi.append(values[feasible])
     kept = np.concatenate(rows)
-    return _Found(whose[kept], combinations[kept], variables[kept], np.concatenate(phi))
+    return _Replacements(whose[kept], combinations[kept], variables[kept], np.concatenate(phi))
 
 
 def _other_values(
@@ -99,16 +97,16 @@ def _other_values(
     """Return designs with makeable values of one variable that promise to be as good: whose, combination, variables."""
     grid = form.makeable.grids[k]
     grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
-    own = [np.empty(0, dtype=np.int64)]
+    designs = [np.empty(0, dtype=np.int64)]
     places = [np.empty(0, dtype=np.int64)]
     for part in _slices(form, len(combinations), len(grid)):
         deadline.check()
         columns = list(variables[part].T[:, :, None])
         columns[k] = grid[None, :]
         rows, there = np.nonzero(form.points.promising(columns, combinations[part, None], phi[part]))
-        own.append(part.start + rows)
+        designs.append(part.start + rows)
         places.append(there)
-    whose = np.concatenate(own)
+    whose = np.concatenate(designs)
     points = variables[whose]
     points[:, k] = grid[np.concatenate(places)]
     return whose, combinations[whose], points
@@ -117,15 +115,15 @@ def _other_values(
 def _other_parts(
     form: Formulation, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return designs with one other part that promise to be as good: whose, combination, variables."""
-    own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    """Designs with one other part that may be as good: position, combination, variables."""
+    designs, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for part in _slices(form, len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
         deadline.check()
         others = form.instance.combinations.neighbours(combinations[part])
         keep = form.points.promising(list(variables[part].T[:, :, None]), others, phi[part])
-        own.append(part.start + np.nonzero(keep)[0])
+        designs.append(part.start + np.nonzero(keep)[0])
         numbers.append(others[keep])
-    whose = np.concatenate(own)
+    whose = np.concatenate(designs)
     return whose, np.concatenate(numbers), variables[whose]
 
 
@@ -135,18 +133,18 @@ def _slices(form: Formulation, count: int, each: int) -> list[slice]:
     return [slice(first, first + at_once) for first in range(0, count, at_once)]
 
 
-def _better(own: np.ndarray, found: _Found, traded: int, order: list[int], tie: float) -> _Found:
-    """Return, per design with phi ``own``, the best point by the objectives in their order, where that is better."""
-    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + tie, axis=1))
+def _better(phi: np.ndarray, trials: _Replacements, traded: int, order: list[int], tie: float) -> _Replacements:
+    """Best replacement of each design by the objectives in their order, where it is better than its ``phi``."""
+    best = trials.take(np.all(trials.phi[:, :traded] <= phi[trials.whose, :traded] + tie, axis=1))
     for j in order:
-        least = np.full(len(own), np.inf)
-        np.minimum.at(least, left.whose, left.phi[:, j])
-        left = left.take(left.phi[:, j] <= least[left.whose] + tie)
-    _, first = np.unique(left.whose, return_index=True)
-    left = left.take(first)
-    gain = (own[left.whose] - left.phi)[:, order]
+        least = np.full(len(phi), np.inf)
+        np.minimum.at(least, best.whose, best.phi[:, j])
+        best = best.take(best.phi[:, j] <= least[best.whose] + tie)
+    _, first = np.unique(best.whose, return_index=True)
+    best = best.take(first)
+    gain = (phi[best.whose] - best.phi)[:, order]
     decisive = np.argmax(np.abs(gain) > tie, axis=1)
-    return left.take(gain[np.arange(len(gain)), decisive] > tie)
+    return best.take(gain[np.arange(len(gain)), decisive] > tie)
 
 
 def polish_variables(
@@ -179,12 +177,12 @@ def polish_variables(
             goal_scales=form.objectives.scales,
             t_weight=0.0,
         )
-        answer = form.continuous.solve_many(tasks, combinations[moving], variables[moving], low[moving], high[moving])
-        rows, found = form.points.feasible_rows(answer.variables, combinations[moving])
+        answer = form.continuous.solve_batch(tasks, combinations[moving], variables[moving], low[moving], high[moving])
+        rows, refined = form.points.feasible_rows(answer.variables, combinations[moving])
         for k in rows:
-            own = moving[k]
-            if np.all(found[k] <= cutoffs[own] + tie) and found[k, j] < phi[own, j] - tie:
-                variables[own], phi[own] = answer.variables[k], found[k]
+            design = moving[k]
+            if np.all(refined[k] <= cutoffs[design] + tie) and refined[k, j] < phi[design, j] - tie:
+                variables[design], phi[design] = answer.variables[k], refined[k]
         cutoffs[:, j] = phi[:, j] + tie
     return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
 
@@ -210,30 +208,30 @@ def break_ties(
 
 
 def _difference(instance: SearchSpace, combination: int, other: int) -> str:
-    """Return in words in what another combination differs."""
-    own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
+    """Differences of another combination, in words."""
+    here, its = instance.combinations.describe(combination), instance.combinations.describe(other)
     words = [
-        f"{slot} {table.designations[row]}" for slot, (table, row) in its[0].items() if own[0][slot] != its[0][slot]
+        f"{slot} {table.designations[row]}" for slot, (table, row) in its[0].items() if here[0][slot] != its[0][slot]
     ]
-    words += [f"{n} {typed_number(its[1][n])}" for n in own[1] if own[1][n] != its[1][n]]
-    words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
+    words += [f"{n} {typed_number(its[1][n])}" for n in here[1] if here[1][n] != its[1][n]]
+    words += [f"{n} {its[2][n]}" for n in here[2] if here[2][n] != its[2][n]]
     return ", ".join(words)
 
 
 def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate], traded: int) -> list[list[Candidate]]:
-    """Return, per design, those of all combinations that reach the same traded objectives with the same dimensions."""
-    found: list[list[Candidate]] = [[] for _ in candidates]
+    """Designs of all combinations, per design, with the same traded objectives and dimensions."""
+    tied: list[list[Candidate]] = [[] for _ in candidates]
     if not len(pool) or not candidates:
-        return found
+        return tied
     tie, limits = form.tuning.tolerances.tie, form.tuning.heuristics.polishing
     phi = np.array([c.phi for c in candidates])
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     cutoffs = np.full(phi.shape, np.inf)
     cutoffs[:, :traded] = phi[:, :traded] + tie
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.scenario_factors
-    cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
-    cell[:, :apart] = form.boxes.cell_of(own)[:, :apart]
-    questions = form.instance.combinations.digits(own)[:apart]
+    cell, combinations = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
+    cell[:, :apart] = form.boxes.cell_of(combinations)[:, :apart]
+    questions = form.instance.combinations.digits(combinations)[:apart]
 
     def take(whose: np.ndarray, every: np.ndarray) -> None:
         # A cell may hold questions that are the same in all that counts: theirs are no other designs.
@@ -242,13 +240,13 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
             keep &= digit == its[whose]
         same = _feasible(form, whose[keep], every[keep], points[whose[keep]])
         for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= tie, axis=1)):
-            if len(found[same.whose[k]]) < limits.ties:
-                found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
+            if len(tied[same.whose[k]]) < limits.ties:
+                tied[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
 
     waiting = [replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))]
     while waiting:  # where millions tie, only as many boxes at a time as memory holds, and no more than are told
         boxes = waiting.pop()
-        boxes = boxes.take(np.array([len(its) < limits.ties for its in found])[boxes.tag])
+        boxes = boxes.take(np.array([len(its) < limits.ties for its in tied])[boxes.tag])
         later, boxes = boxes.take(slice(limits.evaluated_at_once, None)), boxes.take(slice(limits.evaluated_at_once))
         boxes = form.boxes.contract(boxes, cutoffs[boxes.tag], passes=1)
         single = form.boxes.cells.single(boxes.cell)
@@ -259,7 +257,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         )
         boxes, _ = form.boxes.split(boxes.take(~single))
         waiting += [batch for batch in (later, boxes) if len(batch)]
-    return found
+    return tied
 
 
 def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray]:
@@ -276,24 +274,24 @@ def solve_everywhere(
     columns, goals, limits = rule.columns, len(form.goals), form.tuning.heuristics.polishing
     directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
     for number in range(0, len(combinations), limits.batch):
-        own = combinations[number : number + limits.batch]
+        part = combinations[number : number + limits.batch]
         for _ in range(limits.starts):
-            share = rng.random((len(own), form.n))
+            share = rng.random((len(part), form.n))
             start = form.lower + share * (form.upper - form.lower)
             for direction in directions if len(columns) > 1 else [np.ones(1)]:
                 clock.check()
-                weights = np.zeros((len(own), goals))
+                weights = np.zeros((len(part), goals))
                 weights[:, columns] = np.maximum(direction, 1e-3)
                 tasks = Tasks(
                     weights,
-                    np.zeros((len(own), goals)),
-                    np.tile(rule.fixed_cutoffs, (len(own), 1)),
+                    np.zeros((len(part), goals)),
+                    np.tile(rule.fixed_cutoffs, (len(part), 1)),
                     form.objectives.scales,
                     0.0,
                 )
                 points = form.makeable.nearest(
-                    form.continuous.solve_many(tasks, own, start).variables if form.n else start
+                    form.continuous.solve_batch(tasks, part, start).variables if form.n else start
                 )
-                rows, phi = form.points.feasible_rows(points, own)
-                form.archive.add(own[rows], points[rows], phi[rows])
-                rule.take(own[rows], points[rows], phi[rows])
+                rows, phi = form.points.feasible_rows(points, part)
+                form.archive.add(part[rows], points[rows], phi[rows])
+                rule.take(part[rows], points[rows], phi[rows])

@@ -1,4 +1,4 @@
-"""Primal heuristics: look for designs in boxes that nothing known covers, by points, rounding and solves."""
+"""Primal heuristics: search boxes that no known design covers, by points, rounding and solves."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from synth.search.pruning import PruningRule
 
 
 class PrimalHeuristics:
-    """Looks for designs in boxes that nothing known covers; it proves nothing.
+    """Searches boxes that no known design covers; proves nothing.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class PrimalHeuristics:
         self.nlps = self.limits.most_problems // 4
         self.rounds = self.failures = 0
 
-    def look(self, batch: Boxes) -> None:
+    def search_boxes(self, batch: Boxes) -> None:
         """Try the boxes with the largest possible gain, all along the front.
 
         After rounds without success this happens only now and then.
@@ -49,7 +49,7 @@ class PrimalHeuristics:
             self._solve_elastic(batch)
         phi = form.objectives.phi_of(batch.bounds)
         gain, along = self.rule.possible_gain(phi, batch.cell), phi[:, self.rule.columns[0]]
-        found = self._probe(batch.take(spread_choice(along, gain, limits.probes)))
+        new = self._probe(batch.take(spread_choice(along, gain, limits.probes)))
         if form.n and self._worth_solving():
             most = limits.most_problems if len(self.rule.columns) > 1 else limits.least_problems
             chosen = batch.take(spread_choice(along, gain, min(self.nlps, most)))
@@ -57,10 +57,10 @@ class PrimalHeuristics:
             good = self._solve(chosen)
             more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
             self.nlps = more if 4 * good > len(chosen) else fewer
-            found += good
-        if found and len(self.rule.columns) == 1:
+            new += good
+        if new and len(self.rule.columns) == 1:
             self.polish_best(0, self.rule.columns)
-        self.failures = 0 if found else self.failures + 1
+        self.failures = 0 if new else self.failures + 1
 
     def _worth_solving(self) -> bool:
         """True if boxes are worth a solver: points say as much once designs are known, but along a whole front.
@@ -70,9 +70,9 @@ class PrimalHeuristics:
         close around a design that is not known.
         """
         form, rule = self.form, self.rule
-        found = len(form.archive) > 0 and form.bounding.branching.learned >= self.limits.learned
+        known = len(form.archive) > 0 and form.bounding.branching.learned >= self.limits.learned
         pointed_at = self._known_before and self.rounds <= self.limits.long_proof
-        return form.infeasibility or not found or (len(rule.columns) > 1 and not pointed_at)
+        return form.infeasibility or not known or (len(rule.columns) > 1 and not pointed_at)
 
     @property
     def _known_before(self) -> bool:
@@ -81,7 +81,7 @@ class PrimalHeuristics:
 
     @property
     def content(self) -> bool:
-        """True if hardly any designs seem to be left, so that boxes may go further before the next look.
+        """True if hardly any new designs turn up, so that boxes may be split further before the next search.
 
         Where few designs of a front are known they are hard to find, and each spares many boxes.
         """
@@ -100,27 +100,27 @@ class PrimalHeuristics:
             self.offer(points, combinations)
 
     def _solve_elastic(self, batch: Boxes) -> None:
-        """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
+        """Solve for the least common violation of all limits: what it depends on is split first."""
         form = self.form
         boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.elastic, len(batch))))
         combinations = form.boxes.combination(replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
         cutoffs = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
         tasks = Tasks(nothing, nothing, cutoffs, form.objectives.scales, elastic=1.0)
-        found = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5))
+        solutions = form.continuous.solve_batch(tasks, combinations, form.boxes.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
-        form.continuous.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
+        form.continuous.learn(tasks, solutions, np.maximum(np.abs(solutions.t), self.limits.near) ** -2.0)
         if not form.gridded.any():
-            self.offer(found.variables, combinations)
+            self.offer(solutions.variables, combinations)
 
-    def learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
-        """Learn from optima; in infeasibility mode the closer they come to being of use, the more boxes they cost."""
-        importance = np.ones(len(found.t))
+    def learn(self, tasks: Tasks, combinations: np.ndarray, solutions: Solutions) -> None:
+        """Learn branching weights from optima; in infeasibility mode near-improving ones weigh more."""
+        importance = np.ones(len(solutions.t))
         if self.form.infeasibility:
-            gain = self.rule.possible_gain(found.phi, self.form.boxes.cell_of(combinations))
+            gain = self.rule.possible_gain(solutions.phi, self.form.boxes.cell_of(combinations))
             excess = np.nan_to_num(-gain, nan=np.inf, posinf=np.inf)
             importance = np.maximum(excess, float(self.rule.tolerance.min())) ** -2.0
-        self.form.continuous.learn(tasks, found, importance)
+        self.form.continuous.learn(tasks, solutions, importance)
 
     def _tightened(self, boxes: Boxes) -> Boxes:
         cutoffs = self.rule.cutoffs(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
@@ -141,23 +141,23 @@ class PrimalHeuristics:
 
     def _keep(self, boxes: Boxes) -> tuple[int, np.ndarray]:
         """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
-        found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
+        total, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
         for share in (self.limits.inside, 0.5) if len(boxes) else ():
             points = self.form.makeable.nearest(self.form.boxes.inside(boxes, share))
             new, rows = self._offered(points, self.form.boxes.combination(boxes))
             hit[rows] = True
-            found += new
+            total += new
         missed = np.flatnonzero(thin & ~hit)
         if len(missed):
             new, rows = self.on_edge(
                 points[missed], self.form.boxes.combination(boxes.take(missed)), self.limits.rounded_off
             )
             hit[missed[rows]] = True
-            found += new
-        return found, hit
+            total += new
+        return total, hit
 
     def _thin(self, boxes: Boxes) -> np.ndarray:
-        """Tell in which boxes limits that all but exclude each other leave a variable no choice.
+        """Mask of boxes in which limits that nearly exclude each other leave a variable no choice.
 
         What is feasible there is so by the tolerance alone. Without it such a sliver would be split endlessly along
         the other variables.
@@ -172,12 +172,12 @@ class PrimalHeuristics:
         return self._offered(points, combinations)[0]
 
     def _offered(self, points: np.ndarray, combinations: np.ndarray) -> tuple[int, np.ndarray]:
-        """Do the same; return also the rows that are feasible."""
+        """Number of new designs among points, and the rows that are feasible."""
         rows, phi = self.form.points.feasible_rows(points, combinations)
-        return self._taken(points[rows], combinations[rows], phi[rows]), rows
+        return self._add_feasible(points[rows], combinations[rows], phi[rows]), rows
 
-    def _taken(self, points: np.ndarray, combinations: np.ndarray, phi: np.ndarray) -> int:
-        """Take feasible designs; return how many no known one covered."""
+    def _add_feasible(self, points: np.ndarray, combinations: np.ndarray, phi: np.ndarray) -> int:
+        """Add feasible designs; return how many no known one covered."""
         if not len(points):
             return 0
         used = self.rule.take(combinations, points, phi)
@@ -185,7 +185,7 @@ class PrimalHeuristics:
         return used
 
     def on_edge(self, points: np.ndarray, combinations: np.ndarray, most: int) -> tuple[int, np.ndarray]:
-        """Take what stands for points that are feasible by the full tolerance alone.
+        """Add replacements of points that are feasible by the full tolerance alone.
 
         That is the best design near to it, of the same parts and makeable values, that keeps the limits more closely.
         Only where there is none the point is taken as it is. It then counts as worse than it is, by more than what the
@@ -213,18 +213,18 @@ class PrimalHeuristics:
         fresh = {mark: row for mark, row in zip(marks, rows.tolist(), strict=True) if mark not in form.kept_closely}
         new = 0
         if fresh:
-            own = np.array(list(fresh.values()))
-            base = np.full((len(own), len(form.goals)), np.inf)
-            base[:, columns] = phi[own][:, columns]
+            kept_rows = np.array(list(fresh.values()))
+            base = np.full((len(kept_rows), len(form.goals)), np.inf)
+            base[:, columns] = phi[kept_rows][:, columns]
             slopes = np.where(np.isfinite(base), 1.0, 0.0)
             tasks = Tasks(self.limits.tie_weight * slopes, slopes, base, form.objectives.scales, 1.0)
-            low, high = (np.where(form.gridded, points[own], ends) for ends in (form.lower, form.upper))
-            answer = form.continuous.solve_many(tasks, combinations[own], points[own], low, high)
-            new, kept = self._offered(answer.variables, combinations[own])
+            low, high = (np.where(form.gridded, points[kept_rows], ends) for ends in (form.lower, form.upper))
+            answer = form.continuous.solve_batch(tasks, combinations[kept_rows], points[kept_rows], low, high)
+            new, kept = self._offered(answer.variables, combinations[kept_rows])
             form.kept_closely.update((mark, k in set(kept.tolist())) for k, mark in enumerate(fresh))
-        alone = rows[[not form.kept_closely[mark] for mark in marks]]
-        worse = phi[alone] + form.tuning.tolerances.edge_worth
-        return new + self._taken(points[alone], combinations[alone], worse), rows
+        unsolved = rows[[not form.kept_closely[mark] for mark in marks]]
+        worse = phi[unsolved] + form.tuning.tolerances.edge_worth
+        return new + self._add_feasible(points[unsolved], combinations[unsolved], worse), rows
 
     def upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
@@ -257,14 +257,14 @@ class PrimalHeuristics:
         low, high = form.boxes.ends(boxes)
         settled = form.gridded & (low == high)
         low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
-        answer = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5), low, high)
+        answer = form.continuous.solve_batch(tasks, combinations, form.boxes.inside(boxes, 0.5), low, high)
         self.learn(tasks, combinations, answer)
-        whole = np.all(settled == form.gridded, axis=1)
-        found = self.offer(answer.variables[whole], combinations[whole])
-        rest = np.flatnonzero(~whole)
-        if not len(rest):
-            return found
-        return found + self.round_off(boxes.take(rest), answer.variables[rest], tasks.take(rest))
+        makeable = np.all(settled == form.gridded, axis=1)
+        new = self.offer(answer.variables[makeable], combinations[makeable])
+        fractional = np.flatnonzero(~makeable)
+        if not len(fractional):
+            return new
+        return new + self.round_off(boxes.take(fractional), answer.variables[fractional], tasks.take(fractional))
 
     def round_off(self, boxes: Boxes, variables: np.ndarray, tasks: Tasks) -> int:
         """Try the makeable points around continuous optima, of which ``tasks`` are the problems.
@@ -277,23 +277,24 @@ class PrimalHeuristics:
         low, high, source = roundings(form, variables)
         bounds = np.full((len(low), boxes.bounds.shape[1]), -np.inf)
         around = self._tightened(replace(boxes.take(source), low=low, high=high, bounds=bounds, tag=source))
-        found, hit = self._keep(around)
+        new, hit = self._keep(around)
         if form.gridded.all():
-            return found
+            return new
         missed = np.ones(len(variables), dtype=bool)
         missed[around.tag[hit]] = False
         gain = self.rule.possible_gain(form.objectives.phi_of(around.bounds), around.cell)
         order = np.lexsort((-gain, around.tag))
         place = np.arange(len(order)) - np.searchsorted(around.tag[order], around.tag[order])
         chosen = np.sort(order[(place < self.limits.solved_again) | missed[around.tag[order]]])
-        rest = around.take(chosen[gain[chosen] > 0])
-        if not len(rest):
-            return found
-        low, high = form.boxes.ends(rest)
+        again = around.take(chosen[gain[chosen] > 0])
+        if not len(again):
+            return new
+        low, high = form.boxes.ends(again)
         low, high = np.where(form.gridded, low, form.lower), np.where(form.gridded, high, form.upper)
-        combinations = form.boxes.combination(rest)
-        answer = form.continuous.solve_many(tasks.take(rest.tag), combinations, form.boxes.inside(rest, 0.5), low, high)
-        return found + self.offer(answer.variables, combinations)
+        combinations = form.boxes.combination(again)
+        start = form.boxes.inside(again, 0.5)
+        answer = form.continuous.solve_batch(tasks.take(again.tag), combinations, start, low, high)
+        return new + self.offer(answer.variables, combinations)
 
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

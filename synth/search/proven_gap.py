@@ -102,7 +102,7 @@ class Level:
 
 @dataclass(frozen=True)
 class LevelBound:
-    """What is proven of designs one by one, each within cutoffs of its own.
+    """Bounds of designs one by one, each within its cutoffs.
 
     Parameters
     ----------
@@ -115,13 +115,13 @@ class LevelBound:
     levels: Sequence[Level]
 
     def gaps(self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-        """Return, per design listed, by how much at most another one improves it; as :meth:`Bound.gaps`."""
+        """Largest possible improvement of each listed design; as :meth:`Bound.gaps`."""
         best = np.full(len(phi), np.inf)
         for level in self.levels:
             rows = np.flatnonzero(level.speaks_of(phi, self.tolerance))
-            own = Bound(np.maximum(self.tolerance, level.tolerance), level.corners)
+            bound = Bound(np.maximum(self.tolerance, level.tolerance), level.corners)
             if len(rows):
-                best[rows] = np.minimum(best[rows], own.gaps(phi[rows], logs, sizes))
+                best[rows] = np.minimum(best[rows], bound.gaps(phi[rows], logs, sizes))
         return best
 
 
@@ -155,8 +155,8 @@ def least_gap(
     >>> round(least_gap([whole], np.log([[10.0]]), np.array([True]), np.ones(1)), 9)
     0.5
     """
-    found = [float(b.gaps(phi, logs, sizes).max()) for b in bounds]
-    least = min((g for g in found if not math.isnan(g)), default=math.inf)
+    gaps = [float(b.gaps(phi, logs, sizes).max()) for b in bounds]
+    least = min((g for g in gaps if not math.isnan(g)), default=math.inf)
     # An objective that is a logarithm improves by less than all of itself: more than that is no bound.
     bounded = math.isfinite(least) and not (logs.all() and least >= 1.0)
     return least if bounded else None

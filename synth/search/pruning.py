@@ -72,10 +72,10 @@ class EpsilonCover:
         self.tie = known.tuning.tolerances.tie
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
+        """Cutoffs of an improving design, per box with these lower bounds of phi."""
         cutoffs = np.tile(self.fixed_cutoffs[: lower.shape[1]] + self.tie, (len(lower), 1))
-        own = self.known.cutoffs(lower[:, self.columns], self.tolerance)
-        cutoffs[:, self.columns] = np.minimum(cutoffs[:, self.columns], own)
+        known = self.known.cutoffs(lower[:, self.columns], self.tolerance)
+        cutoffs[:, self.columns] = np.minimum(cutoffs[:, self.columns], known)
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
@@ -190,42 +190,42 @@ class NonImprovement:
         self._sorted_steps: SortedPoints | None = None
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return, per box with these lower bounds of phi, what a design must keep to beat one of the designs."""
+        """Cutoffs of a design that dominates one of the designs, per box with these lower bounds of phi."""
         cutoffs = np.full(lower.shape, np.inf)
-        own = lower[:, self.columns]
-        below = self._below_two(own) if len(self.columns) == 2 else self._below(own)
+        corner = lower[:, self.columns]
+        below = self._below_two(corner) if len(self.columns) == 2 else self._below(corner)
         # Of what is below no step nothing is of use, whatever is known.
-        some = np.flatnonzero(below[:, 0] > -np.inf)
-        below[some] = np.minimum(below[some], self.known.cutoffs(own[some], self.tolerance))
+        below_any = np.flatnonzero(below[:, 0] > -np.inf)
+        below[below_any] = np.minimum(below[below_any], self.known.cutoffs(corner[below_any], self.tolerance))
         cutoffs[:, self.columns] = below
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Possible distance of a box below one of the designs."""
-        own = lower[:, self.columns]
+        corner = lower[:, self.columns]
         with np.errstate(all="ignore"):
-            distance = (self.cutoffs(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)
+            distance = (self.cutoffs(lower)[:, self.columns] - corner).min(axis=1, initial=np.inf)
         gain: np.ndarray = np.maximum(distance, 0.0)
         return gain
 
-    def _below(self, own: np.ndarray) -> np.ndarray:
-        """Return, per box, the largest step in each objective among those that the box could be below."""
-        if own.shape[1] == 1:
-            return np.where(own < self.steps.max(), self.steps.max(), -np.inf)
+    def _below(self, corner: np.ndarray) -> np.ndarray:
+        """Largest step in each objective, per box, among those that the box could be below."""
+        if corner.shape[1] == 1:
+            return np.where(corner < self.steps.max(), self.steps.max(), -np.inf)
         if self._sorted_steps is None:
             self._sorted_steps = sorted_points(-self.steps, self.known.tuning.dominance, strict=True)
         # The largest step above a box in all other objectives; where it is not above it in its own, none is in all.
-        largest = -self._sorted_steps.least(-own, dominance_code())
-        return np.where(own < largest, largest, -np.inf)
+        largest = -self._sorted_steps.least(-corner, dominance_code())
+        return np.where(corner < largest, largest, -np.inf)
 
-    def _below_two(self, own: np.ndarray) -> np.ndarray:
-        """Do the same for two objectives: steps in order of the first fall in the second."""
+    def _below_two(self, corner: np.ndarray) -> np.ndarray:
+        """:meth:`_below` for two objectives: steps in order of the first fall in the second."""
         first, highest = self._in_order()
-        from_here = np.searchsorted(first, own[:, 0], side="right")  # steps above the box in the first objective
-        up_to = len(first) - np.searchsorted(highest[::-1], own[:, 1], side="right")  # ... and in the second
+        from_here = np.searchsorted(first, corner[:, 0], side="right")  # steps above the box in the first objective
+        up_to = len(first) - np.searchsorted(highest[::-1], corner[:, 1], side="right")  # ... and in the second
         alive = from_here < up_to
         last = np.minimum(up_to, len(first)) - 1
-        result = np.full(own.shape, -np.inf)
+        result = np.full(corner.shape, -np.inf)
         result[alive, 0] = first[last[alive]]
         result[alive, 1] = highest[from_here[alive]]
         return result
@@ -245,15 +245,15 @@ class NonImprovement:
         return CutoffTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
-        """Replace designs that are beaten; return how many were."""
-        own = phi[:, self.columns]
+        """Replace dominated designs; return how many were."""
+        new = phi[:, self.columns]
         least = np.array([c.phi[self.columns] for c in self.designs])
-        beats = beating(own[:, None, :], least[None, :, :], self.tie)
-        worth = np.where(beats, (own / self.tolerance).sum(axis=1)[:, None], np.inf)
+        beats = beating(new[:, None, :], least[None, :, :], self.tie)
+        worth = np.where(beats, (new / self.tolerance).sum(axis=1)[:, None], np.inf)
         for k, j in enumerate(np.argmin(least, axis=0)):
-            lower = own[:, k] < least[j, k] - self.tolerance[k]
+            lower = new[:, k] < least[j, k] - self.tolerance[k]
             if lower.any():
-                worth[:, j] = np.where(lower, own[:, k], np.inf)
+                worth[:, j] = np.where(lower, new[:, k], np.inf)
         beaten = np.flatnonzero(np.isfinite(worth).any(axis=0))
         for j in beaten:
             row = int(np.argmin(worth[:, j]))
@@ -268,7 +268,7 @@ class NonImprovement:
 
 
 def beating(rows: np.ndarray, phi: np.ndarray, tie: float) -> np.ndarray:
-    """Tell which rows (..., objectives) are as good as phi in all, and better in some by more than rounding."""
+    """Mask of rows (..., objectives) that are as good as phi in all, and better in one by more than rounding."""
     better: np.ndarray = np.all(rows <= phi, axis=-1) & np.any(rows < phi - tie, axis=-1)
     return better
 

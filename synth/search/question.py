@@ -22,7 +22,7 @@ from synth.search.warm_start import WarmStart
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """A request that has been checked against its model: everything that can be wrong with it has been said.
+    """A request that has been checked against its model, with every fault reported.
 
     ``chosen`` are the objectives with their sense, ``weights`` those of all of them.
     ``tuning``: what its search goes by.
@@ -59,18 +59,18 @@ class Question:
         known: Sequence[Design] = (),
         explained: bool = True,
         branching: BranchingStatistics | None = None,
-        given: ParetoFront | None = None,
+        start: ParetoFront | None = None,
     ) -> ParetoFront:
         """Search the designs.
 
         ``known`` are designs of a similar question, where to look first, ``branching`` what its search has learned of
         where to split. They prove nothing, and no design is taken from them that this question does not allow.
-        ``explained``: tell why, where nothing is feasible. ``given`` is the front of an earlier search of this very
+        ``explained``: tell why, where nothing is feasible. ``start`` is the front of an earlier search of this very
         question, to go on from.
         """
         search = self.search(progress, WarmStart(designs=known, branching=branching))
-        if given is not None:
-            search.begin_from(given)
+        if start is not None:
+            search.begin_from(start)
         return search.run(self.report(explained))
 
     def experience(self) -> tuple[ParetoFront, BranchingStatistics | None]:

@@ -29,25 +29,25 @@ def _pairs(instance: SearchSpace, cells: Cells, refusal: Refusal, factors: Seque
     model, owner = instance.model, instance.owners()
     shape = tuple(instance.combinations.radix[f] for f in factors)
     data = instance.data(np.zeros(1, dtype=np.int64))
-    for k, own in enumerate(owner):
-        if own in factors:
+    for k, factor in enumerate(owner):
+        if factor in factors:
             column = instance.column(k)
-            column = column[:, None] if own == factors[0] else column[None, :]
+            column = column[:, None] if factor == factors[0] else column[None, :]
             data[k] = np.broadcast_to(column, shape).ravel()
     refused = np.asarray(model.refused(refusal)([None] * len(model.variables) + data)[0])
-    found = ~(np.broadcast_to(refused, (shape[0] * shape[1],)).reshape(shape) > 0.5)
+    allowed = ~(np.broadcast_to(refused, (shape[0] * shape[1],)).reshape(shape) > 0.5)
     for f in factors:
-        found = _over_clusters(cells.trees[f], found).T  # one axis, then the other, which is turned back
-    return found
+        allowed = _over_clusters(cells.trees[f], allowed).T  # one axis, then the other, which is turned back
+    return allowed
 
 
 def _over_clusters(tree: ClusterTree, rows: np.ndarray) -> np.ndarray:
-    """Return per cluster what holds for any of its rows (rows, n)."""
-    found = np.empty((len(tree), rows.shape[1]), dtype=bool)
-    found[tree.leaf] = rows[tree.first[tree.leaf]]  # the rows of a leaf are equal in all that is read
+    """Disjunction over the rows of each cluster (rows, n)."""
+    result = np.empty((len(tree), rows.shape[1]), dtype=bool)
+    result[tree.leaf] = rows[tree.first[tree.leaf]]  # the rows of a leaf are equal in all that is read
     for k in np.flatnonzero(~tree.leaf)[::-1].tolist():
-        found[k] = found[tree.left[k]] | found[tree.right[k]]
-    return found
+        result[k] = result[tree.left[k]] | result[tree.right[k]]
+    return result
 
 
 def not_refused(space: SearchSpace, combinations: np.ndarray) -> np.ndarray:
@@ -64,7 +64,7 @@ def not_refused(space: SearchSpace, combinations: np.ndarray) -> np.ndarray:
 
 
 class RefusedCells:
-    """What refusals that only compare say of whole clusters.
+    """Refusals that only compare, evaluated over clusters.
 
     A refusal that computes would need rounding to be reckoned with; it is asked of single combinations alone. Where two
     factors are compared that are not too large, every pair of clusters is looked up in a table; otherwise the ends of
@@ -107,21 +107,21 @@ class RefusedCells:
         self._first = first
 
     def may_be_allowed(self, cell: np.ndarray) -> np.ndarray:
-        """Tell which cells (cells, factors) hold a combination that no refusal is known to exclude."""
+        """Mask of cells (cells, factors) that may hold a combination that no refusal excludes."""
         allowed = np.ones(len(cell), dtype=bool)
         for one, two, together in self._tables:
             allowed &= together[cell[:, one], cell[:, two]]
         for program, output in self._refused:
-            found: dict[int, Interval] = {}
+            ranges: dict[int, Interval] = {}
             for k in program.needed([output]):
                 node = program.nodes[k]
                 if node.op == ca.OP_CONST:
-                    found[k] = (node.constant, node.constant)
+                    ranges[k] = (node.constant, node.constant)
                 elif node.op == ca.OP_INPUT:
-                    found[k] = self._range(int(node.constant) - self._first, cell)
+                    ranges[k] = self._range(int(node.constant) - self._first, cell)
                 else:
-                    found[k] = FORWARD[node.op](*(found[a] for a in node.args))
-            allowed &= ~(np.asarray(found[output][0]) > 0.5)
+                    ranges[k] = FORWARD[node.op](*(ranges[a] for a in node.args))
+            allowed &= ~(np.asarray(ranges[output][0]) > 0.5)
         return allowed
 
     def _range(self, k: int, cell: np.ndarray) -> Interval:

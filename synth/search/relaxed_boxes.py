@@ -37,15 +37,15 @@ class RelaxedBoxes:
         return self.form.boxes.snapped(Boxes.joined(kept)) if kept else boxes
 
     def _tightened(self, boxes: Boxes, values: np.ndarray) -> Boxes:
-        found = self.relaxation.run(boxes, values, self.target)
+        relaxed = self.relaxation.run(boxes, values, self.target)
         scores = boxes.scores.copy()
         width, factors = boxes.low.shape[1], boxes.cell.shape[1]
-        for points in found.points:
-            own = relaxed_scores(self.relaxation.nodes, points, width, factors)
-            most = own.max(axis=1, keepdims=True, initial=0.0)
+        for points in relaxed.points:
+            local_scores = relaxed_scores(self.relaxation.nodes, points, width, factors)
+            most = local_scores.max(axis=1, keepdims=True, initial=0.0)
             before = scores[points.rows]
             others = before / np.maximum(before.max(axis=1, keepdims=True, initial=0.0), 1e-30)
             scores[points.rows] = np.where(
-                most > 0, own / np.maximum(most, 1e-300) + self.settings.others * others, before
+                most > 0, local_scores / np.maximum(most, 1e-300) + self.settings.others * others, before
             )
-        return replace(found.boxes, scores=scores).take(found.alive)
+        return replace(relaxed.boxes, scores=scores).take(relaxed.alive)

@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 # In phi. Settling ties gives away some 1e-9 of it at each of its steps: no claim is finer than a few of them.
 FINEST = 1e-8
-ROOM = 5e-9
+ROUNDING = 5e-9
 
 
 def declared_resolution(declaration: Declaration, name: str) -> float | None:
-    """Return the resolution of an objective in SI, as declared; None where it is left to the usual size."""
-    told = declaration.objectives[name].resolution if name in declaration.objectives else None
-    if told is None:
+    """Declared resolution of an objective in SI; None where it follows from the usual size."""
+    resolution = declaration.objectives[name].resolution if name in declaration.objectives else None
+    if resolution is None:
         return None
-    unit = next(unit for own, unit, _ in declaration.quantities() if own == name)
-    return float(told) * float(parse_unit(unit).ratio)
+    unit = next(unit for quantity, unit, _ in declaration.quantities() if quantity == name)
+    return float(resolution) * float(parse_unit(unit).ratio)
 
 
 def goal_scales(log: np.ndarray, sizes: np.ndarray, declared: Sequence[float | None]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the unit of phi and the resolution in phi, per objective.
+    """Unit of phi and resolution in phi, per objective.
 
     Parameters
     ----------
@@ -50,14 +50,14 @@ def goal_scales(log: np.ndarray, sizes: np.ndarray, declared: Sequence[float | N
     >>> units.tolist(), finest.tolist()
     ([1.0, 2.0, 0.1], [0.0, 1e-08, 1e-08])
     """
-    told = np.array([math.inf if x is None else x for x in declared], dtype=float)
-    units = np.where(log, 1.0, np.minimum(sizes, told / FINEST))
-    finest = np.where(np.isfinite(told), told / units, FINEST)
+    resolutions = np.array([math.inf if x is None else x for x in declared], dtype=float)
+    units = np.where(log, 1.0, np.minimum(sizes, resolutions / FINEST))
+    finest = np.where(np.isfinite(resolutions), resolutions / units, FINEST)
     return units, np.where(log, 0.0, finest)
 
 
 def gap_tolerance(gap: float, log: np.ndarray, finest: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Return the gap as a distance in phi, per objective.
+    """The gap as a distance in phi, per objective.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def gap_tolerance(gap: float, log: np.ndarray, finest: np.ndarray, sizes: np.nda
     sizes : array (objectives,)
         What the gap is a share of where it is not one of the value, in phi.
     """
-    distance: np.ndarray = np.where(log, -np.log1p(-gap), np.maximum(gap * sizes, finest) - ROOM)
+    distance: np.ndarray = np.where(log, -np.log1p(-gap), np.maximum(gap * sizes, finest) - ROUNDING)
     return distance
 
 

@@ -51,7 +51,7 @@ class Optima:
 
 
 def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int) -> list[dict[str, dict[str, float]]]:
-    """Return, per design, the elasticity of each chosen objective to every limit and requirement.
+    """Elasticity of each chosen objective to every limit and requirement, per design.
 
     The other chosen objectives are held at their values, parts and counts are fixed, gridded
     variables are taken as continuous. What a default makes of a requirement moves with it.
@@ -83,13 +83,13 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     for k in range(chosen):
         if not form.objectives.log[k]:
             continue
-        found = optima(form, combinations, start, phi, chosen, k, sizes)
+        best = optima(form, combinations, start, phi, chosen, k, sizes)
         counts = np.concatenate(
-            [logs & (np.abs(found.limits) > noise), (np.abs(found.requirements) > noise) & ~spoken], axis=1
+            [logs & (np.abs(best.limits) > noise), (np.abs(best.requirements) > noise) & ~spoken], axis=1
         )
-        numbers = np.concatenate([found.limits, found.requirements], axis=1).tolist()
+        numbers = np.concatenate([best.limits, best.requirements], axis=1).tolist()
         labels = [*names, *positions]
-        for i in np.flatnonzero(found.converged).tolist():
+        for i in np.flatnonzero(best.converged).tolist():
             results[i][form.names[k]] = {labels[j]: numbers[i][j] for j in np.flatnonzero(counts[i]).tolist()}
     return results
 
@@ -117,14 +117,14 @@ def optima(
     """
     tasks = held(form, phi, chosen, k)
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
-    answer = form.continuous.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
+    answer = form.continuous.solve_batch(tasks, combinations, start, skipped=form.unmoved(gridded=True))
     data = form.instance.data(combinations)
     sizes = _sizes(form, form.instance.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
     logs = np.array(form.continuous.rows.log_constraints, dtype=bool)
-    signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.node_constraints])
+    senses = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.node_constraints])
     with np.errstate(all="ignore"):
-        limits = signs * answer.constraint_multipliers * np.where(logs, 1.0, bounds / sizes)
+        limits = senses * answer.constraint_multipliers * np.where(logs, 1.0, bounds / sizes)
     limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
     positions = requirement_positions(form)
     slopes = form.model.function(("gradient", form.continuous.rows), lambda: _gradient(form))
@@ -135,7 +135,7 @@ def optima(
         for j, x in enumerate(data):
             known[:, j] = x[solved] if isinstance(x, np.ndarray) and x.ndim else x
         points = answer.variables[solved]
-        own, at_ends = slopes(
+        partials, at_ends = slopes(
             form,
             points,
             known,
@@ -147,7 +147,7 @@ def optima(
         ends[solved] = at_ends * points
         places = list(positions.values())
         share, _ = _shares(form, combinations[solved])
-        slope = _sum_of_shares(share, own[:, places])
+        slope = _sum_of_shares(share, partials[:, places])
         requirements[solved] = slope * known[:, places]
     return Optima(
         answer.variables, answer.phi[:, k], answer.converged, answer.constraint_multipliers, limits, requirements, ends
@@ -176,7 +176,7 @@ def requirement_positions(form: Formulation) -> dict[str, int]:
 
 
 def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
+    """Slope of requirements that follow others, and mask of these (combinations, requirements, followers)."""
     questions: dict[RequirementValues, int] = {}
     kinds, numbers = list[dict[str, dict[str, float]]](), list[int]()
     for combination in combinations.tolist():
@@ -188,20 +188,20 @@ def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np
     place = {name: q for q, name in enumerate(requirement_positions(form))}
     share = np.zeros((len(kinds), len(place), len(place)))
     follows = np.zeros(share.shape, dtype=bool)
-    for own, moved in enumerate(kinds):
+    for kind, moved in enumerate(kinds):
         for name, others in moved.items():
             for other, by in others.items():
-                share[own, place[name], place[other]] = by
-                follows[own, place[name], place[other]] = True
+                share[kind, place[name], place[other]] = by
+                follows[kind, place[name], place[other]] = True
     return share[numbers], follows[numbers]
 
 
 def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Return the slope to each requirement and what moves with it, from those to each alone (designs, requirements)."""
-    own = np.arange(slopes.shape[1])
-    total: np.ndarray = 0.0 + share[:, own, own] * slopes
+    """Total slope to each requirement with its followers, from the partial slopes (designs, requirements)."""
+    each = np.arange(slopes.shape[1])
+    total: np.ndarray = 0.0 + share[:, each, each] * slopes
     # One after another, in the order in which they are declared: sums of numbers depend on it.
-    for other in own[np.any(share, axis=(0, 1))]:
+    for other in each[np.any(share, axis=(0, 1))]:
         more = share[:, :, other] * slopes[:, [other]]
         more[:, other] = 0.0
         total += more
@@ -249,7 +249,7 @@ def _slopes(model: Model) -> dict[str, list[tuple[str, Any, list[str]]]]:
 
 
 def _gradient(form: Formulation) -> Any:
-    """Return the derivatives of the Lagrangian to data inputs and variables: of point, data and multipliers."""
+    """Derivatives of the Lagrangian by data inputs and variables, a function of point, data and multipliers."""
     rows, program, n = form.continuous.rows, form.model.program, form.n
     x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
     values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
@@ -265,11 +265,11 @@ def _gradient(form: Formulation) -> Any:
         phi.append(goal.sign * form_of)
     constraint_weights, goal_weights = ca.SX.sym("constraints", len(constraint_rows)), ca.SX.sym("goals", len(phi))
     total = ca.dot(constraint_weights, ca.vertcat(*constraint_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
-    wanted = [ca.gradient(total, data), ca.gradient(total, x)]
-    function = ca.Function("gradient", [x, data, bounds, sizes, constraint_weights, goal_weights], wanted)
+    gradients = [ca.gradient(total, data), ca.gradient(total, x)]
+    function = ca.Function("gradient", [x, data, bounds, sizes, constraint_weights, goal_weights], gradients)
 
     def evaluate(
-        own: Formulation,
+        formulation: Formulation,
         points: np.ndarray,
         known: np.ndarray,
         size: np.ndarray,
@@ -278,13 +278,13 @@ def _gradient(form: Formulation) -> Any:
         k: int,
     ) -> tuple[np.ndarray, np.ndarray]:
         clean = np.where(np.isnan(known), 1.0, known)
-        units = np.where(rows.log_goals, 1.0, own.objectives.scales)
+        units = np.where(rows.log_goals, 1.0, formulation.objectives.scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units
         weights[:, k] += 1.0 / units[k]
-        limits = np.tile(own.bounds, (len(points), 1))
+        limits = np.tile(formulation.bounds, (len(points), 1))
         # One call for all designs, a column each.
-        found = function(points.T, clean.T, limits.T, size.T, np.where(constraints == 0, 0.0, constraints).T, weights.T)
-        slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in found)
+        parts = function(points.T, clean.T, limits.T, size.T, np.where(constraints == 0, 0.0, constraints).T, weights.T)
+        slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in parts)
         return slopes, ends
 
     return evaluate
@@ -306,14 +306,14 @@ def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
 
 
 def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
-    """Return the limits themselves (designs, limits)."""
+    """Bounds of the limits (designs, limits)."""
     moving = [constraint.limit for constraint in form.node_constraints if constraint.limit is not None]
     limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))
     with np.errstate(all="ignore"):
-        found = iter(limits([*variables.T, *data]))
+        values = iter(limits([*variables.T, *data]))
     bounds = np.empty((len(variables), len(form.node_constraints)))
     for j, constraint in enumerate(form.node_constraints):
-        bounds[:, j] = constraint.bound if constraint.limit is None else next(found)
+        bounds[:, j] = constraint.bound if constraint.limit is None else next(values)
     return bounds
 
 

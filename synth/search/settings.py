@@ -71,7 +71,7 @@ class Tolerances:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchEffort:
-    """What is done about boxes that a first effort has left open.
+    """Effort for boxes that a first search has left unresolved.
 
     Counts of boxes decide wherever they can, so that the same question goes the same way on every machine; the budget
     of time is the last net.
@@ -92,7 +92,7 @@ class SearchEffort:
     most_stuck : int
         Boxes that are open but too small to be split, after which it ends: limits leave a sliver that never closes.
     behind : float
-        Of two ways of bounding that have turns, the share of the effort of that which closes more slowly.
+        Of two alternating ways of bounding, the share of the effort of that which closes more slowly.
     """
 
     seconds: float = 60.0
@@ -142,12 +142,12 @@ class LevelLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class TreeLimits:
-    """How far branch and bound goes, in boxes that are looked into unless another unit is told.
+    """Limits of branch and bound, in processed boxes unless another unit is named.
 
     Parameters
     ----------
-    whole_front : int
-        For a front of two objectives at once; what needs more is easier level by level.
+    cover_front : int
+        For covering a front of two objectives at once; what needs more is easier level by level.
     scarce_front : int
         The same where few designs are known although they were looked for.
     first_try : int
@@ -223,7 +223,7 @@ class TreeLimits:
         Designs known at which it is measured what boxes are split along.
     """
 
-    whole_front: int = 1_000_000
+    cover_front: int = 1_000_000
     scarce_front: int = 50_000
     first_try: int = 150_000
     boxes: int = 20_000_000
@@ -339,8 +339,8 @@ class NeighbourhoodLimits:
 
     Parameters
     ----------
-    turns : int
-        Objectives in turn.
+    rounds : int
+        Over the objectives.
     patience : int
         Turns without success, per objective, after which it ends.
     solved : int
@@ -353,7 +353,7 @@ class NeighbourhoodLimits:
         As for :class:`PrimalHeuristicLimits`.
     """
 
-    turns: int = 40
+    rounds: int = 40
     patience: int = 2
     solved: int = 4096
     promising: int = 12
@@ -507,14 +507,14 @@ class JointLimits:
 
     Parameters
     ----------
-    turns : tuple of (int, int, int)
-        Boxes per question, by turns: with plain boxes; with boxes that carry what limits share; and the same where no
+    schedule : tuple of (int, int, int)
+        Boxes per question and round: with plain boxes; with boxes that carry what limits share; and the same where no
         design is known, as there may be none to be found.
     least_boxes : int
         Plain boxes of a turn at least, however few the questions: one alone takes tens of thousands.
     nearly_closed : float
         Share of the boxes looked into: if fewer are open, as much again is worth it.
-    given_parts : int
+    boxes_per_combination : int
         Boxes per question whose parts are given.
     most_boxes : int
         Boxes of all questions: a quarter of them may have to be kept at a time.
@@ -533,14 +533,14 @@ class JointLimits:
         level, and all in one they are told apart late.
     """
 
-    turns: tuple[tuple[int, int, int], ...] = (
+    schedule: tuple[tuple[int, int, int], ...] = (
         (5_000, 5_000, 5_000),
         (5_000, 20_000, 10_000),
         (5_000, 250_000, 20_000),
     )
     least_boxes: int = 60_000
     nearly_closed: float = 0.1
-    given_parts: int = 20_000
+    boxes_per_combination: int = 20_000
     most_boxes: int = 12_000_000
     tie: int = 200
     front_points: int = 8

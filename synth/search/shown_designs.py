@@ -14,7 +14,7 @@ from synth.units import from_si, header
 
 
 class ShownDesigns:
-    """Tells the objectives of the designs of an archive whenever there are others than before.
+    """Reports the objectives of the designs of an archive whenever they changed.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ class ShownDesigns:
         rows = np.argsort(phi[:, 0], kind="stable")
         if len(rows) > most:
             rows = rows[np.linspace(0, len(rows) - 1, most).round().astype(int)]
-        signs = np.array([goal.sign for goal in form.goals[:m]], dtype=float)
-        values = form.objectives.values_of(phi[rows, :m]) * signs
+        senses = np.array([goal.sign for goal in form.goals[:m]], dtype=float)
+        values = form.objectives.values_of(phi[rows, :m]) * senses
         units = [form.model.units[name] for name in self._objectives]
         columns = [np.asarray(from_si(values[:, k], unit)).tolist() for k, unit in enumerate(units)]
         return {

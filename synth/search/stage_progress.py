@@ -13,7 +13,7 @@ from synth.search.settings import TUNING, ProgressLimits
 
 
 class StageProgress:
-    """Tells which stage a search is in and how far it is, and keeps how long each stage took.
+    """Reports the stage of a search and its progress, and records the time of each stage.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class StageProgress:
         self.started = time.monotonic()
         self.seconds: dict[str, float] = {}  # per stage that has ended
         self.report, self._combinations, self._incumbents = report, combinations, incumbents
-        self._shown, self._limits, self._told = shown, limits, -math.inf
+        self._shown, self._limits, self._reported_at = shown, limits, -math.inf
         self._stage, self._done = "", 0.0
 
     @property
@@ -88,8 +88,8 @@ class StageProgress:
     def _designs(self) -> Mapping[str, Any]:
         """Progress report on the known designs, where one is due."""
         now = time.monotonic()
-        if now - self._told < self._limits.pause:
+        if now - self._reported_at < self._limits.pause:
             return {}
-        found = self._shown()
-        self._told = now if found else self._told
-        return found
+        report = self._shown()
+        self._reported_at = now if report else self._reported_at
+        return report

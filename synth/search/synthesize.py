@@ -122,9 +122,9 @@ def find_front(
     from synth.robust.robust_front import robust_front
 
     rater = Rater(request, request.robust, tuning.robust)
-    left = settings.since(begun).time_limit
+    remaining = settings.since(begun).time_limit
 
-    def posed_for(wanted: Uncertainty) -> Question:
-        return pose(replace(request, robust=wanted), settings, tuning=tuning)
+    def question_for(uncertainty: Uncertainty) -> Question:
+        return pose(replace(request, robust=uncertainty), settings, tuning=tuning)
 
-    return robust_front(posed_for, rater, progress, left)
+    return robust_front(question_for, rater, progress, remaining)

@@ -56,7 +56,7 @@ class TurnBudget:
             self.spent = bool(tree.extent) and self.effort.seconds <= 0
 
 
-def by_turns(
+def alternate(
     ways: Sequence[Callable[[], TurnTree]], budget: TurnBudget, first: float, between: Callable[[], None]
 ) -> list[TurnTree]:
     """Let two trees go on by turns, each time with twice the effort; most of it has that which closes faster.
@@ -81,27 +81,27 @@ def by_turns(
     """
     trees: list[TurnTree] = []
     looked, stuck = [0] * len(ways), [False] * len(ways)
-    whole, left, paces = [0.0] * len(ways), [0.0] * len(ways), [0.0] * len(ways)
+    initial, extents, paces = [0.0] * len(ways), [0.0] * len(ways), [0.0] * len(ways)
     effort, turn = first, 0
     while True:
         k = turn % len(ways)
         if turn < len(ways):
             trees.append(ways[k]())
-            whole[k] = left[k] = trees[k].extent
+            initial[k] = extents[k] = trees[k].extent
             share = 1.0
         else:
             share = 1.0 if paces[k] >= max(paces) else budget.effort.behind
             effort *= 2 if k == 0 else 1
-        before = left[k]
-        own = budget.turn(trees[k], share * effort)
-        looked[k] += own
+        before = extents[k]
+        used = budget.turn(trees[k], share * effort)
+        looked[k] += used
         # What is open is too small to be split: a tree that has nothing else to look into will never close. Each look
         # at it still takes a little off.
-        left[k] = trees[k].extent
-        stuck[k] = own < share * effort and left[k] > (1 - budget.effort.closing) * before
-        if not left[k]:
+        extents[k] = trees[k].extent
+        stuck[k] = used < share * effort and extents[k] > (1 - budget.effort.closing) * before
+        if not extents[k]:
             return [t for t in trees if t is not trees[k]] + [trees[k]]
-        paces[k] = math.log(whole[k] / left[k]) / math.log(looked[k] + 2)
+        paces[k] = math.log(initial[k] / extents[k]) / math.log(looked[k] + 2)
         if budget.looked >= budget.boxes or all(stuck):
             first_tree = trees[paces.index(max(paces[: len(trees)]))]
             budget.finish(first_tree)

@@ -30,7 +30,7 @@ from synth.queue.job_table import KeyTakenError, QueueFullError
 from synth.service.addresses import Addresses
 from synth.service.small_work import BusyError, LateError
 from synth.service.wording import fault_of
-from synth.system.operating_system import NO_ROOM
+from synth.system.operating_system import OUT_OF_SPACE
 from synth.workers.engine_process import EngineCrashedError, EngineFailedError, EngineTimeoutError
 
 JSON = "application/json"
@@ -250,7 +250,7 @@ def request_id_of(request: Request) -> str:
 
 def _of_system(error: OSError) -> ServiceError:
     """Return the refusal of what needs room that is not there; all else is a fault of the service."""
-    if error.errno in NO_ROOM:
+    if error.errno in OUT_OF_SPACE:
         return NO_SPACE
     raise error
 

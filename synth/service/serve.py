@@ -31,7 +31,7 @@ from synth.service.protocol import bounded
 from synth.service.recording import LOG
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor, worker_command
-from synth.system.file_locks import is_taken, locked, unlock
+from synth.system.file_locks import is_locked, locked, unlock
 from synth.system.operating_system import ENDING, private_file, private_folder
 from synth.workers.engine_process import Engines
 from synth.workers.settings import INTERACTIVE
@@ -177,7 +177,7 @@ def only_server(url: str) -> Iterator[None]:
         with suppress(OSError):  # whoever opens the database tells what cannot be written there
             private_file(lock)
         handle = locked(lock)
-        if handle is None and is_taken(lock):  # else nothing can be written there, which whoever opens it tells
+        if handle is None and is_locked(lock):  # else nothing can be written there, which whoever opens it tells
             right = "a file that no other server serves: on SQLite there is one, PostgreSQL has room for several"
             raise InputError("--database", str(file), right)
     try:

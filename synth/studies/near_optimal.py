@@ -36,7 +36,7 @@ from synth.results.plain import plain
 from synth.search.archive import Archive, Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
-from synth.search.fathoming import left_open
+from synth.search.fathoming import unresolved_small
 from synth.search.formulation import Formulation
 from synth.search.goals import goals_of
 from synth.search.polishing import polish_discrete, polish_variables
@@ -385,7 +385,7 @@ class _Enumeration:
             batch = self._open(batch)
             batch, small = form.boxes.split(batch)
             if len(small):
-                left = self._open(left_open(form, small, near, heuristics))
+                left = self._open(unresolved_small(form, small, near, heuristics))
                 self.undecided.update(form.boxes.cells.all_members(left.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
@@ -424,7 +424,7 @@ class _Enumeration:
         slopes, cutoffs = np.zeros((count, goals)), np.full((count, goals), np.inf)
         slopes[:, :m], cutoffs[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
         tasks = Tasks(np.zeros((count, goals)), slopes, cutoffs, form.objectives.scales, t_weight=1.0)
-        answer = form.continuous.solve_many(tasks, combinations, start)
+        answer = form.continuous.solve_batch(tasks, combinations, start)
         if not form.gridded.any():
             self._offer(answer.variables, combinations)
             return
@@ -441,7 +441,7 @@ class _Enumeration:
         if len(low) > self.limits.rounded:
             chosen = self.rng.choice(len(low), self.limits.rounded, replace=False)
             low, high = low[chosen], high[chosen]
-        cell = form.boxes.whole(combination).cell
+        cell = form.boxes.box_of(combination).cell
         whole = form.boxes.leaves(np.full(len(low), combination), low, high)
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
         around = form.boxes.contract(form.boxes.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
@@ -459,7 +459,7 @@ class _Enumeration:
         """Return all combinations that belong, without the chosen one: rows that are equal in all that counts too."""
         form, result = self.form, dict[int, tuple[float, Candidate]]()
         for combination, (worse, candidate) in self.near.found.items():
-            for other in form.boxes.cells.members(form.boxes.whole(combination).cell[0], self.limits.most):
+            for other in form.boxes.cells.members(form.boxes.box_of(combination).cell[0], self.limits.most):
                 result[int(other)] = worse, replace(candidate, combination=int(other))
         result.pop(self.own, None)
         return dict(sorted(result.items()))

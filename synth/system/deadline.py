@@ -35,14 +35,14 @@ class End:
     ----------
     time : float
         In s, as of ``time.monotonic``.
-    given : float
+    duration : float
         In s: how long the work may take in all.
     needless : callable
         Tells whether nobody waits for it any more.
     """
 
     time: float = math.inf
-    given: float = math.inf
+    duration: float = math.inf
     needless: Callable[[], bool] = _never
 
 
@@ -57,9 +57,9 @@ def until(end: float, needless: Callable[[], bool] | None = None) -> Iterator[No
     """
     outside = _end.get()
     if end < outside.time:
-        inside = End(end, min(end - time.monotonic(), outside.given), needless or outside.needless)
+        inside = End(end, min(end - time.monotonic(), outside.duration), needless or outside.needless)
     else:
-        inside = outside if needless is None else End(outside.time, outside.given, needless)
+        inside = outside if needless is None else End(outside.time, outside.duration, needless)
     before = _end.set(inside)
     try:
         yield

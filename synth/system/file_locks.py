@@ -12,13 +12,13 @@ from synth.system.operating_system import SAFELY, lock
 
 
 @contextmanager
-def alone(path: Path) -> Iterator[bool]:
-    """Keep others out for the block, by a file that is there as long; tell whether nobody else was there before.
+def exclusive_access(path: Path) -> Iterator[bool]:
+    """Exclude other processes for the block with a lock file; yields False if another one holds it.
 
     Parameters
     ----------
     path : Path
-        Of the file that is locked, in a folder that is there.
+        Of the file to lock, in an existing folder.
     """
     handle = locked(path)
     try:
@@ -29,26 +29,26 @@ def alone(path: Path) -> Iterator[bool]:
 
 
 def locked(path: Path) -> int | None:
-    """Return the handle of a file that is locked now; None where another has it, or it cannot be written."""
+    """Handle of the locked file; None where another process holds it, or it cannot be written."""
     while True:
         try:
             handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
         except OSError:
             return None
-        taken = False
+        acquired = False
         try:
-            taken = lock(handle, shared=False)
-            if taken and is_at(handle, path):
+            acquired = lock(handle, shared=False)
+            if acquired and is_at(handle, path):
                 return handle
         except OSError:
-            taken = False
+            acquired = False
         os.close(handle)
-        if not taken:
-            return None  # otherwise whoever had it has just taken it away
+        if not acquired:
+            return None  # otherwise the file was removed meanwhile
 
 
-def is_taken(path: Path) -> bool:
-    """True if another process has a file to itself."""
+def is_locked(path: Path) -> bool:
+    """True if another process holds an exclusive lock on a file."""
     try:
         handle = os.open(path, os.O_RDWR | SAFELY)
     except OSError:

@@ -15,8 +15,8 @@ TWICE = 1.0  # seconds; what comes from a terminal, and again from whoever start
 
 
 @contextmanager
-def taken_alike() -> Iterator[None]:
-    """Take SIGTERM, by which schedulers and containers end a program, as Ctrl-C; what comes twice at once is one."""
+def sigterm_as_interrupt() -> Iterator[None]:
+    """Handle SIGTERM, by which schedulers and containers end a process, as Ctrl-C; two at once count as one."""
     last = -TWICE
 
     def stop(number: int, frame: FrameType | None) -> None:

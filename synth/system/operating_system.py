@@ -48,8 +48,8 @@ def beginning(process: int) -> str:
     """Start time of a process, in a clock that nobody sets; an empty text where the system does not state it."""
     if sys.platform == "linux":
         try:
-            told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace")
-            return told.rsplit(")", 1)[1].split()[19]
+            status = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace")
+            return status.rsplit(")", 1)[1].split()[19]
         except (OSError, IndexError):
             return ""
     if sys.platform == "win32":
@@ -120,7 +120,7 @@ NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # a pipe that nobody writes into would b
 SAFELY = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 AS_BYTES = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 PRIVATE_FOLDER, PRIVATE_FILE = 0o700, 0o600
-NO_ROOM = tuple(getattr(errno, name) for name in ("ENOSPC", "EDQUOT") if hasattr(errno, name))
+OUT_OF_SPACE = tuple(getattr(errno, name) for name in ("ENOSPC", "EDQUOT") if hasattr(errno, name))
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
 HELD_PATIENCE = 2.0  # seconds; scanners and indexers of Windows look into a file that is new, for a moment
 HELD_PAUSE = 0.05
@@ -256,8 +256,8 @@ def cache_home() -> Path:
     RuntimeError
         The system does not tell where the user is at home.
     """
-    if given := os.environ.get("XDG_CACHE_HOME"):
-        return Path(given)
+    if configured := os.environ.get("XDG_CACHE_HOME"):
+        return Path(configured)
     if sys.platform == "win32":
         return _local_data()
     return Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
@@ -265,16 +265,16 @@ def cache_home() -> Path:
 
 def data_home() -> Path:
     """Return the folder in which programs of this user keep what they must not lose."""
-    if given := os.environ.get("XDG_DATA_HOME"):
-        return Path(given)
+    if configured := os.environ.get("XDG_DATA_HOME"):
+        return Path(configured)
     if sys.platform == "win32":
         return _local_data()
     return Path.home() / ("Library/Application Support" if sys.platform == "darwin" else ".local/share")
 
 
 def _local_data() -> Path:
-    given = os.environ.get("LOCALAPPDATA")
-    return Path(given) if given else Path.home() / "AppData" / "Local"
+    configured = os.environ.get("LOCALAPPDATA")
+    return Path(configured) if configured else Path.home() / "AppData" / "Local"
 
 
 # ---- streams --------------------------------------------------------------------------------------------------------

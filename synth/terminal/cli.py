@@ -19,7 +19,7 @@ from synth.folders.files import frame_csv
 from synth.folders.output_folder import EXPLANATION, EXPLANATION_TEXT, FRONT, save_files, save_result
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import PLOT, report
-from synth.system.interrupts import taken_alike
+from synth.system.interrupts import sigterm_as_interrupt
 from synth.system.operating_system import reader_has_gone
 from synth.terminal import batch_commands as batches
 from synth.terminal import (
@@ -120,7 +120,7 @@ COMMANDS = {
 
 def _run() -> None:
     try:
-        with taken_alike(), one_command(), derived_told(), listening(tell):
+        with sigterm_as_interrupt(), one_command(), derived_told(), listening(tell):
             app(prog_name="clutchsynth")
     except InputError as error:
         tell(" ".join(f"{error}{COMMANDS.get(error.expected, '')}".split()))

@@ -11,12 +11,12 @@ _heard: ContextVar[Callable[[str], None] | None] = ContextVar("heard", default=N
 
 @contextmanager
 def listening(heard: Callable[[str], None]) -> Iterator[None]:
-    """Call a function with every sentence that readers of input say meanwhile; each is said once."""
-    said: set[str] = set()
+    """Pass every message of the readers of input in the block to a function, each once."""
+    passed_on: set[str] = set()
 
     def once(sentence: str) -> None:
-        if sentence not in said:
-            said.add(sentence)
+        if sentence not in passed_on:
+            passed_on.add(sentence)
             heard(sentence)
 
     before = _heard.set(once)

@@ -17,7 +17,7 @@ SHARE_DIGITS = 3  # of per cents and factors
 PLAIN = -4, 6  # exponents of numbers that are written without a power of ten
 LEAST_PER_CENT = 0.001  # shown as a bound below it
 GROUPED = 5  # digits before the point from which on they stand in groups of three
-WIDE = 30.0  # ratio of the largest to the least number of a column from which on each has its own decimals
+COLUMN_SPREAD = 30.0  # ratio of the largest to the least number of a column from which on each has its own decimals
 LARGEST_IN_PER_CENT = 10.0  # shares from which on a sentence speaks of so many times
 LARGEST_FACTOR = 1e6  # shares above it are no comparison
 RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -224,19 +224,19 @@ def column_decimals(values: Sequence[float | None], digits: int = DIGITS) -> int
         return None
     each = [shown(x, digits) for x in known]
     largest, least = max(map(abs, known)), min(map(abs, known))
-    if largest > WIDE * least or any(one.power for one in each):
+    if largest > COLUMN_SPREAD * least or any(one.power for one in each):
         return None
     needed = max(len(one.digits.partition(".")[2]) for one in each)
     return min(needed, max(0, digits - 1 - math.floor(math.log10(largest))))
 
 
 def grouped(digits: str, gap: str = " ") -> str:
-    """Digits with their whole part in groups of three, from five of them on."""
-    whole, point, rest = digits.partition(".")
-    if len(whole) < GROUPED or not whole.isdigit():
+    """Digits with their integer part in groups of three, from five of them on."""
+    integer, point, decimals = digits.partition(".")
+    if len(integer) < GROUPED or not integer.isdigit():
         return digits
-    first = len(whole) % 3 or 3
-    return gap.join((whole[:first], *(whole[k : k + 3] for k in range(first, len(whole), 3)))) + point + rest
+    first = len(integer) % 3 or 3
+    return gap.join((integer[:first], *(integer[k : k + 3] for k in range(first, len(integer), 3)))) + point + decimals
 
 
 def _fixed(size: Decimal, decimals: int) -> str:

@@ -102,7 +102,7 @@ def escaped(text: str) -> str:
     >>> escaped('"a\x9bb"')
     '"a\\u009bb"'
     """
-    return UNSAFE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return UNSAFE.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def defused(text: str) -> str:
@@ -200,6 +200,6 @@ def plain_streams() -> Iterator[None]:
         sys.stdout, sys.stderr = before
 
 
-def _written_out(found: re.Match[str]) -> str:
-    code = ord(found[0])
+def _written_out(match: re.Match[str]) -> str:
+    code = ord(match[0])
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

@@ -13,7 +13,7 @@ from synth.units.quantity import finite_from_si
 WORDS = {"degC": "°C", "deg": "°", "ohm": "Ω", "um": "µm"}
 FACTOR = re.compile(r"([A-Za-z]+)(-?\d*)")
 # A number with a unit as sentences have it; what follows a blank without a sign of units in it is a word.
-STATED = re.compile(r"(?<![\w.])([-+]?\d[\d.]*) ([A-Za-z]+[*/][A-Za-z0-9*/()]+|[a-z]{1,2}\d|degC)(?![\w*/])")
+VALUE_WITH_UNIT = re.compile(r"(?<![\w.])([-+]?\d[\d.]*) ([A-Za-z]+[*/][A-Za-z0-9*/()]+|[a-z]{1,2}\d|degC)(?![\w*/])")
 
 
 def unit_text(unit: str) -> str:
@@ -62,7 +62,7 @@ def miss_text(value: float, limit: float, unit: str) -> str:
 
 
 def in_words(sentence: str, names: Iterable[str]) -> str:
-    """Return a sentence with names in words and units as they are printed; designations of parts stay.
+    """A sentence with names in words and units as they are printed; designations of parts stay.
 
     Examples
     --------
@@ -70,5 +70,5 @@ def in_words(sentence: str, names: Iterable[str]) -> str:
     'load torque 224 N m instead of 300 N m with paper_wet'
     """
     known = set(names)
-    said = re.sub(r"[A-Za-z]\w*_\w*", lambda m: words(m[0]) if m[0] in known else m[0], sentence)
-    return STATED.sub(lambda m: f"{m[1]} {unit_text(m[2])}", said)
+    worded = re.sub(r"[A-Za-z]\w*_\w*", lambda m: words(m[0]) if m[0] in known else m[0], sentence)
+    return VALUE_WITH_UNIT.sub(lambda m: f"{m[1]} {unit_text(m[2])}", worded)

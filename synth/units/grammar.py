@@ -240,7 +240,7 @@ class RefusedUnit(Exception):
         super().__init__(expected)
 
 
-def _factor(text: str, whole: str) -> tuple[str, int]:
+def _factor(text: str, unit_text: str) -> tuple[str, int]:
     """Token and exponent of one factor of a unit."""
     plain = text.translate(_SUPERSCRIPTS)
     name = _ALIASES.get(plain, plain)
@@ -252,7 +252,7 @@ def _factor(text: str, whole: str) -> tuple[str, int]:
     if match is None:
         if "^-" in plain or "⁻" in text:
             raise RefusedUnit("a fraction instead of a negative exponent, for example 1/min")
-        raise RefusedUnit(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
+        raise RefusedUnit(_GRAMMAR if text else f"a token on both sides of every joint of {unit_text!r}; {_GRAMMAR}")
     name = _ALIASES.get(match[1], match[1])
     if match[2] and not match[3]:
         raise RefusedUnit("an exponent 2 to 9 after ^")
@@ -283,31 +283,31 @@ def _read(text: str) -> _UnitText:
         return _UnitText(Fraction(1), _NONE, 0, {"-": 1})
     if text == "%":
         return _UnitText(Fraction(1, 100), _NONE, 0, {"%": 1})
-    alone = _ALIASES.get(text, text)
-    if alone in _DEGREES:
-        return _UnitText(_DEGREES[alone][0], _KELVIN, 0, {alone: 1})
+    token = _ALIASES.get(text, text)
+    if token in _DEGREES:
+        return _UnitText(_DEGREES[token][0], _KELVIN, 0, {token: 1})
     if "**" in text:
         raise RefusedUnit("an exponent as a digit after the token, for example mm2")
     if text[0] == "/":
         raise RefusedUnit(f"1 as an empty numerator: 1{text}")
     powers: dict[str, int] = {}
-    rest = _tight(text)
+    remainder = _tight(text)
     sign, first = 1, True
     while True:
-        if rest.startswith("("):
+        if remainder.startswith("("):
             if sign > 0:
                 raise RefusedUnit("brackets in a denominator only, for example J/(mm2 h)")
-            inside, closed, rest = rest[1:].partition(")")
+            inside, closed, remainder = remainder[1:].partition(")")
             if not closed:
                 raise RefusedUnit("a closing bracket")
             factors = re.split(r"[ *·]", inside)
             if "/" in inside or "(" in inside:
                 raise RefusedUnit("a product of tokens in the bracket, for example J/(mm2 h)")
         else:
-            match = re.match(r"[^ *·/()]*", rest)
+            match = re.match(r"[^ *·/()]*", remainder)
             one = match[0] if match else ""
-            rest = rest[len(one) :]
-            if one == "1" and first and rest.startswith("/"):
+            remainder = remainder[len(one) :]
+            if one == "1" and first and remainder.startswith("/"):
                 factors = []
             else:
                 factors = [one]
@@ -315,12 +315,12 @@ def _read(text: str) -> _UnitText:
             name, exponent = _factor(item, text)
             powers[name] = powers.get(name, 0) + sign * exponent
         first = False
-        if not rest:
+        if not remainder:
             break
-        if rest[0] not in " *·/":
+        if remainder[0] not in " *·/":
             raise RefusedUnit(_GRAMMAR)
-        sign = -1 if rest[0] == "/" else 1
-        rest = rest[1:]
+        sign = -1 if remainder[0] == "/" else 1
+        remainder = remainder[1:]
     return _combine(powers)
 
 
@@ -402,27 +402,27 @@ def _in_words(kind: str) -> tuple[str, tuple[str, ...]]:
     return f"a {kind}", (kind.removeprefix("quantity in "),)
 
 
-def _wrong_kind(text: str, kind: str, found: str) -> str:
-    """Say which units fit a kind, and what the given unit would have been."""
+def _wrong_kind(text: str, kind: str, actual: str) -> str:
+    """Sentence on the units that fit a kind, and on the actual kind of the given unit."""
     words, units = _in_words(kind)
     listed = units[0] if len(units) == 1 else f"{', '.join(units[:-1])} or {units[-1]}"
-    measures = f"{text} measures {_in_words(found)[0]}"
+    measures = f"{text} measures {_in_words(actual)[0]}"
     if kind == "dimensionless":
         return f"{words}, or one in %; {measures}"
     if kind not in _KINDS:
         return f"{words}; {measures}"
     if kind == "force" and text in FORCES:
         return f"{words}, for example in {FORCES[text]}; {measures}"
-    if kind == "temperature_rise" and found == "temperature":
+    if kind == "temperature_rise" and actual == "temperature":
         return f"{words} in K: a difference of 20 degC (36 degF) is typed as 20 K"
-    if kind == "angular_speed" and found == "frequency":
+    if kind == "angular_speed" and actual == "frequency":
         return (
             f"{words}: type 1/min or rpm for revolutions per minute, rad/s or deg/s for an angle per time; "
             f"{text} counts events (50 turns per second are 3000 1/min)"
         )
-    if kind == "frequency" and found == "angular_speed":
+    if kind == "frequency" and actual == "angular_speed":
         return f"{words}: type 1/h, 1/min, 1/s or Hz; {text} is an angular speed"
-    if kind == "torque" and found == "power":
+    if kind == "torque" and actual == "power":
         measures += f" ({TORQUE_OF_POWER})"
     return f"{words}, for example in {listed}; {measures}"
 

@@ -54,7 +54,7 @@ _LARGEST_EXPONENT = 1000
 _MOST_DIGITS = 40
 _SURELY_NORMAL = 1e-200  # below, numbers lose digits
 _FAR = 1e-14  # relative, more than floats round
-_WIDE = Context(prec=60)
+_PRECISE = Context(prec=60)
 
 
 def _shifted(number: str, power: int) -> float:
@@ -129,14 +129,14 @@ def check_number(text: str, name: str) -> str:
     InputError
         Decimal comma, thousands separator, nan, infinity, a typographic minus, or no number at all.
     """
-    number, rest = _split_number(text, text, name)
-    if rest:
+    number, unit_part = _split_number(text, text, name)
+    if unit_part:
         raise InputError(name, text, "a plain number without a unit in this place")
     return number
 
 
 def _split_number(text: str, value: object, name: str, declared: str = "-") -> tuple[str, str]:
-    """Split a quantity written as text into its number and the rest; the declared unit serves as an example."""
+    """Split a quantity written as text into its number and its unit; the declared unit serves as an example."""
     plain = as_decimal(text).translate(SPACES).strip()
     if not plain:
         raise InputError(name, value, "a number, not an empty text")
@@ -159,29 +159,29 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
         raise InputError(
             name, value, f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
         )
-    number, rest = match[0], plain[match.end() :]
+    number, unit_part = match[0], plain[match.end() :]
     if len(number) > INPUT_LIMITS.quantity:
         raise InputError(name, value, f"a number of at most {INPUT_LIMITS.quantity} characters")
-    if re.match(r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])", rest):
+    if re.match(r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])", unit_part):
         raise InputError(
             name,
             value,
             "a number without a comma: a decimal point for decimals (1.5), nothing between thousands (1500)",
         )
-    if re.match(r",[0-9]", rest):
+    if re.match(r",[0-9]", unit_part):
         raise InputError(name, value, "a decimal point instead of a decimal comma, for example 6.5")
-    if re.match(r"(?: [0-9]{3}(?![0-9])|['’_][0-9])", rest):
+    if re.match(r"(?: [0-9]{3}(?![0-9])|['’_][0-9])", unit_part):
         raise InputError(name, value, "a number without a separator between the thousands, for example 1500")
-    if re.match(r"(?: [0-9]+)? ?[/⁄] ?[0-9]", rest):
+    if re.match(r"(?: [0-9]+)? ?[/⁄] ?[0-9]", unit_part):
         right = "a decimal number, or a fraction of whole numbers with its unit, such as 3/4 in or 1 3/4 in"
         raise InputError(name, value, right)
-    if number == "1" and rest.startswith("/") and is_unit(plain):
+    if number == "1" and unit_part.startswith("/") and is_unit(plain):
         raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
-    if re.match(r" ?['’′]", rest):
+    if re.match(r" ?['’′]", unit_part):
         raise InputError(name, value, "feet and inches as one number with one unit, for example 63 in")
-    if re.match(r"[.'’_,]", rest):
+    if re.match(r"[.'’_,]", unit_part):
         raise InputError(name, value, "one number with at most one decimal point, for example 1500.5")
-    return number, rest.strip()
+    return number, unit_part.strip()
 
 
 def is_date(text: str) -> bool:
@@ -202,13 +202,13 @@ def as_decimal(text: str) -> str:
     written = (unicodedata.normalize("NFKC", letter) if letter > "\x7f" else letter for letter in text)
     plain = "".join(f" {new.replace('⁄', '/')}" if "⁄" in new else old for old, new in zip(text, written, strict=True))
     match = _FRACTION.match(plain := plain.translate(SPACES).strip())
-    rest = plain[match.end() :].strip() if match else ""
-    if match is None or not rest:
+    unit_part = plain[match.end() :].strip() if match else ""
+    if match is None or not unit_part:
         return text
-    whole, above, below = (int(part or 0) for part in match.groups()[1:])
+    integer, above, below = (int(part or 0) for part in match.groups()[1:])
     if below == 0 or (match[2] and above >= below):
         return text
-    return f"{match[1]}{_WIDE.divide(Decimal(whole * below + above), Decimal(below)):f} {rest}"
+    return f"{match[1]}{_PRECISE.divide(Decimal(integer * below + above), Decimal(below)):f} {unit_part}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,10 +268,10 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
     if value is None:
         raise InputError(field, None, f"a number in {unit.text}" if unit.text != "-" else "a number")
     if isinstance(value, str):
-        number, rest = _split_number(value, value, field, unit.text)
-        if rest:
+        number, unit_part = _split_number(value, value, field, unit.text)
+        if unit_part:
             try:
-                unit = resolve(rest, unit.kind)
+                unit = resolve(unit_part, unit.kind)
             except RefusedUnit as refusal:
                 raise InputError(field, value, refusal.expected) from None
         else:
@@ -419,7 +419,7 @@ def _multiply(value: float | FloatArray, ratio: Fraction) -> float | FloatArray:
 
 def _as_text(number: Decimal) -> str:
     """Write a decimal number as people do: an exponent only for very large and very small ones."""
-    number = number.normalize(_WIDE)
+    number = number.normalize(_PRECISE)
     sign, digits, _ = number.as_tuple()
     if not number:
         return "0"
@@ -478,7 +478,7 @@ def _with_unit(number: str, unit: Unit) -> str:
 def _in_unit(si: float, unit: Unit) -> Decimal:
     """Convert an SI value to a unit, to 60 digits."""
     exact = (Fraction(si) - unit.shift) / unit.ratio
-    return _WIDE.divide(Decimal(exact.numerator), Decimal(exact.denominator))
+    return _PRECISE.divide(Decimal(exact.numerator), Decimal(exact.denominator))
 
 
 @lru_cache(maxsize=4096)
@@ -535,10 +535,10 @@ def outward(si: float, unit: str | Unit, up: bool, digits: int = 6) -> Iterator[
     size = math.floor(math.log10(abs(shown))) if shown else 0
     for less in range(digits - 1):
         step = 10.0 ** (size - digits + 1 + max(less - 1, 0))
-        whole = math.ceil(shown / step - 0.01) if up else math.floor(shown / step + 0.01)
+        multiple = math.ceil(shown / step - 0.01) if up else math.floor(shown / step + 0.01)
         # The first is rounded; then comes the next number, and those of fewer digits beyond it.
-        whole += (1 if up else -1) if less else 0
-        text = f"{float(f'{whole * step:.{digits}g}'):.{digits}g}"
+        multiple += (1 if up else -1) if less else 0
+        text = f"{float(f'{multiple * step:.{digits}g}'):.{digits}g}"
         yield text if unit.text == "-" else f"{text} {unit.text}"
 
 

@@ -45,7 +45,7 @@ WORDS = {
 FORCES = {"lb": "lbf", "oz": "ozf"}  # masses that forces are called by in products
 MOST_READINGS = 64
 MOST_LETTERS = 8  # of a product that is written as one word
-_SIGNS = {
+_CHARACTERS = {
     **dict.fromkeys(map(ord, "⋅∙•×"), "·"),
     **dict.fromkeys(map(ord, "−‐‑‒–—﹣－⁻"), "-"),
     **{ord(raised): str(digit) for digit, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
@@ -73,7 +73,7 @@ def readings(text: str, tokens: Collection[str]) -> list[str]:
     >>> readings("kgm²", known), readings("U/min", known), readings("min^-1", known), readings("lb-ft", known)
     (['kg*m2'], ['rev/min'], ['1/min'], ['lb*ft', 'lbf*ft'])
     """
-    plain = " ".join(text.translate(SPACES).translate(_SIGNS).split())
+    plain = " ".join(text.translate(SPACES).translate(_CHARACTERS).split())
     degrees = _DEGREES.fullmatch(plain)
     if degrees:
         return [f"deg{degrees[1].upper()}"]
@@ -82,25 +82,25 @@ def readings(text: str, tokens: Collection[str]) -> list[str]:
     every = [_powers(factor, sign, tokens) for factor, sign in signed]
     if not every or math.prod(map(len, every)) > MOST_READINGS:
         return []
-    found: dict[str, None] = {}
+    texts: dict[str, None] = {}
     for chosen in itertools.product(*every):
         powers = [power for part in chosen for power in part]
-        found[_text(powers)] = None
+        texts[_text(powers)] = None
         if len(powers) > 1:
-            found[_text([(FORCES.get(token, token), exponent) for token, exponent in powers])] = None
-    return list(found)
+            texts[_text([(FORCES.get(token, token), exponent) for token, exponent in powers])] = None
+    return list(texts)
 
 
 def _signed_factors(text: str) -> list[tuple[str, int]]:
     """Factors of a unit, with -1 for what a slash divides by; none where it is not put together as units are."""
     above, *below = re.split(" */ *", text)
-    found = [] if above == "1" else [(factor, 1) for factor in _JOINT.split(above)]
+    factors = [] if above == "1" else [(factor, 1) for factor in _JOINT.split(above)]
     for part in below:
         bracket = re.fullmatch(r"\(([^()]*)\)()", part) or re.fullmatch(rf"(.*?)(?:{_JOINT.pattern}(.*))?", part)
         assert bracket is not None
-        found += [(factor, -1) for factor in _JOINT.split(bracket[1].strip())]
-        found += [(factor, 1) for factor in _JOINT.split(bracket[2] or "") if bracket[2]]
-    return found
+        factors += [(factor, -1) for factor in _JOINT.split(bracket[1].strip())]
+        factors += [(factor, 1) for factor in _JOINT.split(bracket[2] or "") if bracket[2]]
+    return factors
 
 
 def _powers(factor: str, sign: int, tokens: Collection[str]) -> list[Powers]:
@@ -122,7 +122,7 @@ def _split(word: str, tokens: Collection[str]) -> list[Powers]:
     if len(word) > MOST_LETTERS or any(word.casefold() == token.casefold() for token in tokens):
         return []  # of capitals only a person knows what is meant
     heads = [word[:k] for k in range(1, len(word)) if word[:k] in tokens]
-    return [[(head, 1), *rest] for head in heads for rest in _split(word[len(head) :], tokens)]
+    return [[(head, 1), *tail] for head in heads for tail in _split(word[len(head) :], tokens)]
 
 
 def _text(powers: Powers) -> str:

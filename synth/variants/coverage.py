@@ -22,7 +22,7 @@ from synth.tables.catalogs import Catalogs
 from synth.units import miss_text
 
 FloatArray = NDArray[np.float64]
-TOLD = 3  # limits that a sentence names
+NAMED_LIMITS = 3  # limits that a sentence names
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class SharedModel:
 
     problem: DesignProblem
     catalogs: Catalogs
-    asked: list[ServedQuestion] = field(default_factory=list)
+    questions: list[ServedQuestion] = field(default_factory=list)
 
 
 def objective_of_pairs(
@@ -83,32 +83,32 @@ def objective_of_pairs(
         The objective in SI, not-a-number where the variant cannot serve the question; and, per question that none can
         serve, which limits the nearest one misses (an empty text otherwise).
     """
-    result = np.full((len(structure.asked), len(variants)), np.nan)
-    reasons = [""] * len(structure.asked)
-    if not structure.asked or not variants:
+    result = np.full((len(structure.questions), len(variants)), np.nan)
+    reasons = [""] * len(structure.questions)
+    if not structure.questions or not variants:
         return result, reasons
-    instances = [_instance(structure, asked.question, objective) for asked in structure.asked]
+    instances = [_instance(structure, served.question, objective) for served in structure.questions]
     model = instances[0].model
     columns = _VariantColumns(model, structure, variants)
     if not columns.complete.any():
-        return result, ["no design of this family fits its options"] * len(structure.asked)
+        return result, ["no design of this family fits its options"] * len(structure.questions)
     step = max(pairs // len(variants), 1)
     for begin in range(0, len(instances), step):
-        some = instances[begin : begin + step]
-        evaluation = _evaluate(model, some, columns, used)
-        serves = _serves(model, some, columns, used, evaluation).reshape(len(some), -1)
+        chunk = instances[begin : begin + step]
+        evaluation = _evaluate(model, chunk, columns, used)
+        serves = _serves(model, chunk, columns, used, evaluation).reshape(len(chunk), -1)
         values = evaluation.values[objective].reshape(serves.shape)
-        result[begin : begin + len(some)] = np.where(serves, values, np.nan)
+        result[begin : begin + len(chunk)] = np.where(serves, values, np.nan)
         for k in np.flatnonzero(~serves.any(axis=1)):
-            reasons[begin + int(k)] = _nearest_miss(model, some[k], int(k), columns, evaluation)
+            reasons[begin + int(k)] = _nearest_miss(model, chunk[k], int(k), columns, evaluation)
     return result, reasons
 
 
 def _instance(structure: SharedModel, question: Mapping[str, Any], objective: str) -> Instance:
-    asked = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
+    request = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
     # Its sense is of no account here.
     return Instance(
-        Request(problem=structure.problem, catalogs=structure.catalogs, objectives={objective: "min"}, **asked)
+        Request(problem=structure.problem, catalogs=structure.catalogs, objectives={objective: "min"}, **request)
     )
 
 
@@ -167,7 +167,7 @@ class _VariantColumns:
 def _evaluate(
     model: Model, instances: Sequence[Instance], columns: _VariantColumns, used: frozenset[str]
 ) -> Evaluation:
-    """Evaluate the pairs of some questions and all variants, question by question."""
+    """Evaluate all pairs of a question and a variant, question by question."""
     variables, data = _inputs(model, instances, columns, used)
     return model.evaluate(variables, data)
 
@@ -201,13 +201,13 @@ def _serves(
         for slot in instance.selection.slots:
             allowed &= np.isin(columns.rows[slot.slot], slot.rows)
         for name, values in {**instance.selection.counts, **instance.selection.choices}.items():
-            own = columns.counts[name] if name in columns.counts else columns.choices[name]
-            allowed &= (np.abs(own[:, None] - values[None, :]) < MARGINS.step).any(axis=1)
+            column = columns.counts[name] if name in columns.counts else columns.choices[name]
+            allowed &= (np.abs(column[:, None] - values[None, :]) < MARGINS.step).any(axis=1)
         for k, variable in enumerate(model.variables):
             if variable.name not in used:
                 low, high = instance.ranges.lower[k], instance.ranges.upper[k]
-                own = columns.values[:, k]
-                allowed &= within(own, low, high, MARGINS.end)
+                column = columns.values[:, k]
+                allowed &= within(column, low, high, MARGINS.end)
         pairs = slice(q * count, (q + 1) * count)
         allowed &= evaluation.take(pairs).also(instance.limits.judging).feasible
         compared = columns.of(instance.model)
@@ -217,7 +217,7 @@ def _serves(
 
 
 def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: frozenset[str]) -> NDArray[np.bool_]:
-    """Tell which variants a refusal over several parts or counts forbids."""
+    """Mask of the variants that a refusal over several parts or counts forbids."""
     refused = np.zeros(columns.count, dtype=bool)
     if not instance.selection.joint_refusals:
         return refused
@@ -225,35 +225,35 @@ def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: f
     known = {str(e.sx): np.asarray(v, dtype=float) for e, v in zip(model.data_inputs, data, strict=True)}
     for refusal in instance.selection.joint_refusals:
         function, names = model.numeric(refusal.when)
-        found = np.asarray(function.call([known[name][None, :] for name in names])[0].full()).ravel()
-        refused |= np.broadcast_to(found > 0.5, refused.shape)
+        forbidden = np.asarray(function.call([known[name][None, :] for name in names])[0].full()).ravel()
+        refused |= np.broadcast_to(forbidden > 0.5, refused.shape)
     return refused
 
 
 def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:
-    """Say what the nearest variant misses: that whose most used limit is used least."""
-    own = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.limits.judging)
+    """Text on the limits that the nearest variant misses: that whose most used limit is used least."""
+    evaluated = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.limits.judging)
     limits = (*model.constraints, *instance.limits.judging)
     missed = np.zeros((len(limits), columns.count))
     for k, x in enumerate(limits):
-        share = missed_share(*own.limits[x.name], x.sense, own.scales[x.name])
-        missed[k] = np.where(own.holds[x.name], 0.0, np.nan_to_num(share, nan=np.inf))
+        share = missed_share(*evaluated.limits[x.name], x.sense, evaluated.scales[x.name])
+        missed[k] = np.where(evaluated.holds[x.name], 0.0, np.nan_to_num(share, nan=np.inf))
     worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
     nearest = int(np.argmin(worst))
-    broken = {x.name: float(missed[k, nearest]) for k, x in enumerate(limits) if not own.holds[x.name][nearest]}
+    broken = {x.name: float(missed[k, nearest]) for k, x in enumerate(limits) if not evaluated.holds[x.name][nearest]}
     if not broken:
         return "the designs that keep its limits have parts, counts or sizes that it does not allow"
     units = {x.name: x.unit for x in limits}
-    sides = {name: own.limits[name] for name in most_used(broken)[:TOLD]}
+    sides = {name: evaluated.limits[name] for name in most_used(broken)[:NAMED_LIMITS]}
     missed_by = (f"{n} by {miss_text(float(v[nearest]), float(x[nearest]), units[n])}" for n, (v, x) in sides.items())
     return f"the nearest design misses {', '.join(missed_by)}"
 
 
 def pinned_by_all(questions: Iterable[Mapping[str, Any]], model: Model) -> frozenset[str]:
-    """Return the variables that every question pins: they belong to the use, not to the variant."""
+    """Variables that every question pins: they belong to the use, not to the variant."""
     variables, names = {v.name for v in model.variables}, model.declaration.names()
-    found: set[str] | None = None
+    common: set[str] | None = None
     for question in questions:
         pinned = {names.get(word, word) for word in question["fix"]} & variables
-        found = pinned if found is None else found & pinned
-    return frozenset(found or ())
+        common = pinned if common is None else common & pinned
+    return frozenset(common or ())

@@ -87,7 +87,7 @@ class Chooser:
         return float(self.weights @ self.costs[:, chosen].min(axis=1))
 
     def fewest(self, deadline: float) -> tuple[list[int], int]:
-        """Return a smallest set of columns that serves every row, and how many are needed at least."""
+        """Smallest set of columns found that serves every row, and a lower bound of its size."""
         import cvxpy as cp  # costly to import
 
         if not self.rows:
@@ -97,24 +97,24 @@ class Chooser:
         rows = np.unique(self.serves, axis=0).astype(float)
         problem = cp.Problem(cp.Minimize(cp.sum(y)), [rows @ y >= 1])
         bound = _solve(cp, problem, 0.0, deadline)
-        found = greedy if y.value is None else [int(k) for k in np.flatnonzero(np.asarray(y.value) > 0.5)]
-        if not np.isfinite(self.cost(found)) or len(greedy) < len(found):
-            found = greedy
-        return found, int(np.ceil(bound - 1e-6)) if np.isfinite(bound) else 1
+        smallest = greedy if y.value is None else [int(k) for k in np.flatnonzero(np.asarray(y.value) > 0.5)]
+        if not np.isfinite(self.cost(smallest)) or len(greedy) < len(smallest):
+            smallest = greedy
+        return smallest, int(np.ceil(bound - 1e-6)) if np.isfinite(bound) else 1
 
     def _cover(self) -> list[int]:
-        """Return columns that serve every row, each the one that serves most of what is left."""
-        left, chosen = np.ones(self.rows, dtype=bool), list[int]()
-        while left.any():
-            best = int(np.argmax(self.weights[left] @ self.serves[left]))
+        """Greedy cover: columns that serve every row, each the one that serves most of the unserved weight."""
+        unserved, chosen = np.ones(self.rows, dtype=bool), list[int]()
+        while unserved.any():
+            best = int(np.argmax(self.weights[unserved] @ self.serves[unserved]))
             chosen.append(best)
-            left &= ~self.serves[:, best]
+            unserved &= ~self.serves[:, best]
         return chosen
 
     # -- the best choice of a number -----------------------------------------------------------
 
     def best(self, number: int, deadline: float, start: Iterable[int] = (), exact: bool = True) -> Medians:
-        """Return the cheapest choice of a number of columns.
+        """Cheapest choice of a number of columns.
 
         Parameters
         ----------
@@ -136,15 +136,15 @@ class Chooser:
             self._cut_near(priced.prices)
             bound = max(bound, self._relaxed(number, free, deadline))
             while not self._proven(cost, bound) and time.monotonic() < deadline:
-                found, lower = self._integer(number, free, deadline)
+                candidate, lower = self._integer(number, free, deadline)
                 bound = max(bound, min(lower, cost))
-                if found is None:
+                if candidate is None:
                     break
-                if self.cost(found) < cost:
-                    chosen = self._improved(found)
+                if self.cost(candidate) < cost:
+                    chosen = self._improved(candidate)
                     cost = self.cost(chosen)
                 binary = np.zeros(self.columns)
-                binary[found] = 1.0
+                binary[candidate] = 1.0
                 if not self._cut(binary, np.full(self.rows, -np.inf)):
                     break
         return Medians(tuple(sorted(int(self.kept[k]) for k in chosen)), cost, min(bound, cost), self.settings.rounding)
@@ -153,7 +153,7 @@ class Chooser:
         return cost - bound <= self.gap * cost + self.settings.broken * self.scale
 
     def inner(self, columns: Iterable[int]) -> list[int]:
-        """Return columns of the matrix as this object counts them; those that others dominate are left out."""
+        """Columns of the matrix as this object counts them, without dominated ones."""
         place = {int(k): i for i, k in enumerate(self.kept)}
         return [place[int(k)] for k in columns if int(k) in place]
 
@@ -206,7 +206,7 @@ class Chooser:
     # -- bounds --------------------------------------------------------------------------------
 
     def _priced(self, number: int, chosen: list[int], deadline: float) -> _Priced:
-        """Return the best Lagrangean bound: rows pay a price each, and the columns that earn most are chosen."""
+        """Best Lagrangean bound: rows pay a price each, and the columns that earn most are chosen."""
         cost = self.cost(chosen)
         prices = self._prices
         if prices is None:
@@ -216,13 +216,13 @@ class Chooser:
         tried: set[frozenset[int]] = set()
         for _ in range(self.settings.pricings):
             earned = self.weights @ np.minimum(self.costs - prices[:, None], 0.0)
-            taken = np.argpartition(earned, number - 1)[:number]
-            bound = float(self.weights @ prices + earned[taken].sum())
+            selected = np.argpartition(earned, number - 1)[:number]
+            bound = float(self.weights @ prices + earned[selected].sum())
             if bound > best.bound + self.settings.rise * self.scale:
                 best, since = _Priced(bound, prices.copy(), earned, best.chosen), 0
-                if frozenset(taken.tolist()) not in tried and len(tried) < self.settings.swaps:
-                    tried.add(frozenset(taken.tolist()))
-                    other = self._filled([int(k) for k in taken], number)
+                if frozenset(selected.tolist()) not in tried and len(tried) < self.settings.swaps:
+                    tried.add(frozenset(selected.tolist()))
+                    other = self._filled([int(k) for k in selected], number)
                     if self.cost(other) < self.settings.promising * cost:
                         other = self._improved(other)
                     if self.cost(other) < cost:
@@ -233,7 +233,7 @@ class Chooser:
                     step, since, prices = step / 2, 0, best.prices.copy()
             if self._proven(cost, best.bound) or step < self.settings.least_step or time.monotonic() > deadline:
                 break
-            slope = 1.0 - np.count_nonzero(self.costs[:, taken] < prices[:, None], axis=1).astype(float)
+            slope = 1.0 - np.count_nonzero(self.costs[:, selected] < prices[:, None], axis=1).astype(float)
             length = float(self.weights @ slope**2)
             if length == 0.0:
                 break  # the choice serves every row once: it is the best one
@@ -306,9 +306,9 @@ class Chooser:
         bound = _solve(cp, problem, 0.1 * self.gap if integer else None, deadline)
         if y.value is None or theta.value is None:
             return bound if integer and np.isfinite(bound) else 0.0, None, None
-        whole = np.zeros(self.columns)
-        whole[free] = np.asarray(y.value, dtype=float)
-        return bound, whole, np.asarray(theta.value, dtype=float)
+        expanded = np.zeros(self.columns)
+        expanded[free] = np.asarray(y.value, dtype=float)
+        return bound, expanded, np.asarray(theta.value, dtype=float)
 
 
 @dataclass
@@ -356,8 +356,8 @@ class _Cuts:
 
 def _solve(cp: Any, problem: Any, gap: float | None, deadline: float) -> float:
     """Solve a program with HiGHS; return a bound below its optimum (minus infinity where there is none)."""
-    left = max(deadline - time.monotonic(), 0.1)
-    options: dict[str, Any] = {"time_limit": left}
+    remaining = max(deadline - time.monotonic(), 0.1)
+    options: dict[str, Any] = {"time_limit": remaining}
     if gap is not None:
         options["mip_rel_gap"] = gap
     try:

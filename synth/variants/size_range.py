@@ -155,12 +155,12 @@ def size_range(
     SizeRangeRequest.read({"variants": variants, "candidates": candidates, "gap": gap, "time_limit": time_limit})
     started = time.monotonic()
     if isinstance(source, BatchResult):
-        database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
+        database, job, catalogs, user_problem = source.database, source.job, source.catalogs, source.own
     else:
-        catalogs = own = None
+        catalogs = user_problem = None
     with opened_batch(source, database) as store:
-        found = job_of_folder(store, source, job)
-        batch = _Batch(store, found, objective, catalogs, own, VARIANTS)
+        stored = job_of_folder(store, source, job)
+        batch = _Batch(store, stored, objective, catalogs, user_problem, VARIANTS)
     batch.prepare(per_row)
     chosen_from = batch.thinned(candidates)
     costs, values = batch.costs(chosen_from)
@@ -168,7 +168,7 @@ def size_range(
     served = np.isfinite(costs).any(axis=1)
     if not served.any():
         raise InputError("rows", batch.job.source, "at least one row with a feasible design")
-    weights = np.array([asked.weight for asked in batch.asked], dtype=float)
+    weights = np.array([served.weight for served in batch.questions], dtype=float)
     begin = time.monotonic()
     chooser = Chooser(costs[served], weights[served], gap, VARIANTS.medians)
     fewest, bound = chooser.fewest(begin + 0.25 * time_limit)
@@ -180,7 +180,7 @@ def size_range(
     points = _curve(chooser, choice, number, fewest, begin + time_limit, VARIANTS.curve_points)
     statistics = {
         "rows_served": int(weights[served].sum()),
-        "questions": len(batch.asked),
+        "questions": len(batch.questions),
         "designs": batch.designs,
         "candidates": len(chosen_from),
         "candidates_not_dominated": chooser.columns,
@@ -191,16 +191,16 @@ def size_range(
 
 
 class _Batch:
-    """The questions and designs of a job, and everything that is said of them."""
+    """Questions and designs of a job, with the structures and variants made of them."""
 
     def __init__(
-        self, store: Store, job: Job, objective: str | None, catalogs: Any, own: Any, settings: VariantSettings
+        self, store: Store, job: Job, objective: str | None, catalogs: Any, user_problem: Any, settings: VariantSettings
     ) -> None:
         self.job, self.settings = job, settings
         content = job.content
-        if content["own"] is not None and own is None:
+        if content["own"] is not None and user_problem is None:
             raise InputError("DIR", job.source, "the BatchResult itself: its problem is not registered")
-        self.problem = own
+        self.problem = user_problem
         if content["catalogs"] == "memory" and catalogs is None:
             raise InputError("DIR", job.source, "the BatchResult itself: its tables were in memory")
         self.catalogs = as_catalogs(content["catalogs"] if catalogs is None else catalogs)
@@ -221,27 +221,27 @@ class _Batch:
         self.sign = 1.0 if self.sense == "min" else -1.0
         self.designs = 0
         self.reasons: dict[str, str] = {}
-        self.asked: list[ServedQuestion] = []
-        self.own: dict[str, list[dict[str, Any]]] = {}
+        self.questions: list[ServedQuestion] = []
+        self.designs_by_key: dict[str, list[dict[str, Any]]] = {}
         weight: dict[str, int] = {}
         for row in self.rows:
             if row["designs"]:
                 weight[row["key"]] = weight.get(row["key"], 0) + 1
-                self.own[row["key"]] = row["designs"]
+                self.designs_by_key[row["key"]] = row["designs"]
         for key in sorted(weight):
-            best = min(self.sign * d["objectives"][self.objective] for d in self.own[key])
-            self.asked.append(ServedQuestion(key, questions[key], weight[key], best))
+            best = min(self.sign * d["objectives"][self.objective] for d in self.designs_by_key[key])
+            self.questions.append(ServedQuestion(key, questions[key], weight[key], best))
 
-    def _objective(self, asked: str | None) -> tuple[str, str]:
-        """Return the objective that counts, and its sense; every row must have it."""
+    def _objective(self, requested: str | None) -> tuple[str, str]:
+        """Objective by which variants are chosen, and its sense; every row must have it."""
         if not self.layouts:
             raise InputError("DIR", self.job.source, "a batch with at least one feasible row")
         shared = [name for name in self.layouts[0]["senses"] if all(name in x["senses"] for x in self.layouts)]
-        if asked is None and not shared:
+        if requested is None and not shared:
             raise InputError("objective", None, "an objective that all families of the batch have")
-        if asked is not None and asked not in shared:
-            raise InputError("objective", asked, f"an objective of the whole batch: {', '.join(shared) or 'none'}")
-        name = shared[0] if asked is None else asked
+        if requested is not None and requested not in shared:
+            raise InputError("objective", requested, f"an objective of the whole batch: {', '.join(shared) or 'none'}")
+        name = shared[0] if requested is None else requested
         return name, str(self.layouts[0]["senses"][name])
 
     # -- structures and candidates -------------------------------------------------------------
@@ -252,25 +252,25 @@ class _Batch:
         self.structures: dict[str, SharedModel] = {}
         self.place: dict[str, list[int]] = {}  # structure -> its questions among all
         self.models: dict[str, Model] = {}
-        for k, asked in enumerate(self.asked):
-            question = asked.question
+        for k, served in enumerate(self.questions):
+            question = served.question
             label = json.dumps([question["family"], question["options"]])
             if label not in problems:
-                own = self.problem is not None and self.problem.name == question["family"]
-                problems[label] = load(self.problem if own else question["family"], **question["options"])
+                is_users = self.problem is not None and self.problem.name == question["family"]
+                problems[label] = load(self.problem if is_users else question["family"], **question["options"])
             name = json.dumps([label, sorted(question["requirements"])])
             if name not in self.structures:
                 self.structures[name] = SharedModel(problems[label], self.catalogs)
                 self.place[name] = []
-                given = frozenset(question["requirements"])
-                self.models[name] = problems[label].model(given, self.catalogs)
-            self.structures[name].asked.append(asked)
+                specified = frozenset(question["requirements"])
+                self.models[name] = problems[label].model(specified, self.catalogs)
+            self.structures[name].questions.append(served)
             self.place[name].append(k)
         self.used: dict[str, frozenset[str]] = {}
-        for family in sorted({a.question["family"] for a in self.asked}):
-            own = [a.question for a in self.asked if a.question["family"] == family]
+        for family in sorted({a.question["family"] for a in self.questions}):
+            is_users = [a.question for a in self.questions if a.question["family"] == family]
             model = next(m for n, m in self.models.items() if self.structures[n].problem.name == family)
-            pinned = pinned_by_all(own, model)
+            pinned = pinned_by_all(is_users, model)
             if per_row is not None:
                 names = [n for n in per_row if n in {v.name for v in model.variables}]
                 loose = next((n for n in names if n not in pinned), None)
@@ -285,9 +285,9 @@ class _Batch:
         known: dict[str, int] = {}
         self.candidates: list[Variant] = []
         self.source: list[list[int]] = []  # per candidate
-        for k, asked in enumerate(self.asked):
-            family = asked.question["family"]
-            for design in self.own[asked.key]:
+        for k, served in enumerate(self.questions):
+            family = served.question["family"]
+            for design in self.designs_by_key[served.key]:
                 self.designs += 1
                 values = {n: v for n, v in design["values"].items() if n not in self.used[family]}
                 variant = Variant(family, values, design["choices"], design["parts"])
@@ -298,34 +298,34 @@ class _Batch:
                 self.source[place].append(k)
 
     def thinned(self, most: int) -> list[int]:
-        """Return at most about so many candidates: over all sizes those that serve most, and one for every row."""
+        """About ``most`` candidates: over all sizes those that serve most, and one for every row."""
         if len(self.candidates) <= most:
             return list(range(len(self.candidates)))
-        step = max(len(self.asked) // self.settings.sample, 1)
-        sample = set(range(0, len(self.asked), step))
+        step = max(len(self.questions) // self.settings.sample, 1)
+        sample = set(range(0, len(self.questions), step))
         costs, values = self.costs(list(range(len(self.candidates))), sample)
         finite = np.isfinite(costs)
         serves = finite.sum(axis=0)
         size = np.where(serves > 0, np.nansum(np.where(finite, values, np.nan), axis=0) / np.maximum(serves, 1), np.inf)
         order = np.lexsort((np.arange(len(size)), size))
         chosen = {int(group[np.argmax(serves[group])]) for group in np.array_split(order, most)}
-        left = finite.any(axis=1) & ~finite[:, sorted(chosen)].any(axis=1)
-        while left.any():
-            best = int(np.argmax(finite[left].sum(axis=0)))
+        unserved = finite.any(axis=1) & ~finite[:, sorted(chosen)].any(axis=1)
+        while unserved.any():
+            best = int(np.argmax(finite[unserved].sum(axis=0)))
             chosen.add(best)
-            left &= ~finite[:, best]
+            unserved &= ~finite[:, best]
         return sorted(chosen)
 
     def costs(self, chosen: list[int], only: set[int] | None = None) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return, per question and candidate, the excess (infinite where it cannot serve) and the objective in SI."""
-        values = np.full((len(self.asked), len(chosen)), np.nan)
-        reasons = [""] * len(self.asked)
+        """Excess per question and candidate (infinite where it cannot serve), and the objective in SI."""
+        values = np.full((len(self.questions), len(chosen)), np.nan)
+        reasons = [""] * len(self.questions)
         for name, structure in self.structures.items():
             family = structure.problem.name
             columns = [j for j, c in enumerate(chosen) if self.candidates[c].family == family]
             places = [k for k in self.place[name] if only is None or k in only]
-            part = SharedModel(structure.problem, structure.catalogs, [self.asked[k] for k in places])
-            found, why = objective_of_pairs(
+            part = SharedModel(structure.problem, structure.catalogs, [self.questions[k] for k in places])
+            part_excess, why = objective_of_pairs(
                 part,
                 [self.candidates[chosen[j]] for j in columns],
                 self.objective,
@@ -333,13 +333,13 @@ class _Batch:
                 self.settings.pairs,
             )
             if places and columns:
-                values[np.ix_(places, columns)] = found
+                values[np.ix_(places, columns)] = part_excess
             for k, text in zip(places, why, strict=True):
                 reasons[k] = text
         signed = self.sign * values
         least = np.nanmin(np.where(np.isnan(signed), np.inf, signed), axis=1, initial=np.inf)
         excess = np.where(np.isnan(signed), np.inf, signed - np.where(np.isfinite(least), least, 0.0)[:, None])
-        self.reasons = {a.key: text for a, text in zip(self.asked, reasons, strict=True)}
+        self.reasons = {a.key: text for a, text in zip(self.questions, reasons, strict=True)}
         return excess, values
 
     # -- the result ----------------------------------------------------------------------------
@@ -367,7 +367,7 @@ class _Batch:
         )
         number = {j: k + 1 for k, j in enumerate(order)}
         assignment, unserved = [], []
-        index = {asked.key: k for k, asked in enumerate(self.asked)}
+        index = {served.key: k for k, served in enumerate(self.questions)}
         scale = float(cell_value(1.0, unit) or 1.0)
         count, total, most = dict.fromkeys(order, 0), dict.fromkeys(order, 0.0), dict.fromkeys(order, -math.inf)
         for row in self.rows:
@@ -386,7 +386,7 @@ class _Batch:
                     "family": row["family"],
                     "variant": number[j],
                     header(self.objective, unit): cell_value(float(values[k, j]), unit),
-                    header("own_best", unit): cell_value(self.sign * self.asked[k].best, unit),
+                    header("own_best", unit): cell_value(self.sign * self.questions[k].best, unit),
                     header("excess", unit): float(costs[k, j]) * scale,
                 }
             )
@@ -452,17 +452,17 @@ def _curve(
 
     Where the time does not reach for every number, numbers further and further apart are taken.
     """
-    found = {number: choice}
+    curve = {number: choice}
     start, before, k = fewest, math.inf, len(fewest)
     step = 1
     while k <= chooser.columns and before > 0.0 and time.monotonic() < deadline:
-        if k not in found:
-            left = deadline - time.monotonic()
-            found[k] = chooser.best(k, time.monotonic() + max(left / 4, 0.5), start, exact=left > 30.0)
-        start, before = chooser.inner(found[k].columns), found[k].cost
-        if len(found) > points / 2:
+        if k not in curve:
+            remaining = deadline - time.monotonic()
+            curve[k] = chooser.best(k, time.monotonic() + max(remaining / 4, 0.5), start, exact=remaining > 30.0)
+        start, before = chooser.inner(curve[k].columns), curve[k].cost
+        if len(curve) > points / 2:
             step = max(step, k // 8)
         k += step
     if before > 0.0 and chooser.columns >= len(fewest):
-        found.setdefault(chooser.columns, chooser.best(chooser.columns, deadline, start, exact=False))
-    return [found[k] for k in sorted(found)]
+        curve.setdefault(chooser.columns, chooser.best(chooser.columns, deadline, start, exact=False))
+    return [curve[k] for k in sorted(curve)]

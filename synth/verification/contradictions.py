@@ -72,12 +72,12 @@ def _of_design(design: Design, label: str) -> Iterator[str]:
     for slot, row in design.parts.items():
         if not isinstance(row.get("designation"), str):
             yield f"{label}: {slot} has no designation"
-    told = design.robust
-    if not told:
+    rating = design.robust
+    if not rating:
         return
-    yield from _missing(told, ROBUST, f"{label}: robust")
-    yield from _without_units(told["worst_at"], told["units"], f"{label}: robust")
-    for name, limit in told["limits"].items():
+    yield from _missing(rating, ROBUST, f"{label}: robust")
+    yield from _without_units(rating["worst_at"], rating["units"], f"{label}: robust")
+    for name, limit in rating["limits"].items():
         yield from _missing(limit, LIMIT, f"{label}: robust {name}")
         yield from _without_units({name: limit}, frame.limit_units, "limit_units")
 

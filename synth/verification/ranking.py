@@ -75,7 +75,7 @@ def _scale_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -
 def _note_faults(front: ParetoFront, signed: np.ndarray, unit: np.ndarray, limits: ProofLimits) -> Iterator[str]:
     """Yield notes that stand at a design that does not deserve them, or at none or several."""
     designs, objectives = front.designs, front.frame.objectives
-    told = [[note for note in d.note.split("; ") if note] for d in designs]
+    all_notes = [[note for note in d.note.split("; ") if note] for d in designs]
     deserving: dict[str, np.ndarray] = {}
     low = signed.min(axis=0)
     reach = limits.same * np.maximum(np.abs(low), np.abs(signed.max(axis=0)))
@@ -83,8 +83,8 @@ def _note_faults(front: ParetoFront, signed: np.ndarray, unit: np.ndarray, limit
         for k, (name, sense) in enumerate(objectives.items()):
             words = f"{'smallest' if sense == 'min' else 'largest'} {name}"
             dear = np.any(np.delete(unit, k, axis=1) > limits.costly, axis=1) & (front.scale is not None)
-            said = any(words + DEARLY in notes for notes in told)
-            deserving[words + DEARLY * said] = (signed[:, k] <= low[k] + reach[k]) & (dear == said)
+            dearly = any(words + DEARLY in notes for notes in all_notes)
+            deserving[words + DEARLY * dearly] = (signed[:, k] <= low[k] + reach[k]) & (dear == dearly)
         if len(designs) > 2 and len(objectives) > 1:
             total = unit.sum(axis=1)
             deserving["knee"] = total <= total.min() + limits.same
@@ -93,9 +93,9 @@ def _note_faults(front: ParetoFront, signed: np.ndarray, unit: np.ndarray, limit
     elif front.complete:
         deserving["only non-dominated design"] = np.ones(1, dtype=bool)
     for words, right in deserving.items():
-        at = [k for k, notes in enumerate(told) if words in notes]
+        at = [k for k, notes in enumerate(all_notes) if words in notes]
         if len(at) != 1 or not right[at[0]]:
             yield f"the note {words!r} is not at the design that deserves it"
-    for design, notes in zip(designs, told, strict=True):
+    for design, notes in zip(designs, all_notes, strict=True):
         if strange := [note for note in notes if note not in deserving]:
             yield f"design {design.rank}: note {strange[0]!r} means nothing here"

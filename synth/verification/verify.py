@@ -114,10 +114,10 @@ def checked(
     if front.question is not None and problem is None and catalogs is None:
         check.ask(front.question)
     else:
-        own, tables = problem_of(front, problem, catalogs, kept=True)
+        resolved, tables = problem_of(front, problem, catalogs, kept=True)
         check.compare_tables(*table_differences(front, tables))
         try:
-            check.ask(asked_again(front, own, tables))
+            check.ask(asked_again(front, resolved, tables))
         except InputError as error:
             check.find(f"the question of the record cannot be asked: {error}")
             return check
@@ -193,7 +193,7 @@ class VerificationRun:
         return self.readable
 
     def compare_tables(self, away: Sequence[str], changed: Sequence[str]) -> None:
-        """Take what is told of tables that are away, and of those that have changed."""
+        """Note missing tables and changed ones."""
         self.open += away
         self.findings += changed
         self._away = bool(away)
@@ -259,17 +259,17 @@ class VerificationRun:
         for name, value in self.instance.values.requirements.items():
             if not self.limits.agree(frame.requirement_values.get(name, math.nan), value):
                 self.find(f"requirement_values_si: {name} is not what the requirements say")
-        own = self.instance.limits.judging
-        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in own}
-        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in own}
+        judging = self.instance.limits.judging
+        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in judging}
+        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in judging}
         kinds = {name: kind for name, _, kind in model.declaration.quantities()}
-        told = {
+        claims = {
             "limit_senses": (frame.limit_senses, limits),
             "limit_units": (frame.limit_units, units),
             "units": (frame.units, model.units),
             "kinds": (frame.kinds, kinds),
         }
-        for name, (saved, right) in told.items():
+        for name, (saved, right) in claims.items():
             if dict(saved) != right:
                 self.find(f"{name}: they are not those of the problem")
         if list(frame.not_asked) != list(self.instance.values.not_asked):
@@ -297,13 +297,13 @@ class VerificationRun:
     def _next_rows(self, design: Design, label: str, point: Point) -> None:
         """Find rows of tables that are not the next ones to the design."""
         (right,) = self.model.next_rows(point.variables[None, :], point.data)
-        for name, told in design.next_rows.items():
+        for name, designation in design.next_rows.items():
             row = right.get(name)
-            if row is None or str(told) != str(row):
-                self.find(f"{label}: {name} is told as {told}, by the tables it is {row or 'none'}")
+            if row is None or str(designation) != str(row):
+                self.find(f"{label}: {name} is told as {designation}, by the tables it is {row or 'none'}")
 
     def _point(self, design: Design, label: str) -> Point | None:
-        """Return the inputs of a design, or None where they do not exist."""
+        """Inputs of a design, or None where they do not exist."""
         rows: dict[str, int] = {}
         for slot in self.instance.selection.slots:
             part = design.parts.get(slot.slot)
@@ -313,8 +313,8 @@ class VerificationRun:
                 return None
             index = slot.table.row_index(str(part))
             current = {k: v for k, v in slot.table.row(index).items() if v is not None}
-            told = {k: v for k, v in part.items() if k not in ("table", "hash") and v is not None}
-            if part["table"] != slot.table.name or part["hash"] != slot.table.hashes[index] or told != current:
+            saved = {k: v for k, v in part.items() if k not in ("table", "hash") and v is not None}
+            if part["table"] != slot.table.name or part["hash"] != slot.table.hashes[index] or saved != current:
                 self.find(f"{label}: {slot.slot} {part} is not the row of table {slot.table.name} in force")
             rows[slot.slot] = offered.index(str(part))
         selection = self.instance.selection
@@ -354,14 +354,14 @@ class VerificationRun:
             if not void and not x.holds:
                 self.find(f"{label}: limit {name} does not hold")
             saved = design.limits.get(name, (math.nan, math.nan))
-            told = design.utilisation.get(name)
+            listed = design.utilisation.get(name)
             if not all(self.limits.agree(a, b, x.scale) for a, b in zip(saved, (value, bound), strict=True)):
                 self.find(f"{label}: limit {name} has sides {saved}, evaluated they are {(value, bound)}")
             # Where both sides vanish beside the terms they are rounding, and so is one as a share of the other.
             vanish = max(abs(value), abs(bound)) <= self.limits.same * x.scale
-            differs = told is not None and used is not None and not self.limits.agree(told, used)
-            if (told is None) != (used is None) or (differs and not vanish):
-                self.find(f"{label}: utilisation of {name} is {told}, evaluated it is {used}")
+            differs = listed is not None and used is not None and not self.limits.agree(listed, used)
+            if (listed is None) != (used is None) or (differs and not vanish):
+                self.find(f"{label}: utilisation of {name} is {listed}, evaluated it is {used}")
             if not self.limits.close(design.residuals.get(name, math.nan), r):
                 self.find(f"{label}: residual of {name} is {design.residuals.get(name)}, evaluated it is {r}")
             if void != any(text.startswith(f"not checked: {name},") for text in design.not_checked):
@@ -391,9 +391,9 @@ class VerificationRun:
             void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
             scale = float(np.ravel(scales[x.name])[0])
             yield _LimitReading(x.name, *limits[x.name], x.sense, scale, x.guard, void)
-        for own in self.instance.limits.judging:
-            scale = float(np.ravel(scales[own.name])[0])
-            yield _LimitReading(own.name, values[own.quantity], float(own.bound), own.sense, scale)
+        for limit in self.instance.limits.judging:
+            scale = float(np.ravel(scales[limit.name])[0])
+            yield _LimitReading(limit.name, values[limit.quantity], float(limit.bound), limit.sense, scale)
 
     def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
         """Yield the refusals over several slots, and whether each forbids a design."""
@@ -415,12 +415,12 @@ class VerificationRun:
 
     def _dominance(self) -> None:
         reach = self.limits.same * np.abs(self.signed)
-        for k, own in enumerate(self.signed):
-            better = np.all(self.signed <= own + reach[k], axis=1)
+        for k, row in enumerate(self.signed):
+            better = np.all(self.signed <= row + reach[k], axis=1)
             better[k] = False
             for j in np.flatnonzero(better)[:1]:
                 other = self.front.designs[int(j)]
-                equal = np.all(np.abs(self.signed[j] - own) <= reach[k])
+                equal = np.all(np.abs(self.signed[j] - row) <= reach[k])
                 word = "equals" if equal else "dominates"
                 if not equal or j < k:
                     self.find(f"design {other.rank} {word} design {self.front.designs[k].rank}")
@@ -467,7 +467,7 @@ class VerificationRun:
     # -- the claim -----------------------------------------------------------------------------
 
     def claim(self) -> None:
-        """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
+        """Prove the claim of the certificate; where that fails, determine the gap that can be proven."""
         front = self.front
         self._begin(front.certificate.gap if front.designs else None)
         if not front.designs:
@@ -482,8 +482,8 @@ class VerificationRun:
                 return
         first = self._prove(self._thresholds(gap), gap)
         self.proven, decisive = (gap, first) if first.closed else self._smallest_gap(gap, first)
-        left = f"{len(first.open_regions)} of {len(front.designs)} designs stay open"
-        self._judge(decisive, f"no design improves a listed one by more than {gap_text(gap)}", "", left)
+        still_open = f"{len(first.open_regions)} of {len(front.designs)} designs stay open"
+        self._judge(decisive, f"no design improves a listed one by more than {gap_text(gap)}", "", still_open)
 
     def _begin(self, gap: float | None) -> None:
         """Prepare a proof to a gap, or that nothing is feasible."""
@@ -592,25 +592,25 @@ class VerificationRun:
                 decisive, refuted = (outcome if decisive.witness is None else decisive), between
         return gap, decisive
 
-    def _judge(self, outcome: ProofOutcome, claim: str, what: str, left: str = "") -> bool:
+    def _judge(self, outcome: ProofOutcome, claim: str, what: str, still_open: str = "") -> bool:
         """True if a proof closed; else note the design that refutes the claim, or that the claim stays open.
 
-        ``left``: what is open.
+        ``still_open``: text on the open part.
         """
         point = outcome.witness
         if point is not None:
-            self.find(f"the claim that {claim} is wrong: {self._told(point)} is {what or self._gain(point)}")
+            self.find(f"the claim that {claim} is wrong: {self._design_text(point)} is {what or self._gain(point)}")
         elif not outcome.closed:
-            told = f"the claim that {claim} could not be proven again with {outcome.nodes} boxes"
-            self.open.append(told + (f": {left}" if left else ""))
+            sentence = f"the claim that {claim} could not be proven again with {outcome.nodes} boxes"
+            self.open.append(sentence + (f": {still_open}" if still_open else ""))
         return outcome.closed
 
     def _gain(self, point: Point) -> str:
         share, k = self._improvement(point)
         return f"feasible and improves design {self.front.designs[k].rank} by {percent(share)} in every objective"
 
-    def _told(self, point: Point) -> str:
-        """Return the variables, parts, counts and choices of a design."""
+    def _design_text(self, point: Point) -> str:
+        """Variables, parts, counts and choices of a design as text."""
         words = [
             f"{v.name} {typed_quantity(float(x), v.unit)}"
             for v, x in zip(self.model.variables, point.variables, strict=True)
@@ -624,9 +624,9 @@ class VerificationRun:
         return ", ".join(words)
 
 
-def _is_text(found: str, name: str, text: str) -> bool:
-    """True if a file says a text; a table may do so in any style."""
-    return found == text or (name.endswith(".csv") and any(found == style.text(text) for style in STYLES.values()))
+def _is_text(content: str, name: str, text: str) -> bool:
+    """True if the content of a file is a text; a table may have any style."""
+    return content == text or (name.endswith(".csv") and any(content == style.text(text) for style in STYLES.values()))
 
 
 class _LackingProgram(Program):

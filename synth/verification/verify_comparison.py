@@ -39,7 +39,7 @@ class _Listed:
 
 
 @dataclass(frozen=True)
-class _Told:
+class _ComparisonRecord:
     """What a comparison claims, read from its record.
 
     ``folders``: that of each family with a front, by label; ``senses`` of the objectives.
@@ -53,7 +53,7 @@ class _Told:
     resolution: Mapping[str, float]
 
 
-def _told(content: Any) -> _Told:
+def _read_record(content: Any) -> _ComparisonRecord:
     """Read the record of a comparison.
 
     Raises
@@ -62,7 +62,7 @@ def _told(content: Any) -> _Told:
         When it is none.
     """
     certificate, senses = content["certificate"], {str(n): str(s) for n, s in content["objectives"].items()}
-    return _Told(
+    return _ComparisonRecord(
         folders={str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"] is not None},
         senses=senses,
         designs=[_Listed(int(x["rank"]), {n: float(x["objectives"][n]) for n in senses}) for x in content["designs"]],
@@ -105,7 +105,7 @@ def verify_comparison(
     settle(path)
     content = read_json(path / COMPARISON, "comparison", "a folder that run has written for several families")
     try:
-        told = _told(content)
+        record = _read_record(content)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError(
             "comparison", str(path), f"a folder that run has written for several families ({error})"
@@ -113,20 +113,20 @@ def verify_comparison(
     findings: list[str] = []
     unproven: list[str] = []
     nodes = 0
-    values = _values(path, told, findings, catalogs)
-    for label, name in told.folders.items():
+    values = _values(path, record, findings, catalogs)
+    for label, name in record.folders.items():
         front = unchecked_front(path / name)
         check = checked(front, None, catalogs, time.monotonic() + time_limit)
-        alike = check.readable and dict(front.frame.objectives) == dict(told.senses)
+        alike = check.readable and dict(front.frame.objectives) == dict(record.senses)
         if alike:
-            _among(front, label, told.designs, findings)
+            _among(front, label, record.designs, findings)
         elif check.readable:
             findings.append(f"{label}: its objectives are not those of the comparison")
-        provable = alike and told.kind == "global" and bool(values) and not check.findings
-        if provable and told.gap is not None and front.certificate.kind == "global" and front.designs:
+        provable = alike and record.kind == "global" and bool(values) and not check.findings
+        if provable and record.gap is not None and front.certificate.kind == "global" and front.designs:
             check.deadline = time.monotonic() + time_limit
-            check.against(values, told.gap, told.resolution)
-        elif told.kind == "global" and front.certificate.kind != "global":
+            check.against(values, record.gap, record.resolution)
+        elif record.kind == "global" and front.certificate.kind != "global":
             findings.append(f"{label}: its own front is not proven, so that nothing over all families can be")
         findings += [f"{label}: {finding}" for finding in check.findings]
         unproven += [f"{label}: {claim}" for claim in check.open]
@@ -134,49 +134,49 @@ def verify_comparison(
     return Verification(
         findings=tuple(findings),
         open=tuple(unproven),
-        certificate=told.kind,
-        designs=len(told.designs),
-        claimed_gap=told.gap,
-        proven_gap=told.gap if told.kind == "global" and not findings and not unproven else None,
+        certificate=record.kind,
+        designs=len(record.designs),
+        claimed_gap=record.gap,
+        proven_gap=record.gap if record.kind == "global" and not findings and not unproven else None,
         nodes=nodes,
         seconds=time.monotonic() - started,
     )
 
 
-def _values(path: Path, told: _Told, findings: list[str], catalogs: Any) -> dict[str, np.ndarray]:
-    """Return the objectives of the designs listed, evaluated again from their files."""
-    rows: dict[str, list[float]] = {name: [] for name in told.senses}
-    width = max(2, len(str(len(told.designs))))
-    for listed in told.designs:
+def _values(path: Path, record: _ComparisonRecord, findings: list[str], catalogs: Any) -> dict[str, np.ndarray]:
+    """Objectives of the listed designs, evaluated again from their files."""
+    rows: dict[str, list[float]] = {name: [] for name in record.senses}
+    width = max(2, len(str(len(record.designs))))
+    for listed in record.designs:
         label = f"design {listed.rank}"
         try:
             spec = read_spec(path / f"design_{listed.rank:0{width}d}.yaml")
             problem = robust_counterpart(load(spec.family, **spec.options), spec.robust or None, spec.limits)
-            given = {"values": spec.values, "parts": spec.parts}
+            content = {"values": spec.values, "parts": spec.parts}
             tables = spec.catalogs if catalogs is None else catalogs
             design = evaluate(
-                problem, spec.requirements, given, catalogs=tables, limits=spec.limits, objectives=told.senses
+                problem, spec.requirements, content, catalogs=tables, limits=spec.limits, objectives=record.senses
             )
         except InputError as error:
             findings.append(f"{label}: its file cannot be evaluated ({error})")
             continue
         if design.violated:
             findings.append(f"{label}: {', '.join(design.violated)} do not hold")
-        for name, own in rows.items():
+        for name, column in rows.items():
             value = float(design.values[name])
-            own.append(value)
+            column.append(value)
             if abs(value - listed.objectives[name]) > PROOF.same * abs(value):
                 findings.append(f"{label}: {name} is {listed.objectives[name]}, evaluated it is {value}")
-    return {name: np.array(own) for name, own in rows.items()} if all(rows.values()) else {}
+    return {name: np.array(column) for name, column in rows.items()} if all(rows.values()) else {}
 
 
 def _among(front: ParetoFront, label: str, designs: Sequence[_Listed], findings: list[str]) -> None:
-    """No design of a family's own front may beat one that is listed."""
+    """Note listed designs that a design of a family's own front dominates."""
     objectives = front.frame.objectives
     for listed in designs:
-        own = np.array([listed.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
+        reference = np.array([listed.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
         for design in front.designs:
             mine = np.array([design.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
-            room = PROOF.same * np.abs(own)
-            if np.all(mine <= own + room) and np.any(mine < own - room):
+            tolerance = PROOF.same * np.abs(reference)
+            if np.all(mine <= reference + tolerance) and np.any(mine < reference - tolerance):
                 findings.append(f"{label}: its design {design.rank} beats design {listed.rank} of the comparison")

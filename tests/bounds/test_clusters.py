@@ -134,8 +134,8 @@ def test_members_are_the_combinations_of_the_rows(cells):
             few = cells.members(cell, most)
             assert len(few) == min(most, len(members))
             assert set(few.tolist()) <= set(members)
-    assert cells.members(cells.whole()[0], 1000).tolist() == list(range(60))
-    np.testing.assert_array_equal(cells.size(cells.whole()), [60.0])
+    assert cells.members(cells.all_combinations()[0], 1000).tolist() == list(range(60))
+    np.testing.assert_array_equal(cells.size(cells.all_combinations()), [60.0])
 
 
 def test_numbers_and_leaves_go_round(cells):
@@ -180,4 +180,4 @@ def test_random_leaves_stay_inside_their_cell_and_reach_all_of_it(cells):
 def test_sizes_beyond_whole_numbers_do_not_overflow():
     tree = tree_of(np.arange(1.0, 201.0)[:, None])
     cells = Cells([tree] * 12, [200] * 12)
-    assert cells.size(cells.whole())[0] == pytest.approx(200.0**12)
+    assert cells.size(cells.all_combinations())[0] == pytest.approx(200.0**12)

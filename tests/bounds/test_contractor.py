@@ -411,7 +411,7 @@ def test_a_void_column_says_nothing(second):
     form = Formulation(instance, {"cost": "min"}, 1)
     x = np.linspace(0.5, 10, 20)[:, None]
     assert form.points.evaluate(x, np.full(20, 1)).feasible.all()
-    for box in (form.boxes.root(), form.boxes.contract(form.boxes.whole(1), None)):
+    for box in (form.boxes.root(), form.boxes.contract(form.boxes.box_of(1), None)):
         assert len(box) == 1
         assert box.low[0, 0] <= 0.5
         assert box.high[0, 0] >= 10
@@ -603,6 +603,7 @@ def test_the_root_box_holds_all_feasible_designs(family):
     assert_kept(form.boxes.contract(leaves, None), points, phi, form)
     for k in range(0, len(points), 40):
         alone = replace(
-            form.boxes.contract(form.boxes.whole(int(family.combinations[k])), None), tag=np.zeros(1, dtype=np.int32)
+            form.boxes.contract(form.boxes.box_of(int(family.combinations[k])), None),
+            tag=np.zeros(1, dtype=np.int32),
         )
         assert_kept(alone, points[k : k + 1], phi[k : k + 1], form)

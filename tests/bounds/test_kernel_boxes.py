@@ -150,7 +150,7 @@ class Case:
             np.ones((self.boxes, self.n + 2), dtype=np.float32),
             np.arange(self.boxes),
         )
-        verdicts = Verdicts.room(self.boxes, len(self.constraints))
+        verdicts = Verdicts.empty(self.boxes, len(self.constraints))
         cutoffs, weights = self.cutoffs if capped else None, np.ones((1, len(self.steep)))
         return made(code).contract(prepared, boxes, cutoffs, weights, passes, workers, verdicts), verdicts
 

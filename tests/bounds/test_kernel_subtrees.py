@@ -104,10 +104,10 @@ def test_generations_are_about_those_of_single_steps(kind, grid):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("room", [KernelSizes().tree_beside, 40])
+@pytest.mark.parametrize("room", [KernelSizes().extra_capacity, 40])
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room):
-    sizes = KernelSizes(tree_beside=room, tree_room=4 if room > 40 else 1)
+    sizes = KernelSizes(extra_capacity=room, capacity_per_box=4 if room > 40 else 1)
     form, rng = strut_form(tuning=replace(TUNING, kernels=sizes)), np.random.default_rng(3)
     rule = purpose_of(kind, form, rng)
     boxes = after(form, rule, 4)
@@ -119,7 +119,7 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     assert len(points) > 20
     assert not lost(form, boxes, points, combinations).any()
     assert not lost(form, Boxes.joined([grown.halves, grown.small]), points, combinations).any()
-    assert len(grown.halves) + len(grown.small) <= len(boxes) * sizes.tree_room + room
+    assert len(grown.halves) + len(grown.small) <= len(boxes) * sizes.capacity_per_box + room
 
 
 @pytest.mark.parametrize("grid", [True, False])

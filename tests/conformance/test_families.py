@@ -38,7 +38,7 @@ def test_random_starts_of_the_solver_find_nothing_better(family, name):
     rng = np.random.default_rng(4)
     reached = []
     for combination in rng.permutation(instance.combinations.count)[:12]:
-        box = form.boxes.contract(form.boxes.whole(int(combination)), None)
+        box = form.boxes.contract(form.boxes.box_of(int(combination)), None)
         for _ in range(2 * len(box)):
             low, high = box.low[0, : form.n], box.high[0, : form.n]  # a box may carry inner nodes too
             start = low * (high / low) ** rng.random(form.n)

@@ -64,7 +64,7 @@ def test_posed_limits_are_those_of_the_family_and_proofs_hold(family):
     asked = read_block(block_of(instance))
     rater = rater_of(problem, case.requirements, catalogs, None, asked)
     robust = instance_of(robust_counterpart(problem, asked, None), case.requirements, catalogs, restrict=False)
-    things = {x.name: j for j, x in enumerate(rater.things)}
+    things = {x.name: j for j, x in enumerate(rater.quantities)}
     names = [x.name for x in rater.limits]
     copies = [x.name for x in robust.model.limits if x.name not in instance.model.declaration.limits]
     assert copies

@@ -102,7 +102,7 @@ class Question:
         """Return cost and sizes of what the search's own solver calls optima, from every start."""
         wide = [np.tile(x, (STARTS, 1)) for x in (task.weights, task.slopes, task.cutoffs)]
         tasks = Tasks(wide[0], wide[1], wide[2], task.goal_scales, task.t_weight)
-        found = self.form.continuous.solve_many(tasks, self.own, self.starts)
+        found = self.form.continuous.solve_batch(tasks, self.own, self.starts)
         called = np.flatnonzero(found.converged & (found.violation <= TUNING.nlp.missed))
         return [(self.cost_of(task, x), x) for x in found.variables[called]]
 

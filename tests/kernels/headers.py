@@ -10,7 +10,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from synth.bounds import kernel_boxes
-from synth.bounds.box_batches import GIVEN, NUMBERS, SCORE_WIDTH, TAKEN
+from synth.bounds.box_batches import INPUT_ARRAYS, NUMBERS, OUTPUT_ARRAYS, SCORE_WIDTH
 from synth.bounds.instructions import OP_NAMES, WIDTH, labels
 from synth.model.program import OPERATIONS
 from synth.nlp import interior_point, kernel_solver
@@ -49,8 +49,8 @@ def box_record() -> list[str]:
 def structure_source() -> str:
     """Record of a batch, as a structure in C."""
     lines = [f"    {kind} {name};" for name, kind in NUMBERS.items()]
-    lines += [f"    const {kind} *{name};" for name, kind in GIVEN.items()]
-    lines += [f"    {kind} *{name};" for name, kind in TAKEN.items()]
+    lines += [f"    const {kind} *{name};" for name, kind in INPUT_ARRAYS.items()]
+    lines += [f"    {kind} *{name};" for name, kind in OUTPUT_ARRAYS.items()]
     return "\n".join(["typedef struct {", *lines, "} Batch;"])
 
 

@@ -339,7 +339,7 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
     weights = np.eye(goals)[:1]
     free = np.full((1, goals), np.inf)
     tasks = Tasks(*(np.tile(x, (len(own), 1)) for x in (weights, 0 * weights, free)), form.objectives.scales, 0.0)
-    found = form.continuous.solve_many(tasks, own, start)
+    found = form.continuous.solve_batch(tasks, own, start)
     rows, phi = form.points.feasible_rows(found.variables, own)
     data = [float(np.asarray(x).ravel()[0]) for x in form.instance.data(own[:1])]
     task = Task(weights[0], 0 * weights[0], free[0], form.objectives.scales, 0.0)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.order.pareto import Scale, knee_of, non_dominated, rank, signs_of, spread_subset
+from synth.order.pareto import Scale, knee_of, non_dominated, rank, senses_of, spread_subset
 
 
 def dominated_by_hand(phi):
@@ -112,7 +112,7 @@ def test_scores_tell_how_far_from_the_ideal_designs_are(seed, objectives, count)
     ranking = rank(senses, values, weights)
     assert sorted(ranking.order) == list(range(count))
     assert np.all(np.diff(ranking.scores[ranking.order]) >= 0)
-    signed = values * signs_of(senses)
+    signed = values * senses_of(senses)
     within = np.all(signed <= ranking.scale.nadir, axis=1)
     assert np.all((ranking.scores[within] >= 0) & (ranking.scores[within] <= 1))
     assert np.all((ranking.scores == 0) == np.all(ranking.scale.units(signed) == 0, axis=1))
@@ -134,8 +134,8 @@ def test_an_end_that_costs_much_for_little_stretches_no_scale():
 def test_a_scale_is_told_and_read_with_the_signs_of_the_objectives():
     chosen = {"mass": "min", "torque": "max"}
     scale = Scale.of(np.array([[1.0, -10.0], [2.0, -30.0]]))
-    assert scale.told(chosen) == {"mass": [1.0, 2.0], "torque": [30.0, 10.0]}
-    again = Scale.read(scale.told(chosen), chosen)
+    assert scale.as_record(chosen) == {"mass": [1.0, 2.0], "torque": [30.0, 10.0]}
+    again = Scale.read(scale.as_record(chosen), chosen)
     assert np.array_equal([again.ideal, again.nadir], [scale.ideal, scale.nadir])
 
 

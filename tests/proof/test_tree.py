@@ -86,10 +86,10 @@ def holding(tree, boxes, point):
             found &= (boxes.real[c.group] <= x + room) & (boxes.real[count + c.group] >= x - room)
         elif c.kind == "ladder":
             values = tree._ladders[c.group]
-            found &= values[boxes.whole[c.group]] <= x + 1e-9 * abs(x)
-            found &= values[boxes.whole[ladders + c.group]] >= x - 1e-9 * abs(x)
+            found &= values[boxes.discrete[c.group]] <= x + 1e-9 * abs(x)
+            found &= values[boxes.discrete[ladders + c.group]] >= x - 1e-9 * abs(x)
         else:
-            slot, node = tree._slots[c.group], boxes.whole[2 * ladders + c.group]
+            slot, node = tree._slots[c.group], boxes.discrete[2 * ladders + c.group]
             low, high = slot.low[c.column, node], slot.high[c.column, node]
             found &= slot.lacking[c.column, node] if math.isnan(x) else (low <= x) & (high >= x)
     for node, k in tree._lifted.items():

@@ -30,7 +30,7 @@ def synthesized(robust=None, requirements=DUTY, problem=ShaftBrake, tuning=TUNIN
 def worst(design, block, count=4000, limits=None):
     """Return the largest residual over random points of the range and its corners."""
     rater = rater_of(ShaftBrake(), design.frame.requirements, as_catalogs(CATALOGS), limits, read_block(block))
-    points = np.random.default_rng(7).random((count, len(rater.things)))
+    points = np.random.default_rng(7).random((count, len(rater.quantities)))
     residuals = rater.residuals(design, np.concatenate([rater.corners, points]))
     return residuals.max()
 

@@ -163,7 +163,7 @@ def test_a_narrow_engagement_band_is_proven_after_more_boxes_than_those_of_a_fir
     first = 50_000
     together = replace(TUNING.tree.together, after=first)
     front = synthesize(
-        tuned(tree={"first_try": first, "whole_front": first, "together": together}),
+        tuned(tree={"first_try": first, "cover_front": first, "together": together}),
         synth.load("centrifugal_two_spring", practice="off"),
         requirements={
             "required_torque": "90 N*m",
@@ -202,7 +202,7 @@ def test_a_narrow_engagement_band_is_proven_after_more_boxes_than_those_of_a_fir
 @pytest.mark.slow
 @pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
 def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(objectives):
-    trees = ("first_boxes", "coarse_boxes", "first_try", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
+    trees = ("first_boxes", "coarse_boxes", "first_try", "cover_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
     soon = dict.fromkeys(trees, 50 if len(objectives) > 1 else 1)
     soon["together"] = replace(TUNING.tree.together, boxes=0)
     ask = {"objectives": objectives, "catalogs": {"rods": RODS}, "points": 5}

@@ -58,7 +58,7 @@ def tree(form, rule, clock=None, **more):
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("node_limit", [0, 50, 300, 1000, 2000])
 def test_a_tree_that_ends_early_leaves_open_what_may_be_of_use(workers, node_limit, monkeypatch):
-    monkeypatch.setattr(PrimalHeuristics, "look", lambda self, batch: None)  # else nearly all is covered soon
+    monkeypatch.setattr(PrimalHeuristics, "search_boxes", lambda self, batch: None)  # else nearly all is covered soon
     form = posed(workers)
     rule = cover(form)
     outcome = tree(form, rule, node_limit=node_limit)
@@ -80,7 +80,7 @@ def test_so_does_one_that_is_given_up(more):
     form = posed()
     rule = cover(form)
     outcome = tree(form, rule, **more)
-    assert outcome.full or outcome.given_up
+    assert outcome.full or outcome.abandoned
     missed, useful = missed_of_use(form, rule, outcome.open)
     assert missed == 0
     assert useful > 0
@@ -104,7 +104,7 @@ def test_whatever_stops_a_tree_its_clock_holds_what_is_open_and_nothing_is_under
             raise Stopped("time limit")
 
     monkeypatch.setattr(BoxStep, "__init__", noted)
-    monkeypatch.setattr(PrimalHeuristics, "look", look)
+    monkeypatch.setattr(PrimalHeuristics, "search_boxes", look)
     with pytest.raises(Stopped):
         tree(form, rule, clock)
     missed, useful = missed_of_use(form, rule, Boxes.joined(clock.open))
@@ -113,7 +113,7 @@ def test_whatever_stops_a_tree_its_clock_holds_what_is_open_and_nothing_is_under
     assert len(steps) > after
     for step in steps:
         assert step._growth is not None
-        assert all(other.done() for other in step._growth._parts._beside)
+        assert all(other.done() for other in step._growth._parts._futures)
 
 
 def outcome_of(workers):

@@ -10,7 +10,7 @@ import pytest
 from synth.order.pareto import non_dominated
 from synth.search.front_search import find_designs
 from synth.search.front_state import FrontState
-from synth.search.stages.choosing import _look_for_more, choose_designs
+from synth.search.stages.choosing import _search_further, choose_designs
 from synth.search.stages.first_by_rank import find_first
 from synth.search.stages.trees import cover_everything
 from tests.asking import pose
@@ -86,13 +86,13 @@ def test_a_second_look_goes_on_with_what_the_first_has_left_open() -> None:
     state = state_of(points=500, gap=1e-2, limits={"length": "<= 160 mm"})
     find_designs(state)
     before, known = state.counters.nodes, state.form.archive.phi
-    _look_for_more(state)
-    first, left = state.counters.nodes - before, state.left_at_ties
+    _search_further(state)
+    first, left = state.counters.nodes - before, state.open_at_ties
     assert left is not None
     assert state.proof.finest_cover is not None
     assert len(state.form.archive.phi) >= len(known)
     before = state.counters.nodes
-    _look_for_more(state)
+    _search_further(state)
     second = state.counters.nodes - before
     assert second < first
     assert second <= 4 * len(left)

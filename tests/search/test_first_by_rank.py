@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.order.pareto import NEAR, rank, signs_of
+from synth.order.pareto import NEAR, rank, senses_of
 from synth.question.spec import read_spec
 from synth.search.front_state import FrontState
 from synth.search.settings import TUNING
@@ -62,7 +62,7 @@ def lattice(rows: Sequence[Sequence[float]], senses: Mapping[str, str]) -> synth
 
 def scores_by_hand(rows: np.ndarray, senses: Mapping[str, str], weights: Sequence[float]) -> np.ndarray:
     """Return the scores of all points: what each objective costs for another to be nearly as good as it can be."""
-    signed = rows * signs_of(senses)
+    signed = rows * senses_of(senses)
     best, worst = signed.min(axis=0), np.array([-np.inf] * len(senses))
     ends = [np.min([row for row in signed if row[k] == best[k]], axis=0) for k in range(len(senses))]
     for k in range(len(senses)):
@@ -102,7 +102,7 @@ def test_an_end_that_costs_much_for_little_is_not_first_and_is_told_to() -> None
     dear = next(d for d in front.designs if d.values["mass"] > 30)
     assert dear.note == "smallest diameter, whose last 0.5 % costs much"
     assert dear.rank == len(front.designs)
-    told = front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
+    told = front.scale.as_record(front.frame.objectives)  # type: ignore[union-attr]
     assert told["mass"] == pytest.approx([4.0, 7.0])
 
 
@@ -140,7 +140,7 @@ def test_a_front_that_is_saved_is_ranked_again_by_its_own_scale(tmp_path: Path) 
     front = synth.synthesize(problem, {}, points=4)
     again = synth.load_front(front.save(tmp_path / "front"))
     assert again.scale is not None
-    assert again.scale.told(again.frame.objectives) == front.scale.told(front.frame.objectives)  # type: ignore[union-attr]
+    assert again.scale.as_record(again.frame.objectives) == front.scale.as_record(front.frame.objectives)  # type: ignore[union-attr]
     values = np.array([[d.values[n] for n in again.frame.objectives] for d in again.designs])
     ranking = rank(again.frame.objectives, values, [1.0, 1.0], scale=again.scale)
     assert ranking.order == list(range(len(again.designs)))

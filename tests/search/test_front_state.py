@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from synth.search.front_state import FrontProof, FrontState, FrontTask
-from synth.search.given_front import GivenFront
 from synth.search.settings import TUNING, Tuning
+from synth.search.starting_front import StartingFront
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import tuned
@@ -119,8 +119,8 @@ def test_a_cover_that_is_noted_bounds_all_designs() -> None:
 
 
 def test_a_design_takes_the_place_of_a_given_one_that_it_is_as_good_as() -> None:
-    given = GivenFront(np.array([[0.0, 3.0], [2.0, 1.0], [-1.0, -1.0]]), None, np.full(2, np.inf))
+    given = StartingFront(np.array([[0.0, 3.0], [2.0, 1.0], [-1.0, -1.0]]), None, np.full(2, np.inf))
     phi = np.array([[2.0, 0.5], [0.0, 3.0 + 1e-12], [1.0, 0.9], [5.0, 5.0]])
     # The third is as good as the second one given, and so is the first: the better sum wins; none reaches the last.
     assert given.places(phi, 1e-9) == [1, 2]
-    assert GivenFront.nothing(2).places(phi, 1e-9) == []
+    assert StartingFront.nothing(2).places(phi, 1e-9) == []

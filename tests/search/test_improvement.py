@@ -29,7 +29,7 @@ def unproven(tmp_path_factory):
     """A front of which little is proven, since its search was given up early."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        trees = ("coarse_boxes", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
+        trees = ("coarse_boxes", "cover_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
         given_up = {"few_combinations": 1, "further": SearchEffort(seconds=0.0), **dict.fromkeys(trees, 40)}
         front = ask(tuned(tree=given_up, heuristics={"parts": PartSampling(trials=1)}))
     assert front.certificate.kind == "heuristic"

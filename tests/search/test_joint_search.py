@@ -333,7 +333,7 @@ def test_questions_that_are_the_same_in_all_that_counts_have_the_same_answer() -
 
 def test_what_is_left_open_is_not_settled() -> None:
     # One box a turn settles nothing that has to be searched.
-    few = tuned(joint={"turns": ((1, 1, 1),), "least_boxes": 1})
+    few = tuned(joint={"schedule": ((1, 1, 1),), "least_boxes": 1})
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     fronts = JointSearch([replace(q, tuning=few) for q in asked(MAKEABLE, loads(7, 91, 92), catalogs=weak)]).settled()
     assert None in fronts
@@ -465,7 +465,7 @@ def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(joint_optima.JointTree, "open_questions", noted)
     turns = ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000))
-    tuning = tuned(joint={"turns": turns, "nearly_closed": 0, "least_boxes": 1})
+    tuning = tuned(joint={"schedule": turns, "nearly_closed": 0, "least_boxes": 1})
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
     whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid, tuning=tuning)
     check_each(whole, lambda k: lightest(whole[k]))

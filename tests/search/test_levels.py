@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.search.front_state import FrontState
-from synth.search.joint.levels import Cutoffs, LevelProof, levels_told
+from synth.search.joint.levels import Cutoffs, LevelProof, levels_of_corners
 from synth.search.proven_gap import Level, LevelBound
 from synth.search.settings import SearchEffort
 from synth.search.stages import levels as stage
 from synth.search.stages.proving import proven_at_gap
-from synth.search.turns import TurnBudget, by_turns
+from synth.search.turns import TurnBudget, alternate
 from tests.asking import pose
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 
@@ -51,7 +51,7 @@ def test_no_point_improves_a_design_by_more_than_levels_allow(seed: int) -> None
 
 
 def test_the_same_cutoff_stands_once_with_the_most_that_is_to_beat() -> None:
-    cutoffs = Cutoffs(first=np.array([2.0, 1.0, 2.0]), to_beat=np.array([5.0, 7.0, 6.0]), tolerance=0.1).told_apart()
+    cutoffs = Cutoffs(first=np.array([2.0, 1.0, 2.0]), to_beat=np.array([5.0, 7.0, 6.0]), tolerance=0.1).distinct()
     assert cutoffs.first.tolist() == [1.0, 2.0]
     assert cutoffs.to_beat.tolist() == [7.0, 6.0]
 
@@ -76,7 +76,7 @@ def test_levels_side_by_side_say_of_everything_within_their_cutoffs_what_is_true
     asked = Cutoffs(first=rng.integers(-8, 8, 6) / 4.0, to_beat=rng.integers(-8, 8, 6) / 4.0, tolerance=tolerance)
     if rng.random() < 0.6:
         asked = replace(asked, to_beat=np.sort(asked.to_beat)[::-1][np.argsort(np.argsort(asked.first))])
-    asked = asked.told_apart()
+    asked = asked.distinct()
     first, to_beat = asked.first, asked.to_beat
     beaten = points[:, None, 1] < to_beat - tolerance  # of each point, at each level
     least = np.array([points[own, 0].min(initial=np.inf) for own in beaten.T])
@@ -90,7 +90,7 @@ def test_levels_side_by_side_say_of_everything_within_their_cutoffs_what_is_true
     for k in range(len(first)):
         own = points[within[:, k] & (points[:, 1] < best[k] - tolerance)]
         corners[k] = None if rng.random() < 0.1 else own - 0.1 * rng.random(own.shape)
-    told = levels_told(cutoffs, best, corners)
+    told = levels_of_corners(cutoffs, best, corners)
     for level in told:
         inside = points[points[:, 0] <= level.within[0]]
         better = inside[inside[:, 1] < level.least - tolerance]
@@ -123,7 +123,7 @@ class Work:
 
 def turns(*trees: Work, boxes: float = 1e9, seconds: float = 0.0) -> TurnBudget:
     budget, looks = TurnBudget(boxes, SearchEffort(seconds=seconds)), list[int]()
-    last = by_turns([lambda t=t: t for t in trees], budget, 100, lambda: looks.append(1))[-1]  # type: ignore[misc]
+    last = alternate([lambda t=t: t for t in trees], budget, 100, lambda: looks.append(1))[-1]  # type: ignore[misc]
     assert looks == [1] * (trees[0].done > 100)
     assert budget.looked >= boxes or not last.extent
     return budget
@@ -176,17 +176,17 @@ class Shaved(Stuck):
 def test_turns_end_where_neither_tree_has_boxes_to_split() -> None:
     first, second = Stuck(1e12, 0.5), Stuck(1e12, 0.5)
     budget = TurnBudget(1e9, SearchEffort(seconds=60.0))
-    by_turns([lambda: first, lambda: second], budget, 100, lambda: None)
+    alternate([lambda: first, lambda: second], budget, 100, lambda: None)
     assert budget.looked < 10_000
     assert first.finished != second.finished
     # Each look may take a little off, as tightening does.
     less, little = Shaved(1e12, 0.5), Shaved(1e12, 0.5)
     budget = TurnBudget(1e9, SearchEffort(seconds=60.0))
-    by_turns([lambda: less, lambda: little], budget, 100, lambda: None)
+    alternate([lambda: less, lambda: little], budget, 100, lambda: None)
     assert budget.looked < 10_000
     # One of them alone does not end the turns of the other.
     ahead = Work(1e5, 0.9)
-    by_turns([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
+    alternate([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
     assert not ahead.extent
 
 
@@ -280,7 +280,7 @@ def test_what_is_open_is_told_only_where_it_is_asked_for() -> None:
     levels.prove_soon(TurnBudget(0.0, SearchEffort(seconds=0.0)), 0.0)
     levels.unproven[:] = [False, True]
     assert [len(level.corners) > 0 for level in levels.levels()] == [False, *(True for _ in levels.trees)]
-    assert [len(level.corners) for level in levels.levels(proven_alone=True)] == [0]
+    assert [len(level.corners) for level in levels.levels(only_proven=True)] == [0]
 
 
 @pytest.mark.slow
@@ -296,7 +296,7 @@ def test_levels_prove_the_same_side_by_side_and_each_alone(objectives: str) -> N
     rows, phi = form.points.feasible_rows(points, combinations)
     form.archive.add(combinations[rows], points[rows], phi[rows])
     known, tolerance = form.archive.phi[np.argsort(form.archive.phi[:, 0]), :2], state.rule.tolerance
-    gaps = Cutoffs(first=known[1:, 0], to_beat=known[:-1, 1], tolerance=float(tolerance[1])).told_apart()
+    gaps = Cutoffs(first=known[1:, 0], to_beat=known[:-1, 1], tolerance=float(tolerance[1])).distinct()
     assert len(gaps) > 3
     nowhere = np.full(len(gaps), -np.inf)
     found = []

@@ -17,7 +17,7 @@ from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, st
 from synth.search.pruning import EpsilonCover
 from synth.search.settings import PartSampling, SearchEffort
 from synth.system.deadline import Stopped
-from synth.system.file_locks import alone
+from synth.system.file_locks import exclusive_access
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import synthesize, tuned
@@ -156,11 +156,11 @@ def test_a_lock_keeps_other_processes_out_until_its_own_is_gone(tmp_path):
     second, own = begun()
     assert own == "False"
     second.communicate()
-    with alone(path) as own:
+    with exclusive_access(path) as own:
         assert not own
     first.kill()  # what is killed locks nothing any more, although the file stays
     first.communicate()
-    with alone(path) as own:
+    with exclusive_access(path) as own:
         assert own
     assert not path.exists()
 

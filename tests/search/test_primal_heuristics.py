@@ -99,7 +99,7 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     form = strut_form()
     assert not len(form.archive)
     boxes = form.boxes.root()
-    heuristics(form).look(boxes)
+    heuristics(form).search_boxes(boxes)
     assert form.bounding.branching.learned > 0
 
 
@@ -122,7 +122,7 @@ def test_what_no_point_hits_is_solved_for():
     force, time = 10 + sliver * (3.2**2 - 10), 10**0.5 + sliver * (3.2 - 10**0.5)
     assert not len(form.points.feasible_rows(np.stack([[10.0, 10.0], force, time], axis=1), np.zeros(2, dtype=int))[0])
     tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.objectives.scales, 0.0)
-    optimum = form.continuous.solve_many(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
+    optimum = form.continuous.solve_batch(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
     assert optimum.variables[0, 0] == pytest.approx(100 / 3.2**2, rel=1e-6)
     assert heuristics(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks) > 0
     assert form.archive.variables[0, 0] == 10
@@ -197,7 +197,7 @@ def test_beside_a_makeable_size_the_rest_is_the_best_there_is():
     form = Formulation(instance_of(Wide(), {}, catalogs_for(Wide(), {})), {"cost": "min"}, 1)
     combination = np.zeros(1, dtype=np.int64)
     tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.objectives.scales, 0.0)
-    optimum = form.continuous.solve_many(tasks, combination, np.array([[50.0, 50.0]]))
+    optimum = form.continuous.solve_batch(tasks, combination, np.array([[50.0, 50.0]]))
     assert optimum.variables[0] == pytest.approx([130**0.5, 100 / 130**0.5], rel=1e-6)
     heuristics(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks)
     size, force = form.archive.variables[np.argmin(form.archive.phi[:, 0])]

@@ -24,7 +24,7 @@ from synth.queue.accounts import Accounts
 from synth.service.serve import address_of, file_of, listening, only_server, serve
 from synth.service.settings import ServiceSettings
 from synth.service.supervisor import Supervisor
-from synth.system.file_locks import is_taken
+from synth.system.file_locks import is_locked
 from tests.terminal.entry import COMMAND, ROOT, at_once
 from tests.waiting import PATIENCE, until
 
@@ -253,7 +253,7 @@ def test_a_file_has_one_server_and_others_may_use_it(tmp_path: Path) -> None:
         process.kill()
         process.wait()
     with only_server(ServiceSettings(data=tmp_path / "data").database_url):  # a lock goes with its process
-        assert is_taken(tmp_path / "data" / "jobs.sqlite.server")
+        assert is_locked(tmp_path / "data" / "jobs.sqlite.server")
     assert not (tmp_path / "data" / "jobs.sqlite.server").exists()
 
 

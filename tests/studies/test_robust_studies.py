@@ -201,8 +201,8 @@ def test_what_scatters_takes_the_place_of_what_was_said() -> None:
     def scattering(vary: Mapping[str, Any]) -> dict[str, str]:
         (rater,) = steps(vary, {**RANGES, "samples": 128}).raters
         assert rater is not None
-        assert rater.asked.samples == 128
-        return {x.name: x.text for x in rater.things}
+        assert rater.uncertainty.samples == 128
+        return {x.name: x.text for x in rater.quantities}
 
     every = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "radius": "+-1 mm"}
     assert scattering({"robust.wear": "none"}) == {n: text for n, text in every.items() if n != "wear"}
@@ -233,7 +233,7 @@ def test_a_unit_counts_for_the_ranges_before_it() -> None:
 def test_wear_is_varied_by_its_own_name() -> None:
     found = steps({"robust.wear": "none, new and worn"}, {"wear": "0 .. 1 mm", "torque": "+-5 %"})
     assert found.varied[0].label == "robust.wear"
-    scattering = [{x.name: x.text for x in r.things} for r in found.raters if r is not None]
+    scattering = [{x.name: x.text for x in r.quantities} for r in found.raters if r is not None]
     assert scattering == [{"torque": "+-5 %"}, {"torque": "+-5 %", "wear": "new and worn"}]
 
 
@@ -318,6 +318,6 @@ def test_what_a_step_has_learned_holds_between_steps_as_well() -> None:
 
     before = names()
     for share in (0.25, 0.75):
-        found.learn(rater.asked.with_scenarios({"hum": ((share,),)}))
+        found.learn(rater.uncertainty.with_scenarios({"hum": ((share,),)}))
     assert [n for n in names() if n not in before] == [f"hum (speed at {x} of its range)" for x in (0.25, 0.75)]
     assert [x.name for x in found.questions[0].instance.model.limits] == before

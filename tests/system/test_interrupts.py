@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 
 import synth
-from synth.system.interrupts import heard_again, held_back, taken_alike
+from synth.system.interrupts import heard_again, held_back, sigterm_as_interrupt
 from synth.tables.catalogs import Catalogs
 
 
@@ -120,7 +120,7 @@ def test_who_does_not_want_to_hear_of_ctrl_c_does_not():
 
 def test_sigterm_is_taken_as_ctrl_c_and_one_wish_that_comes_twice_is_one():
     before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
-    with taken_alike():
+    with sigterm_as_interrupt():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGTERM)
         press_ctrl_c()  # a shell and whoever it was started by pass the same wish on
@@ -135,6 +135,6 @@ def test_sigterm_is_held_back_like_ctrl_c():
             os.kill(os.getpid(), signal.SIGTERM)
             done.append("saved")
 
-    with taken_alike(), pytest.raises(KeyboardInterrupt):
+    with sigterm_as_interrupt(), pytest.raises(KeyboardInterrupt):
         save()
     assert done == ["saved"]

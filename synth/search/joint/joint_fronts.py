@@ -23,12 +23,12 @@ from synth.search.joint.joint_groups import groups_of
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.joint.joint_question import different
 from synth.search.joint.joint_report import JointReport
-from synth.search.joint.joint_search import JointSearch, told
+from synth.search.joint.joint_search import JointSearch, report_progress
 from synth.search.question import Question
 
 
 def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
-    """Return the positions of questions that are answered sooner together, by groups that are alike."""
+    """Positions of questions that are answered sooner together, in groups that are alike."""
     groups = groups_of(questions)
     for group in groups_of(questions, objectives=2):
         joint = questions[group[0]].tuning.joint
@@ -37,8 +37,8 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
             sizes.setdefault(questions[k].settings.points, []).append(k)
         # Every level of every question has combinations of its own, which must be numbered.
         most = joint.numbers // (joint.levels * questions[group[0]].instance.combinations.count)
-        few = (own for points, own in sizes.items() if 2 <= points <= joint.front_points)
-        groups += [own for own in few if len(own) > 1 and max(len(own), joint.places) <= most]
+        few = (group for points, group in sizes.items() if 2 <= points <= joint.front_points)
+        groups += [group for group in few if len(group) > 1 and max(len(group), joint.places) <= most]
     return groups
 
 
@@ -91,23 +91,23 @@ class JointFrontSearch:
         self.report = JointReport(self.questions, first.instance, first.form, first.goals, started)
 
     def answers(self) -> list[ParetoFront | None]:
-        """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
+        """Front of each question; None where it is unproven or has too few designs, for a separate search."""
         first, every = self.first, np.arange(len(self.questions))
         if not first.form.objectives.log[:2].all():
             # The gap of what may be zero is measured against the range of a front, which is not known before.
             return [None] * len(self.questions)
         second = self._search(every, self.reverse)
         self.others.append((second, every))
-        ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
-        found = {q: list(pair) for q, pair in ends.items()}
+        ends = self._ends(first.optima(first.distinct()), self._turned(second.optima(second.told_apart())))
+        pools = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
             numbers, codec = list(ends), first.instance.combinations
             level = self._at_levels(numbers, *self._levels(ends))
-            for c in level.optima(level.told_apart()):
+            for c in level.optima(level.distinct()):
                 question = numbers[codec.question(c.combination) // self.between]
-                found[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
+                pools[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
         solves = self._work_counted()
-        fronts = [distinct(first.form.points.as_they_are(own), 2, self.tuning) for own in found.values()]
+        fronts = [distinct(first.form.points.as_they_are(designs), 2, self.tuning) for designs in pools.values()]
         chosen = [c for front in fronts if len(front) == 2 + self.between for c in front]
         return self.report.fronts(first.pool, chosen, 2, solves)
 
@@ -116,7 +116,7 @@ class JointFrontSearch:
         return self.under_way
 
     def _working(self, open_boxes: int) -> None:
-        told(self.progress, self.under_way, open_boxes)
+        report_progress(self.progress, self.under_way, open_boxes)
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
@@ -131,16 +131,16 @@ class JointFrontSearch:
         return self.first.form.points.as_they_are(designs)
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
-        """Return the designs that are best in the first and in the second objective, where they differ."""
+        """Designs that are best in the first and in the second objective, where they differ."""
         codec = self.first.instance.combinations
-        first, second = ({codec.question(c.combination): c for c in own} for own in (best, least))
+        first, second = ({codec.question(c.combination): c for c in designs} for designs in (best, least))
         pairs = {q: (c, second[q]) for q, c in first.items() if q in second}
         return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2, self.tuning)) == 2}
 
     # -- designs between -----------------------------------------------------------------------
 
     def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> JointOptima:
-        """Return the search for the least second objective, the first one being capped.
+        """Search for the least second objective, the first one being capped.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""A joint search: many questions as one tree. What is proven of each is what a search of its own would prove."""
+"""A joint search: many questions as one tree. Of each it proves what a separate search would prove."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from synth.search.resolution import gap_tolerance
 from synth.search.settings import SearchEffort, Tuning
 
 
-class PosedQuestion(Protocol):
-    """A question as it is posed: what is asked, what is traded off, how it is searched."""
+class QuestionLike(Protocol):
+    """Interface of a question: its instance, objectives and search settings."""
 
     @property
     def instance(self) -> Instance:
-        """What is asked."""
+        """Instance of the model."""
 
     @property
     def chosen(self) -> Mapping[str, str]:
@@ -47,7 +47,7 @@ class PosedQuestion(Protocol):
 
 
 class SharedBounds:
-    """What holds for many questions, found once for all searches of some of them.
+    """Bounds that hold for many questions, computed once for all searches of subsets.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class SharedBounds:
 
     def __init__(
         self,
-        questions: Sequence[PosedQuestion],
+        questions: Sequence[QuestionLike],
         moving: Collection[str],
         first: str | None = None,
         slack: float = SLACK,
@@ -116,44 +116,44 @@ class JointTree:
     """One tree over the questions, by one way of bounding them, which goes on where it stopped."""
 
     def __init__(self, search: JointOptima, form: Formulation, known: IncumbentPerScenario, boxes: Boxes) -> None:
-        self.search, self.form, self.known, self.left = search, form, known, boxes
+        self.search, self.form, self.known, self.unresolved = search, form, known, boxes
         self.under_way = False  # also where it was stopped by an exception: the clock holds its boxes then
 
-    def open_questions(self, asked: np.ndarray, node_limit: float) -> np.ndarray:
-        """Go on for so many boxes; tell of which of the questions asked it is not proven what is best."""
+    def open_questions(self, requested: np.ndarray, node_limit: float) -> np.ndarray:
+        """Continue for ``node_limit`` boxes; mask of the requested questions whose optimum is not proven."""
         search, form, limits = self.search, self.form, self.search.limits
-        if not asked.any():
-            return asked
+        if not requested.any():
+            return requested
 
         def go_on(rule: BestPerScenario) -> None:
             for _ in range(2):
-                self.left = branch_and_bound(
-                    form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
+                self.unresolved = branch_and_bound(
+                    form, self.unresolved, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
                 ).open
-                if not 0 < len(self.left) < limits.nearly_closed * node_limit:
+                if not 0 < len(self.unresolved) < limits.nearly_closed * node_limit:
                     break
 
-        return self._open_after(asked, go_on)
+        return self._open_after(requested, go_on)
 
-    def finish(self, asked: np.ndarray, effort: SearchEffort) -> tuple[np.ndarray, bool]:
-        """Go on, what promises most first; tell of which questions it is not proven, and whether time was over."""
+    def finish(self, requested: np.ndarray, effort: SearchEffort) -> tuple[np.ndarray, bool]:
+        """Continue best first; mask of the questions whose optimum is not proven, and True if time ran out."""
         search, spent = self.search, [False]
 
         def go_on(rule: BestPerScenario) -> None:
-            outcome = best_first(self.form, self.left, rule, search.clock, search.rng, effort)
-            self.left, spent[0] = outcome.open, outcome.spent
+            outcome = best_first(self.form, self.unresolved, rule, search.clock, search.rng, effort)
+            self.unresolved, spent[0] = outcome.open, outcome.spent
 
-        return self._open_after(asked, go_on), spent[0]
+        return self._open_after(requested, go_on), spent[0]
 
-    def _open_after(self, asked: np.ndarray, go_on: Callable[[BestPerScenario], None]) -> np.ndarray:
-        """Let the tree go on with what is known of the questions; tell of which it is not proven what is best."""
+    def _open_after(self, requested: np.ndarray, go_on: Callable[[BestPerScenario], None]) -> np.ndarray:
+        """Continue the tree with the known designs; mask of the questions whose optimum is not proven."""
         search, form = self.search, self.form
         if self.known is not search.known:
-            # Designs of other questions would only seem to say that those of these are found.
-            rows = asked[search.known.questions()]
+            # Designs of other questions must not count as optima of these.
+            rows = requested[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.counters.contracted, form.counters.nlp_solves
-        rule = search.rule(asked, form, self.known)
+        rule = search.rule(requested, form, self.known)
         self.under_way = True
         go_on(rule)
         self.under_way = False
@@ -161,15 +161,15 @@ class JointTree:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
             search.form.counters.contracted += form.counters.contracted - before[0]
             search.form.counters.nlp_solves += form.counters.nlp_solves - before[1]
-        return rule.open_questions(self.left)
+        return rule.open_questions(self.unresolved)
 
 
 class JointOptima:
-    """The best design of each of several questions, sought and proven as one tree.
+    """Optimum of each of several questions, searched and proven as one tree.
 
     Parameters
     ----------
-    questions : list of PosedQuestion
+    questions : list of QuestionLike
         Alike; threads as the first asks.
     clock : Clock
         ``Stopped`` is raised when its time is over.
@@ -185,7 +185,7 @@ class JointOptima:
 
     def __init__(
         self,
-        questions: Sequence[PosedQuestion],
+        questions: Sequence[QuestionLike],
         clock: Clock,
         shared: SharedBounds | None = None,
         sought: int = 0,
@@ -214,14 +214,14 @@ class JointOptima:
             self.instance, self.clock, self.rng, bool(cutoffs), self.tuning.heuristics.joint
         )
 
-    def optima(self, asked: np.ndarray) -> list[Candidate]:
-        """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
+    def optima(self, requested: np.ndarray) -> list[Candidate]:
+        """Proven optima of the requested questions; the next objective settles ties.
 
         Parameters
         ----------
-        asked : array of bool (questions,)
+        requested : array of bool (questions,)
         """
-        return self.ties_settled(self.prove(asked, False))
+        return self.ties_settled(self.prove(requested, False))
 
     def ties_settled(self, proven: np.ndarray) -> list[Candidate]:
         """Return the best designs of questions of which they are proven; the next objective settles ties.
@@ -233,41 +233,41 @@ class JointOptima:
         return self._second([c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]])
 
     def glimpse(self) -> list[Candidate]:
-        """Return good designs of the questions, of which nothing is proven."""
+        """Good designs of the questions, without proof."""
         self.pool, self.heuristics.thorough = self.form.boxes.root(), False
         if len(self.pool):
-            rule = self.rule(self.told_apart())
+            rule = self.rule(self.distinct())
             self.heuristics.warm_start(rule)
             self.heuristics.improve(rule)
         return list(self.known)
 
-    def prove(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
-        """Find the best design of each question asked; tell of which it is proven.
+    def prove(self, requested: np.ndarray, excluded: bool) -> np.ndarray:
+        """Find the optimum of each requested question; mask of those proven.
 
         ``excluded``: also where no question has a design that is easily found; then it is proven that there is none.
         """
         self.pool = self.form.boxes.root()
-        if not len(self.pool) or not asked.any():
-            return asked
-        self.heuristics.first(self.rule(asked), self.pool)
-        found = np.isfinite(self.known.best())
-        if not found.any() and not excluded:
-            return np.zeros_like(asked)
-        if excluded and found.any():
-            proven = self._by_turns(asked & found)
-            proven[self._apart(np.flatnonzero(asked & ~found))] = True
+        if not len(self.pool) or not requested.any():
+            return requested
+        self.heuristics.first(self.rule(requested), self.pool)
+        solved = np.isfinite(self.known.best())
+        if not solved.any() and not excluded:
+            return np.zeros_like(requested)
+        if excluded and solved.any():
+            proven = self._prove_in_rounds(requested & solved)
+            proven[self._apart(np.flatnonzero(requested & ~solved))] = True
             return proven
-        return self._by_turns(asked)
+        return self._prove_in_rounds(requested)
 
-    def _by_turns(self, asked: np.ndarray) -> np.ndarray:
-        """Prove what is best in the questions asked by both ways of bounding; tell of which it is proven."""
-        found, unproven = np.isfinite(self.known.best()), asked.copy()
+    def _prove_in_rounds(self, requested: np.ndarray) -> np.ndarray:
+        """Prove the optima of the requested questions by both ways of bounding in rounds; mask of those proven."""
+        known, unproven = np.isfinite(self.known.best()), requested.copy()
         by_objectives = JointTree(self, self.form, self.known, self.pool)
         by_limits: JointTree | None = None
         # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
-        for boxes, sure_boxes, unsure_boxes in self.limits.turns:
-            now = unproven & found
-            unproven &= ~found | by_objectives.open_questions(now, max(boxes * int(now.sum()), self.limits.least_boxes))
+        for boxes, sure_boxes, unsure_boxes in self.limits.schedule:
+            now = unproven & known
+            unproven &= ~known | by_objectives.open_questions(now, max(boxes * int(now.sum()), self.limits.least_boxes))
             if not unproven.any():
                 break
             self.heuristics.thorough = True
@@ -276,11 +276,11 @@ class JointOptima:
             sure = int((unproven & np.isfinite(self.known.best())).sum())
             node_limit = sure_boxes * sure + unsure_boxes * (int(unproven.sum()) - sure)
             unproven &= by_limits.open_questions(unproven, node_limit)
-        proven: np.ndarray = asked & ~unproven
+        proven: np.ndarray = requested & ~unproven
         return proven
 
     def _apart(self, positions: np.ndarray) -> np.ndarray:
-        """Prove what is best in some of the questions, or that they have no design, as a search of their own.
+        """Prove the optima of a subset of the questions, or that they have no design, in a separate search.
 
         Beside questions that have designs, boxes that hold nothing for these are kept until they speak of no other.
 
@@ -300,17 +300,17 @@ class JointOptima:
         cutoffs = {k: values[positions] for k, values in self.instance.cutoffs.items()}
         floors = {k: values[positions] for k, values in self.instance.floors.items()}
         questions = [self.questions[q] for q in positions]
-        own = JointOptima(questions, self.clock, shared, self.sought, cutoffs, floors=floors)
-        proven = own.prove(own.told_apart(), True)
-        known, codec = own.known, own.instance.combinations
+        separate = JointOptima(questions, self.clock, shared, self.sought, cutoffs, floors=floors)
+        proven = separate.prove(separate.distinct(), True)
+        known, codec = separate.known, separate.instance.combinations
         numbers = self.instance.combinations.joined(positions[known.questions()], codec.own(known.combination))
         self.known.add(numbers, known.variables, known.phi)
-        self.count(own, positions)
+        self.count(separate, positions)
         settled: np.ndarray = positions[proven]
         return settled
 
     def count(self, other: JointOptima, positions: np.ndarray) -> None:
-        """Count the work of another search as work of this one.
+        """Add the counters of another search.
 
         Parameters
         ----------
@@ -324,7 +324,7 @@ class JointOptima:
         self.form.counters.add(more, numbers.tolist())
 
     def best_among(self, combinations: np.ndarray, points: np.ndarray) -> tuple[IncumbentPerScenario, np.ndarray]:
-        """Return the best designs among given combinations, and of which questions it is proven.
+        """Best designs among given combinations, and mask of the questions for which that is proven.
 
         Parameters
         ----------
@@ -334,25 +334,26 @@ class JointOptima:
             Where to look first.
         """
         form, codec, known = self.form, self.instance.combinations, self.none_known()
-        asked = self.told_apart()
-        asked &= np.isin(np.arange(len(asked)), codec.question(combinations))
+        requested = self.distinct()
+        requested &= np.isin(np.arange(len(requested)), codec.question(combinations))
         form.archive = known
-        rule = self.rule(asked, form, known)
+        rule = self.rule(requested, form, known)
         self.heuristics.tried(rule, combinations, points)
-        node_limit = self.limits.given_parts * len(combinations)
-        left = branch_and_bound(form, form.boxes.leaves(combinations), rule, self.clock, self.rng, node_limit).open
+        node_limit = self.limits.boxes_per_combination * len(combinations)
+        boxes = form.boxes.leaves(combinations)
+        outcome = branch_and_bound(form, boxes, rule, self.clock, self.rng, node_limit)
         form.archive = self.known
-        return known, asked & ~rule.open_questions(left)
+        return known, requested & ~rule.open_questions(outcome.open)
 
     def rule(
-        self, asked: np.ndarray, form: Formulation | None = None, known: IncumbentPerScenario | None = None
+        self, requested: np.ndarray, form: Formulation | None = None, known: IncumbentPerScenario | None = None
     ) -> BestPerScenario:
-        """Pruning rules for boxes of the questions asked; by default with the designs known here."""
+        """Pruning rules for boxes of the requested questions; by default with the designs known here."""
         form, known = form or self.form, self.known if known is None else known
         if self.needs is None:
-            return BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
+            return BestPerScenario(form, known, self.tolerance_of(self.sought), requested)
         tolerance = self.needs.tolerance
-        return BestPerScenario(form, known, lambda phi: np.full(len(phi), tolerance), asked, self.needs.to_beat)
+        return BestPerScenario(form, known, lambda phi: np.full(len(phi), tolerance), requested, self.needs.to_beat)
 
     def in_infeasibility_mode(self) -> JointTree:
         """Search with boxes that carry the resources limits share, which helps where limits are tight."""
@@ -381,25 +382,25 @@ class JointOptima:
             form = Formulation(self.instance, self.goals, 1, infeasibility, self.workers, self.tuning, **shared)
         return form
 
-    def told_apart(self) -> np.ndarray:
-        """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
+    def distinct(self) -> np.ndarray:
+        """Mask of distinct questions: one of each set that are equal in all relevant data."""
         apart: np.ndarray = self.representatives() == np.arange(len(self.questions))
         return apart
 
     def representatives(self) -> np.ndarray:
-        """Return, per question, the one that stands for all that are the same in all that counts."""
+        """Representative of each question among those equal in all relevant data."""
         tree = self.form.boxes.cells.trees[0]
         first: np.ndarray = tree.first[tree.leaf_of_row]
         return first
 
     def tolerance_of(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
-        """Return the gap as a distance in phi of an objective, per design."""
+        """The gap as a distance in phi of an objective, per design."""
         form = self.form
-        own = (form.objectives.log[k], form.objectives.finest[k])
-        return lambda phi: gap_tolerance(self.gap, *own, np.abs(phi))
+        scale = (form.objectives.log[k], form.objectives.finest[k])
+        return lambda phi: gap_tolerance(self.gap, *scale, np.abs(phi))
 
     def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
-        """Return designs that are as good in the objective and better in the next one, over all parts."""
+        """Designs that are as good in the objective and better in the next one, over all parts."""
         form, sought = self.form, self.sought
         if len(form.goals) < 2 or not chosen:
             return list(chosen)
@@ -408,10 +409,10 @@ class JointOptima:
         cutoffs = self.fixed_cutoffs.copy()
         cutoffs[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
         known = IncumbentPerScenario(self.instance, following, form.n, len(form.goals), cutoffs, self.tuning)
-        asked = np.zeros(len(self.questions), dtype=bool)
-        asked[questions] = True
+        requested = np.zeros(len(self.questions), dtype=bool)
+        requested[questions] = True
         known.add(*rows_of(chosen))
-        rule = BestPerScenario(form, known, self.tolerance_of(following), asked)
+        rule = BestPerScenario(form, known, self.tolerance_of(following), requested)
         self.heuristics.improve(rule)
         branch_and_bound(form, self.pool, rule, self.clock, self.rng, self.limits.tie * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))

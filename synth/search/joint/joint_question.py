@@ -28,7 +28,7 @@ from synth.search.settings import TUNING, Tuning
 
 
 class JointInstance(SearchSpace):
-    """Several questions as one: the first digit of a combination tells which.
+    """Several questions as one: the first digit of a combination is the question.
 
     What they have in common is that of the first.
 
@@ -60,13 +60,13 @@ class JointInstance(SearchSpace):
         self.cutoffs, self.floors = dict(cutoffs or {}), dict(floors or {})
         first, codec = self.first, JointCombinations([i.combinations for i in each])
         super().__init__(first.model, first.ranges, first.limits, first.selection, codec)
-        names, asked = {*moving, *different(each)}, [i.values.requirements for i in each]
-        self.moving = {n: np.array([own[n] for own in asked]) for n in asked[0] if n in names}
+        names, required = {*moving, *different(each)}, [i.values.requirements for i in each]
+        self.moving = {n: np.array([values[n] for values in required]) for n in required[0] if n in names}
 
     def owners(self) -> tuple[int, ...]:
-        """Return, per data input of the model, the number of the factor it belongs to; -1: all questions fix it."""
+        """Factor of each data input of the model; -1 where all questions fix it."""
         inputs = zip(super().owners(), self.model.data_inputs, strict=True)
-        return tuple(0 if self._moves(entry) else own for own, entry in inputs)
+        return tuple(0 if self._moves(entry) else factor for factor, entry in inputs)
 
     def column(self, position: int) -> np.ndarray:
         """Return data input number ``position`` for every alternative of the factor it belongs to."""
@@ -89,11 +89,11 @@ class JointInstance(SearchSpace):
 
 
 def different(each: Sequence[Instance]) -> list[str]:
-    """Return the requirements that are not the same in all of some questions."""
+    """Requirements that differ among questions."""
     # Options may leave out requirements.
-    asked = [i.values.requirements for i in each]
-    names = dict.fromkeys(n for own in asked for n in own)
-    return [n for n in names if len({own[n] for own in asked if n in own}) > 1]
+    required = [i.values.requirements for i in each]
+    names = dict.fromkeys(n for values in required for n in values)
+    return [n for n in names if len({values[n] for values in required if n in values}) > 1]
 
 
 class IncumbentPerScenario(Archive):
@@ -161,8 +161,8 @@ class BestPerScenario:
     known : IncumbentPerScenario
     tolerance_of : callable
         Takes phi of the best designs; returns how much better a design must be to be of use.
-    asked : array of bool (questions,)
-        Questions that are not asked need no proof.
+    requested : array of bool (questions,)
+        Other questions need no proof.
     to_beat : array (questions,), optional
         phi that a design must beat as well, whatever is known.
     """
@@ -174,24 +174,24 @@ class BestPerScenario:
         form: Formulation,
         known: IncumbentPerScenario,
         tolerance_of: Callable[[np.ndarray], np.ndarray],
-        asked: np.ndarray,
+        requested: np.ndarray,
         to_beat: np.ndarray | None = None,
     ) -> None:
-        self.form, self.known, self._tolerance_of, self.asked = form, known, tolerance_of, asked
-        self._to_beat = np.full(len(asked), np.inf) if to_beat is None else to_beat
+        self.form, self.known, self._tolerance_of, self.requested = form, known, tolerance_of, requested
+        self._to_beat = np.full(len(requested), np.inf) if to_beat is None else to_beat
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie
         self.tolerance = tolerance_of(np.zeros(1))
         self.fixed_cutoffs = np.full(len(form.goals), np.inf)
         self._tree = form.boxes.cells.trees[0]
         self._fixed_cutoffs = self._tree.hull(known.fixed_cutoffs)[1]
         self._ends: tuple[np.ndarray, np.ndarray] | None = None
-        self._polished = np.full(len(asked), np.inf)
+        self._polished = np.full(len(requested), np.inf)
 
     def needed(self) -> np.ndarray:
-        """Return, per question, what a design must be better than in phi."""
+        """Cutoff in phi of each question."""
         best = np.minimum(self.known.best(), self._to_beat)
         margin = np.where(np.isfinite(best), self._tolerance_of(best), 0.0)
-        needed: np.ndarray = np.where(self.asked, best - margin, -np.inf)
+        needed: np.ndarray = np.where(self.requested, best - margin, -np.inf)
         return needed
 
     def _cutoff(self, cell: np.ndarray) -> np.ndarray:
@@ -227,7 +227,7 @@ class BestPerScenario:
         return new
 
     def leading(self, archive: Archive) -> list[Candidate]:
-        """Return the best designs that are better than when last asked."""
+        """Best designs that improved since the last call."""
         best = self.known.best()
         better = best < self._polished - self.tie
         self._polished = np.minimum(best, self._polished)
@@ -242,12 +242,12 @@ class BestPerScenario:
         cutoffs[:, self.columns[0]] = np.minimum(cutoffs[:, self.columns[0]], self._cutoff(clusters))
         return CutoffTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(cutoffs))
 
-    def open_questions(self, left: Boxes) -> np.ndarray:
-        """Tell of which questions boxes that were left open may hold something of use."""
-        needed, result = self.needed(), np.zeros(len(self.asked), dtype=bool)
-        if not len(left):
+    def open_questions(self, unresolved: Boxes) -> np.ndarray:
+        """Mask of the questions for which unresolved boxes may hold an improving design."""
+        needed, result = self.needed(), np.zeros(len(self.requested), dtype=bool)
+        if not len(unresolved):
             return result
-        lower, clusters = self.form.objectives.phi_of(left.bounds)[:, self.columns[0]], left.cell[:, 0]
+        lower, clusters = self.form.objectives.phi_of(unresolved.bounds)[:, self.columns[0]], unresolved.cell[:, 0]
         for cluster in np.unique(clusters):
             least = np.nan_to_num(lower[clusters == cluster], nan=-np.inf).min()
             rows = self._tree.rows(int(cluster))

@@ -18,8 +18,8 @@ from synth.results.assembly import front_of, ranked
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.statistics import SearchStatistics
 from synth.search.archive import Candidate, rows_of
+from synth.search.complete_designs import complete_designs
 from synth.search.formulation import Formulation
-from synth.search.found_designs import found_designs
 from synth.search.joint.joint_question import JointInstance
 from synth.search.least_infeasible import explain_infeasible
 from synth.search.polishing import break_ties
@@ -27,12 +27,12 @@ from synth.search.question import Question
 from synth.search.resolution import rounded_up
 from synth.search.sensitivity import elasticities
 
-Told = tuple[Candidate, tuple[str, ...]]  # a design, and what ties with it
+Tied = tuple[Candidate, tuple[str, ...]]  # a design, and the other combinations that tie
 NO_OTHER: Mapping[int, int] = MappingProxyType({})
 
 
 class JointReport:
-    """Makes records of what a joint search has found.
+    """Result records of a joint search.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class JointReport:
         solves: int,
         same: Mapping[int, int] = NO_OTHER,
     ) -> list[ParetoFront | None]:
-        """Return the front of each question that has designs, ties settled; None where it is better asked alone.
+        """Front of each question that has designs, ties settled; None where a separate search is better.
 
         Parameters
         ----------
@@ -84,31 +84,31 @@ class JointReport:
         """
         form, instance = self.form, self.instance
         fronts: list[ParetoFront | None] = [None] * len(instance.each)
-        found = break_ties(form, pool, chosen, traded) if chosen else []
-        found += [pair for q, first in same.items() for pair in self._turned(found, first, q)]
+        results = break_ties(form, pool, chosen, traded) if chosen else []
+        results += [pair for q, first in same.items() for pair in self._turned(results, first, q)]
         every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
         solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
-        for number, designs in self.designs(found, traded).items():
+        for number, designs in self.designs(results, traded).items():
             if not self._resolved(designs, traded):
-                continue  # alone it is asked again with objectives measured near its front
-            question, own = self.questions[number], int(solved[same.get(number, number)])
+                continue  # a separate search measures its objectives near its front
+            question, here = self.questions[number], int(solved[same.get(number, number)])
             total = question.instance.combinations.count
-            certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
+            certificate = Certificate("global", self.gap, total, total - here, here, **self._amounts(designs, traded))
             fronts[number] = front_of(
                 question.instance,
                 designs[0].frame,
                 designs,
                 certificate,
-                self._statistics(question, own, solves),
+                self._statistics(question, here, solves),
                 question.record(),
                 complete=traded == 1,
             )
         return fronts
 
-    def _turned(self, found: Sequence[Told], first: int, number: int) -> Iterator[Told]:
-        """Yield what was found for one question as it stands for another that is the same in all that counts."""
+    def _turned(self, results: Sequence[Tied], first: int, number: int) -> Iterator[Tied]:
+        """Results of one question as those of another that is equal in all relevant data."""
         codec = self.instance.combinations
-        for c, also in found:
+        for c, also in results:
             if codec.question(c.combination) == first:
                 yield Candidate(codec.joined(number, codec.own(c.combination)), c.variables, c.phi), also
 
@@ -138,14 +138,14 @@ class JointReport:
         explanation : LeastInfeasible
         """
         question, codec = self.questions[number], self.instance.combinations
-        own = sum(codec.question(c) == searched for c in self.form.counters.solved_combinations)
+        solved = sum(codec.question(c) == searched for c in self.form.counters.solved_combinations)
         total = question.instance.combinations.count
         return front_of(
             question.instance,
             make_frame(question.instance, question.chosen),
             [],
-            Certificate("global", None, total, total - own, own),
-            self._statistics(question, own, solves),
+            Certificate("global", None, total, total - solved, solved),
+            self._statistics(question, solved, solves),
             question.record(),
             complete=False,
             explanation=explanation,
@@ -186,15 +186,15 @@ class JointReport:
                 )
         return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
 
-    def designs(self, found: Sequence[Told], traded: int) -> dict[int, list[Design]]:
-        """Return the designs of each question in order of rank, from candidates with what ties with each.
+    def designs(self, results: Sequence[Tied], traded: int) -> dict[int, list[Design]]:
+        """Designs of each question in order of rank, from candidates with their ties.
 
         ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
         """
         form, instance = self.form, self.instance
-        if not found:
+        if not results:
             return {}
-        candidates = [c for c, _ in found]
+        candidates = [c for c, _ in results]
         costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
         combinations, points, _ = rows_of(candidates)
         result = form.points.evaluate(points.reshape(len(candidates), form.n), combinations)
@@ -202,25 +202,25 @@ class JointReport:
         made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
         more = [
             {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
-            for (_, also), cost in zip(found, costs, strict=True)
+            for (_, also), cost in zip(results, costs, strict=True)
         ]
         designs: dict[int, list[Design]] = {}
         frames = [made[number] for number in numbers]
-        for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
+        for number, design in zip(numbers, complete_designs(form, frames, candidates, result, more), strict=True):
             designs.setdefault(number, []).append(design)
-        asked = {number: self.questions[number] for number in designs}
-        return {q: ranked(own, asked[q].chosen, list(asked[q].weights.values()))[1] for q, own in designs.items()}
+        questions = {number: self.questions[number] for number in designs}
+        return {q: ranked(d, questions[q].chosen, list(questions[q].weights.values()))[1] for q, d in designs.items()}
 
     def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
-        """Return the elasticities of each design, as its question alone would tell them."""
+        """Elasticities of each design, as in a separate search of its question."""
         if self.form.objectives.log[:traded].all():
             return elasticities(self.form, designs, traded)
         # The objective may be positive in some questions although it is not in all.
         result = []
         for c in designs:
             codec = self.instance.combinations
-            question, own = codec.question(c.combination), codec.own(c.combination)
+            question, combination = codec.question(c.combination), codec.own(c.combination)
             form = Formulation(self.instance.each[question], self.goals, 1, tuning=self.tuning)
-            _, phi = form.points.feasible_rows(c.variables[None, :], np.array([own]))
-            result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
+            _, phi = form.points.feasible_rows(c.variables[None, :], np.array([combination]))
+            result += elasticities(form, [Candidate(combination, c.variables, phi[0])], traded)
         return result

@@ -49,13 +49,13 @@ class JointSearch:
         search.heuristics.starts = self._starts(starts)
 
     def answers(self) -> list[ParetoFront | None]:
-        """Return the front of each question; None where it is not proven or has no design: better asked alone."""
+        """Front of each question; None where it is unproven or has no design, for a separate search."""
         search = self.search
-        chosen = search.optima(search.told_apart())
+        chosen = search.optima(search.distinct())
         return self.report.fronts(search.pool, chosen, 1, search.form.counters.nlp_solves)
 
     def settled(self) -> list[ParetoFront | None]:
-        """Return the front of each question, also where it is proven that there is no design; None: better asked alone.
+        """Front of each question, also where it is proven that there is no design; None: for a separate search.
 
         Questions that are the same in all that counts have the same answer.
         """
@@ -73,41 +73,41 @@ class JointSearch:
             fronts[number] = self.report.front_without_design(number, same.get(number, number), solves, reason)
         return fronts
 
-    def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
-        """Return the best designs of some questions, None where there is none, and whether that is proven.
+    def best(self, positions: Sequence[int]) -> list[tuple[Design | None, bool]]:
+        """Best design of each of the given questions (None where there is none), and whether that is proven.
 
         Parameters
         ----------
-        wanted : list of int
+        positions : list of int
             Positions of the questions.
         """
         search = self.search
-        asked = search.told_apart() & np.isin(np.arange(len(self.questions)), wanted)
-        proven = search.prove(asked, True)
+        requested = search.distinct() & np.isin(np.arange(len(self.questions)), positions)
+        proven = search.prove(requested, True)
         designs = self.report.designs([(c, ()) for c in search.known], 0)
-        return [(designs.get(q, [None])[0], bool(proven[q])) for q in wanted]
+        return [(designs.get(q, [None])[0], bool(proven[q])) for q in positions]
 
-    def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
-        """Return the best designs with given parts, counts and choices, and whether each is proven.
+    def best_with(self, requests: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
+        """Best designs with given parts, counts and choices, and whether each is proven.
 
         Parameters
         ----------
-        wanted : list of (int, Design)
+        requests : list of (int, Design)
             The position of a question, and a design that has the parts.
         """
-        found: list[tuple[Design | None, bool]] = [(None, False)] * len(wanted)
-        waiting = list(range(len(wanted)))
+        answers: list[tuple[Design | None, bool]] = [(None, False)] * len(requests)
+        waiting = list(range(len(requests)))
         while waiting:
             # A question has one best design at a time.
-            now = {wanted[k][0]: k for k in reversed(waiting)}
-            waiting = [k for k in waiting if now[wanted[k][0]] != k]
-            for k, answer in self._best_with([wanted[k] for k in now.values()]).items():
-                found[now[k]] = answer
-        return found
+            now = {requests[k][0]: k for k in reversed(waiting)}
+            waiting = [k for k in waiting if now[requests[k][0]] != k]
+            for k, answer in self._best_with([requests[k] for k in now.values()]).items():
+                answers[now[k]] = answer
+        return answers
 
-    def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
+    def _best_with(self, requests: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
         search, codec = self.search, self.search.instance.combinations
-        like = [(q, codec.each[q].find(design), design) for q, design in wanted]
+        like = [(q, codec.each[q].find(design), design) for q, design in requests]
         result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
         rows = [(q, codec.joined(q, c), design) for q, c, design in like if c is not None]
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
@@ -116,7 +116,7 @@ class JointSearch:
         return {**result, **{q: (designs.get(q, [None])[0], bool(proven[q])) for q, _, _ in rows}}
 
     def _working(self, open_boxes: int) -> None:
-        told(self.progress, self.search, open_boxes)
+        report_progress(self.progress, self.search, open_boxes)
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
         """First boxes to look into, from designs of similar questions."""
@@ -132,8 +132,8 @@ class JointSearch:
         return inside
 
 
-def told(progress: Callable[[Mapping[str, Any]], None] | None, search: JointOptima, open_boxes: int) -> None:
-    """Tell how far a search is, if anybody wants to know."""
+def report_progress(progress: Callable[[Mapping[str, Any]], None] | None, search: JointOptima, open_boxes: int) -> None:
+    """Report the progress of a search to the callback, if there is one."""
     if progress is not None:
         progress(
             {

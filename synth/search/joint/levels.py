@@ -15,17 +15,17 @@ from synth.bounds.branching import BranchingStatistics
 from synth.order.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
-from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, PosedQuestion, SharedBounds
+from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, QuestionLike, SharedBounds
 from synth.search.proven_gap import Level, lowest
 from synth.search.settings import SearchEffort
-from synth.search.turns import TurnBudget, by_turns
+from synth.search.turns import TurnBudget, alternate
 
 CAPPED, SOUGHT = 0, 1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cutoffs:
-    """Where the first objective is capped, and what the second is to beat there.
+    """Epsilon levels: cutoffs of the first objective, each with one of the second.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ class Cutoffs:
     def __len__(self) -> int:
         return len(self.first)
 
-    def told_apart(self) -> Cutoffs:
-        """Return the same where each cutoff stands once, with the most of what it is to beat."""
+    def distinct(self) -> Cutoffs:
+        """Distinct cutoffs, each with the largest value to beat."""
         first, places = np.unique(self.first, return_inverse=True)
         to_beat = np.full(len(first), -np.inf)
         np.maximum.at(to_beat, places, self.to_beat)
@@ -82,9 +82,9 @@ class LevelTree:
         self.proof, self.tree = proof, tree
 
     def corners(self, levels: Iterable[int]) -> dict[int, np.ndarray | None]:
-        """Return, per level, phi of the lower bounds of its open boxes that speak of it."""
+        """Lower bounds (phi) of the relevant unresolved boxes per level."""
         form, questions = self.tree.form, self.tree.form.boxes.cells.trees[0]
-        boxes = self.proof.clock.open_of(self.tree.left, self.tree.under_way)
+        boxes = self.proof.clock.open_of(self.tree.unresolved, self.tree.under_way)
         phi = form.objectives.phi_of(boxes.bounds)[:, : SOUGHT + 1]
         result: dict[int, np.ndarray | None] = {}
         for level in levels:
@@ -94,13 +94,13 @@ class LevelTree:
 
     @property
     def extent(self) -> float:
-        """How much of everything its open boxes hold; nothing where all levels are proven."""
-        return self.tree.form.boxes.extent(self.tree.left) if self.proof.unproven.any() else 0.0
+        """Share of the root box that is unresolved; 0 where all levels are proven."""
+        return self.tree.form.boxes.extent(self.tree.unresolved) if self.proof.unproven.any() else 0.0
 
     def finish(self, effort: SearchEffort) -> bool:
-        """Go on, what promises most first; tell whether its time was over."""
-        left, spent = self.tree.finish(self.proof.unproven, effort)
-        self.proof.unproven &= left
+        """Continue best first; True if time ran out."""
+        unproven, spent = self.tree.finish(self.proof.unproven, effort)
+        self.proof.unproven &= unproven
         return spent
 
     def go_on(self, boxes: float, most: float) -> int:
@@ -117,7 +117,7 @@ class LevelProof:
 
     Parameters
     ----------
-    task : PosedQuestion
+    task : QuestionLike
         The question, of two objectives.
     shared : SharedBounds
         Of the question.
@@ -125,31 +125,31 @@ class LevelProof:
     cutoffs : Cutoffs
     """
 
-    def __init__(self, task: PosedQuestion, shared: SharedBounds, clock: Clock, cutoffs: Cutoffs) -> None:
+    def __init__(self, task: QuestionLike, shared: SharedBounds, clock: Clock, cutoffs: Cutoffs) -> None:
         self.cutoffs, self.clock = cutoffs, clock
         # Settling ties may make a proven design worse by so much; the proof is as much finer.
-        self.room = task.tuning.tolerances.rounded
-        needs = Needs(to_beat=cutoffs.to_beat, tolerance=cutoffs.tolerance - self.room)
+        self.rounding = task.tuning.tolerances.rounded
+        needs = Needs(to_beat=cutoffs.to_beat, tolerance=cutoffs.tolerance - self.rounding)
         capped, floors = {CAPPED: shared.objectives.signed(CAPPED, cutoffs.first)}, {}
         if cutoffs.above is not None:
             # Levels overlap by what a design may miss its cutoff.
             above = cutoffs.above - task.tuning.tolerances.tie
             floors = {CAPPED: np.where(np.isinf(above), -np.inf, shared.objectives.signed(CAPPED, above))}
         self.search = JointOptima([task] * len(cutoffs), clock, shared, SOUGHT, capped, needs, floors)
-        self.unproven = self.search.told_apart()
+        self.unproven = self.search.distinct()
         self.known_before: set[bytes] = set()
         self.trees: list[LevelTree] = []
 
     def begin_with(self, known: Archive, learned: BranchingStatistics | None = None) -> None:
-        """Know designs of the question at every level that they keep, and what other levels have taught."""
+        """Start from known designs at every level that they keep, and from learned branching weights."""
         search, levels = self.search, np.arange(len(self.cutoffs))
         rows = np.tile(np.arange(len(known)), len(levels))
         every = search.instance.combinations.joined(np.repeat(levels, len(known)), known.combination[rows])
         search.known.add(every, known.variables[rows], known.phi[rows])
         most = search.tuning.heuristics.primal.families
         if len(known):
-            some = spread_subset(known.phi[:, : SOUGHT + 1], most).tolist()
-            search.heuristics.starts = {int(known.combination[k]): known.variables[k] for k in some}
+            chosen = spread_subset(known.phi[:, : SOUGHT + 1], most).tolist()
+            search.heuristics.starts = {int(known.combination[k]): known.variables[k] for k in chosen}
         self.known_before = {x.tobytes() for x in known.phi}
         if learned is not None:
             search.form.bounding.branching.adopt(learned)
@@ -163,25 +163,25 @@ class LevelProof:
         search = self.search
         search.heuristics.warm_start(search.rule(self.unproven))
 
-    def look(self) -> None:
-        """Look for good designs of the levels of which it is not proven what is best."""
+    def sweep(self) -> None:
+        """Run the heuristics on the unproven levels."""
         search = self.search
         search.pool = search.everything(search.form)
         if len(search.pool) and self.unproven.any():
             search.heuristics.first(search.rule(self.unproven), search.pool)
 
-    def found(self) -> list[Candidate]:
-        """Return the best designs of the levels that were not known before."""
-        own = self.search.instance.combinations.own
+    def new_designs(self) -> list[Candidate]:
+        """New best designs of the levels."""
+        number_of = self.search.instance.combinations.own
         new = [c for c in self.search.known if c.phi.tobytes() not in self.known_before]
-        return [Candidate(own(c.combination), c.variables, c.phi) for c in new]
+        return [Candidate(number_of(c.combination), c.variables, c.phi) for c in new]
 
     def prove_soon(self, budget: TurnBudget, first: float) -> None:
         """Search by turns, and solve no combination but those of boxes; as for :meth:`prove`."""
         self._prove(budget, first, lambda: None)
 
     def prove(self, budget: TurnBudget, first: float) -> None:
-        """Search by turns for what is better at any level; plain boxes begin.
+        """Prove the levels by alternating trees; plain boxes begin.
 
         Parameters
         ----------
@@ -189,7 +189,7 @@ class LevelProof:
         first : float
             Boxes of the first turns, per level.
         """
-        self._prove(budget, first, self._look)
+        self._prove(budget, first, self._sweep_unproven)
 
     def _prove(self, budget: TurnBudget, first: float, between: Callable[[], None]) -> None:
         search = self.search
@@ -201,51 +201,51 @@ class LevelProof:
             lambda: self._begun(JointTree(search, search.form, search.known, search.pool)),
             lambda: self._begun(search.in_infeasibility_mode()),
         )
-        by_turns(ways, budget, first, between)
+        alternate(ways, budget, first, between)
 
-    def levels(self, proven_alone: bool = False) -> list[Level]:
-        """Proven bound of each level; open ones follow from the lower bounds of their boxes.
+    def levels(self, only_proven: bool = False) -> list[Level]:
+        """Proven bound of each level; those of unproven levels follow from their unresolved boxes.
 
-        ``proven_alone``: only of levels that are proven, which spares those bounds.
+        ``only_proven``: only of levels that are proven, which spares those bounds.
         """
-        best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.room
-        apart = np.flatnonzero(self.search.told_apart()).tolist()
-        told: list[Level] = []
+        best = np.minimum(self.search.known.best(), self.cutoffs.to_beat) + self.rounding
+        apart = np.flatnonzero(self.search.distinct()).tolist()
+        result: list[Level] = []
         unproven, closed = [k for k in apart if self.unproven[k]], np.empty((0, 2))
         # Where no tree has begun nothing is known of what is open.
-        still_open = [] if proven_alone else [t.corners(unproven) for t in self.trees]
+        still_open = [] if only_proven else [t.corners(unproven) for t in self.trees]
         for still in still_open or [dict.fromkeys(unproven)]:
             corners = {k: still.get(k) if self.unproven[k] else closed for k in apart}
-            told += levels_told(self.cutoffs, best, corners)
-        proven = {float(level.within[CAPPED]): level for level in told if not len(level.corners)}
-        return [*proven.values(), *(level for level in told if len(level.corners))]
+            result += levels_of_corners(self.cutoffs, best, corners)
+        proven = {float(level.within[CAPPED]): level for level in result if not len(level.corners)}
+        return [*proven.values(), *(level for level in result if len(level.corners))]
 
-    def own(self, combination: int) -> int:
-        """Return the number that a combination has in the question."""
+    def combination_of(self, combination: int) -> int:
+        """Number of a combination within the question."""
         return self.search.instance.combinations.own(combination)
 
     def open_combinations(self, most: int) -> np.ndarray:
-        """Return combinations of the question that the last tree has open, at most so many."""
-        tree = self.trees[-1].tree
-        return np.unique(self.search.instance.combinations.own(tree.form.boxes.cells.all_members(tree.left.cell, most)))
+        """Combinations of the question in unresolved boxes of the last tree, ``most`` at most."""
+        tree, codec = self.trees[-1].tree, self.search.instance.combinations
+        return np.unique(codec.own(tree.form.boxes.cells.all_members(tree.unresolved.cell, most)))
 
     @property
     def open_boxes(self) -> int:
-        """How many boxes the last tree has open."""
-        return len(self.trees[-1].tree.left)
+        """Number of unresolved boxes of the last tree."""
+        return len(self.trees[-1].tree.unresolved)
 
     def _begun(self, tree: JointTree) -> LevelTree:
         self.trees.append(LevelTree(self, tree))
         return self.trees[-1]
 
-    def _look(self) -> None:
-        """Look for designs of the levels that are open."""
+    def _sweep_unproven(self) -> None:
+        """Run the heuristics on the unproven levels between the steps of a proof."""
         self.search.heuristics.thorough = True
         self.search.heuristics.improve(self.search.rule(self.unproven))
 
 
-def levels_told(cutoffs: Cutoffs, best: np.ndarray, corners: Mapping[int, np.ndarray | None]) -> list[Level]:
-    """Statement about levels.
+def levels_of_corners(cutoffs: Cutoffs, best: np.ndarray, corners: Mapping[int, np.ndarray | None]) -> list[Level]:
+    """Levels with the lower bounds of their unresolved boxes.
 
     A level that follows another one says what both say: nothing in either range is better than the least of both, but
     for what is open in either.
@@ -256,14 +256,14 @@ def levels_told(cutoffs: Cutoffs, best: np.ndarray, corners: Mapping[int, np.nda
     best : array (levels,)
         phi of the second objective that nothing beats by more than the tolerance, but for what is open.
     corners : dict of int to array (boxes, 2) or None
-        Of the levels that are told, in order: lower bounds of phi of their open boxes; None where all may be open.
+        Per level, in order: lower bounds of phi of its unresolved boxes; None where all may be unresolved.
     """
     result: list[Level] = []
     least, held = np.inf, list[np.ndarray | None]()
-    for k, own in corners.items():
+    for k, lower in corners.items():
         if cutoffs.follows is None or not cutoffs.follows[k]:
             least, held = np.inf, []
-        least, held = min(least, float(best[k])), [*held, own]
+        least, held = min(least, float(best[k])), [*held, lower]
         known = [x for x in held if x is not None and len(x)]
         if not any(x is None for x in held):
             within, tolerance = np.array([cutoffs.first[k], np.inf]), np.array([0.0, cutoffs.tolerance])

@@ -12,12 +12,12 @@ from synth.search.budget import Clock
 from synth.search.front_state import FrontState
 from synth.search.polishing import polish_variables
 from synth.search.pruning import NonImprovement
-from synth.search.resolution import ROOM, ranges
+from synth.search.resolution import ROUNDING, ranges
 
 
 @dataclass(frozen=True)
 class Challenge:
-    """How some designs of others stand against all that a question allows.
+    """Comparison of foreign designs with everything that a question allows.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Challenge:
         Whether it is proven that nothing here improves one of them, or one of the designs found instead, by more than
         the gap in every objective.
     better : list of Candidate
-        Designs found that beat some, as good as their parts allow.
+        Designs that dominate listed ones, polished.
     amounts : array (objectives,)
         In SI: by how much a design had to be better to count.
     """
@@ -36,7 +36,7 @@ class Challenge:
 
 
 def challenge(state: FrontState, listed: np.ndarray, deadline: float) -> Challenge:
-    """Look for designs that beat others, and prove that no further ones do.
+    """Search for designs that dominate the listed ones, and prove that no further ones do.
 
     Parameters
     ----------
@@ -58,13 +58,13 @@ def challenge(state: FrontState, listed: np.ndarray, deadline: float) -> Challen
     phi[:, :m] = form.objectives.phi_of(listed)
     sizes = np.ones(len(form.goals))
     sizes[:m] = ranges(np.concatenate([phi[:, :m], *(c.phi[None, :m] for c in state.front)]))
-    nowhere, own = np.full(form.n, np.nan), {c.phi.tobytes() for c in state.front}
+    nowhere, members = np.full(form.n, np.nan), {c.phi.tobytes() for c in state.front}
     designs = [*(Candidate(-1, nowhere, row) for row in phi), *state.front]
     tolerance = form.objectives.tolerance(state.task.settings.gap, sizes)[:m]
-    staircase = NonImprovement(designs, range(m), tolerance, form.new_archive(range(m)), own)
+    staircase = NonImprovement(designs, range(m), tolerance, form.new_archive(range(m)), members)
     staircase.take(form.archive.combination, form.archive.variables, form.archive.phi)
     clock = Clock(deadline, state.progress.working)
     outcome = branch_and_bound(form, state.pool, staircase, clock, state.rng, state.task.limits.boxes)
-    found = [c for c in staircase.designs if c.combination >= 0 and c.phi.tobytes() not in own]
-    better = polish_variables(form, distinct(found, m, state.task.tuning), m, range(m))
-    return Challenge(outcome.closed, better, (tolerance + ROOM) * form.objectives.scales[:m])
+    improving = [c for c in staircase.designs if c.combination >= 0 and c.phi.tobytes() not in members]
+    better = polish_variables(form, distinct(improving, m, state.task.tuning), m, range(m))
+    return Challenge(outcome.closed, better, (tolerance + ROUNDING) * form.objectives.scales[:m])

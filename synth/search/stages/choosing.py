@@ -15,12 +15,12 @@ from synth.search.stages.trees import cover_everything
 
 
 def choose_designs(state: FrontState) -> None:
-    """Choose the designs to list and prove them; where too few are known, look for more until nothing is left."""
+    """Choose the designs to list and prove them; where too few are known, search until there are no more."""
     proof, points = state.proof, state.task.settings.points
     for last in (*(False,) * (state.task.limits.choices - 1), True):
         state.front = _polished(state)
         _rescale(state)
-        if not last and _too_few(state) and _look_for_more(state):
+        if not last and _too_few(state) and _search_further(state):
             continue
         # Level by level what one design lacks is nothing to the others.
         open_for_all = not proof.closed and not state.by_levels
@@ -31,14 +31,14 @@ def choose_designs(state: FrontState) -> None:
         state.front = _polished(state)
         proof.complete = len(state.front) <= points and _stand_for_all(state)
     standing, state.front = state.front, spread(state, state.front, points)
-    state.spare = [c for c in standing if not any(c is own for own in state.front)]
+    state.spare = [c for c in standing if not any(c is member for member in state.front)]
     # Designs that were found since everything was known may be more than are listed.
     proof.complete = proof.complete and _stand_for_all(state)
 
 
 def _polished(state: FrontState) -> list[Candidate]:
     """Return some more designs than asked for that spread over the front, each made as good as its parts allow."""
-    form, m, most = state.form, state.task.m, state.task.more_than_asked
+    form, m, most = state.form, state.task.m, state.task.oversampled
     archive, done = form.archive, set[bytes]()
     polish_extremes(form, m, float(state.rule.tolerance.max()))
     for _ in range(state.task.limits.polishings):
@@ -55,10 +55,10 @@ def _rescale(state: FrontState) -> None:
     """Measure the gap of objectives that can be zero against their range on this front."""
     phi, rule = np.array([c.phi for c in state.front]), state.rule
     needed = state.form.objectives.tolerance(state.task.settings.gap, ranges(phi))[: state.task.m]
-    too_wide = needed < rule.tolerance
-    if np.any(too_wide):
+    too_coarse = needed < rule.tolerance
+    if np.any(too_coarse):
         # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
-        rule.tolerance = np.where(too_wide, state.task.limits.margin * needed, rule.tolerance)
+        rule.tolerance = np.where(too_coarse, state.task.limits.margin * needed, rule.tolerance)
         state.proof.designs.clear()
 
 
@@ -69,8 +69,8 @@ def _too_few(state: FrontState) -> bool:
     return state.may_find_more and not (state.by_levels and proven_at_gap(state))
 
 
-def _look_for_more(state: FrontState) -> bool:
-    """Find all designs that none dominates, or more than enough of them; tell whether anything was found."""
+def _search_further(state: FrontState) -> bool:
+    """Find all non-dominated designs, or more than enough of them; True if there are new ones."""
     archive, m, points = state.form.archive, state.task.m, state.task.settings.points
     known, node_limit = archive.phi, state.task.limits.fill + state.counters.nodes
     if state.by_levels:
@@ -79,8 +79,8 @@ def _look_for_more(state: FrontState) -> bool:
     else:
         finest = state.cover_within(np.full(m, state.task.tuning.tolerances.tie))
         # What was covered before stays so, and need not be looked into again.
-        outcome = cover_everything(state, finest, node_limit, points, left=state.left_at_ties)
-        state.left_at_ties = outcome.open
+        outcome = cover_everything(state, finest, node_limit, points, unresolved=state.open_at_ties)
+        state.open_at_ties = outcome.open
         state.proof.complete = outcome.closed and len(archive) <= points
     return not np.array_equal(archive.phi, known)
 

@@ -19,50 +19,50 @@ def bound_everything(state: FrontState) -> None:
 
 
 def find_first_designs(state: FrontState) -> None:
-    """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
+    """Search for the first designs; where there are none yet, prepare a proof of infeasibility."""
     known = state.task.warm.designs
     if known and warm_start(state.form, state.rule, known, state.rng):
         # For one objective little is left to look for, where what is worth splitting is known as well.
         if state.task.m > 1 or not state.taught:
-            seek_beside(state, state.fine_cover())
+            search_near_known(state, state.fine_cover())
         return
-    if _look_round(state) or not len(state.pool):
+    if _explore(state) or not len(state.pool):
         return
     state.begin_again(infeasibility=True)
-    _look_round(state)
+    _explore(state)
 
 
-def _look_round(state: FrontState) -> bool:
-    """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
+def _explore(state: FrontState) -> bool:
+    """Cover everything coarsely and search near the new designs; True if a feasible one is known."""
     limits, one, form = state.task.limits, state.task.m == 1, state.form
     coarse = state.cover_within(state.rule.tolerance * max(limits.coarse / state.task.settings.gap, 1.0))
     outcome = cover_everything(state, coarse, limits.first_boxes if one else limits.coarse_boxes)
     if not len(form.archive) and not outcome.closed and one:
         outcome = cover_everything(state, coarse, limits.coarse_boxes)
     if len(form.archive):
-        seek_beside(state, state.fine_cover())
+        search_near_known(state, state.fine_cover())
     elif outcome.closed:
         state.pool, state.proof.open_combinations = form.boxes.nothing(), 0.0
     return bool(len(form.archive))
 
 
-def seek_beside(state: FrontState, rule: EpsilonCover) -> None:
-    """Look for designs beside those that are known."""
+def search_near_known(state: FrontState, rule: EpsilonCover) -> None:
+    """Search for designs near the known ones."""
     OneExchange(state.form, rule, state.rng).improve(state.clock)
 
 
-def many_combinations(state: FrontState) -> bool:
-    """True if combinations are more than are solved one by one."""
+def beyond_enumeration(state: FrontState) -> bool:
+    """True if there are more combinations than are solved one by one."""
     return state.task.instance.combinations.count > state.task.limits.few_combinations
 
 
 def few_known(state: FrontState) -> bool:
-    """True if of many combinations so few designs are known, but not none, that it is worth looking harder."""
-    return many_combinations(state) and 0 < len(state.form.archive) < state.task.tuning.heuristics.primal.scarce
+    """True if so few designs of many combinations are known, but not none, that more effort pays."""
+    return beyond_enumeration(state) and 0 < len(state.form.archive) < state.task.tuning.heuristics.primal.scarce
 
 
 def search_neighbourhoods(state: FrontState) -> None:
-    """Look for designs in a few combinations near to those known, where these are few."""
+    """Search a few combinations near the known designs, where these are few."""
     if few_known(state):
         large_neighbourhood_search(state.form, state.rule.columns, state.rule.tolerance, state.clock, state.rng)
-        seek_beside(state, state.fine_cover())
+        search_near_known(state, state.fine_cover())

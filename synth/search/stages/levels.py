@@ -24,19 +24,19 @@ from synth.search.turns import TurnBudget
 
 
 def seek_levels(state: FrontState) -> None:
-    """Go on level by level where a front was not covered soon: its ends, and designs that spread between them."""
+    """Continue by epsilon levels where a front was not covered soon: its extremes, and designs between them."""
     state.by_levels = True
     if not _prove_ends(state):
         # Designs are hard to find, or boxes hard to close: better designs help with both.
-        _look_harder(state)
+        _intensify(state)
     elif _best_in_both(state):
         state.proof.note_cover(state.cover_within(state.rule.tolerance))
         state.proof.open_combinations = 0.0
         return
     if len(state.form.archive):
         first = state.form.archive.phi[:, CAPPED]
-        wanted = state.task.more_than_asked + state.task.limits.by_levels.picture
-        _look_at(state, np.linspace(first.min(), first.max(), wanted + 2)[1:-1])
+        count = state.task.oversampled + state.task.limits.by_levels.picture
+        _explore_levels(state, np.linspace(first.min(), first.max(), count + 2)[1:-1])
     elif state.proof.closed:
         state.proof.open_combinations = 0.0
 
@@ -47,15 +47,15 @@ def _best_in_both(state: FrontState) -> bool:
     return bool(len(phi)) and bool(np.all(phi <= phi.min(axis=0), axis=1).any())
 
 
-def _look_harder(state: FrontState) -> None:
-    """Search a few combinations to the bottom, once."""
+def _intensify(state: FrontState) -> None:
+    """Search a few combinations exhaustively, once."""
     if not state.looked_harder:
         state.looked_harder = True
         search_neighbourhoods(state)
 
 
 def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
-    """Prove designs, each at a level of its own; tell whether all are proven.
+    """Prove designs, each at its own level; True if all are proven.
 
     A design that is beaten gives its place to the best of its level, which is thereby proven.
 
@@ -79,7 +79,7 @@ def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
 
 
 def fill_levels(state: FrontState) -> bool:
-    """Look for designs between those known, until there are as many as asked for; tell whether all was looked into.
+    """Search between the known designs until there are as many as requested; True if nothing is unresolved.
 
     Where few are known although they were looked for, hardly anything is feasible between them. Then boxes find what
     there is while they prove it, and looking again would take longer than they do.
@@ -92,13 +92,13 @@ def fill_levels(state: FrontState) -> bool:
         if len(known) >= state.task.settings.points:
             return True
         if not few_known(state):
-            _look_at(state, 0.5 * (phi[1:, CAPPED] + phi[:-1, CAPPED]))
+            _explore_levels(state, 0.5 * (phi[1:, CAPPED] + phi[:-1, CAPPED]))
             if not np.array_equal(before, state.form.archive.phi):
                 continue
         # Nothing within what is as good as a design in the first objective is better than its neighbour in the second.
         gaps = np.stack([phi[1:, CAPPED] - tolerance[CAPPED], phi[:-1, SOUGHT]], axis=1)
-        left = np.array([not _covered(state, *gap) for gap in gaps], dtype=bool)
-        closed = not left.any() or _prove(state, gaps[left, 0], gaps[left, 1], state.rule)
+        uncovered = np.array([not _covered(state, *gap) for gap in gaps], dtype=bool)
+        closed = not uncovered.any() or _prove(state, gaps[uncovered, 0], gaps[uncovered, 1], state.rule)
         if not closed:
             return False
         if np.array_equal(before, state.form.archive.phi):
@@ -108,7 +108,7 @@ def fill_levels(state: FrontState) -> bool:
 
 
 def _prove_ends(state: FrontState) -> bool:
-    """Prove what is best in each objective, once at each tolerance; tell whether it is proven."""
+    """Prove the extreme points, once at each tolerance; True if they are proven."""
     proof, tolerance = state.proof, state.rule.tolerance
     if not any(isinstance(b, LevelBound) and np.array_equal(b.tolerance, tolerance) for b in proof.bounds):
         proof.bounds.append(LevelBound(tolerance, proof.levels))
@@ -116,21 +116,21 @@ def _prove_ends(state: FrontState) -> bool:
     for k in (CAPPED, SOUGHT):
         ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
         if not any(len(level.corners) or level.tolerance[k] <= tolerance[k] for level in ends):
-            left = prove_end(state, k, lambda: _look_harder(state))
+            unresolved = prove_end(state, k, lambda: _intensify(state))
             ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
-            if left is not None:
-                leave_open(state, left, state.cover_within(tolerance))
+            if unresolved is not None:
+                leave_open(state, unresolved, state.cover_within(tolerance))
             polish_extremes(state.form, state.task.m, float(tolerance.max()))
         result &= any(not len(level.corners) and level.tolerance[k] <= tolerance[k] for level in ends)
     return result
 
 
 def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: PruningRule) -> bool:
-    """Search levels and note what is proven of them; tell whether nothing is open. Designs go into the archive."""
+    """Search levels and note their bounds; True if nothing is unresolved. Designs go into the archive."""
     closed = True
-    for some in _in_numbers(state, len(first)):
-        asked = Cutoffs(first=first[some], to_beat=to_beat[some], tolerance=float(state.rule.tolerance[SOUGHT]))
-        cutoffs = _side_by_side(state, asked.told_apart())
+    for chunk in _in_numbers(state, len(first)):
+        needs = Cutoffs(first=first[chunk], to_beat=to_beat[chunk], tolerance=float(state.rule.tolerance[SOUGHT]))
+        cutoffs = _side_by_side(state, needs.distinct())
         levels, budget = state.levels_within(cutoffs), state.turn_budget()
         search = levels.prove_soon if few_known(state) else levels.prove
         state.begin_tree(None)
@@ -147,18 +147,18 @@ def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: Prun
     return closed
 
 
-def _look_at(state: FrontState, first: np.ndarray) -> None:
-    """Look for designs at levels.
+def _explore_levels(state: FrontState, first: np.ndarray) -> None:
+    """Search for designs at levels, without proof.
 
     Where few boxes tell what is best, designs need not be looked for: where hardly anything is feasible, as between
     the last few makeable designs of a front, solving combinations takes a hundred times as long as the proof. And where
     few designs are known they are left to the proof in any case (:func:`fill_levels`).
     """
     limits = state.task.limits
-    for some in _in_numbers(state, len(first)):
-        anything = np.full(len(first[some]), np.inf)
-        cutoffs = Cutoffs(first=first[some], to_beat=anything, tolerance=float(state.rule.tolerance[SOUGHT]))
-        levels = state.levels_within(cutoffs.told_apart())
+    for chunk in _in_numbers(state, len(first)):
+        anything = np.full(len(first[chunk]), np.inf)
+        cutoffs = Cutoffs(first=first[chunk], to_beat=anything, tolerance=float(state.rule.tolerance[SOUGHT]))
+        levels = state.levels_within(cutoffs.distinct())
         state.begin_tree(None)
         try:
             _teach(state, levels)
@@ -167,9 +167,9 @@ def _look_at(state: FrontState, first: np.ndarray) -> None:
                 limits.by_levels.first,
             )
             if not few_known(state):
-                levels.look()
+                levels.sweep()
         finally:
-            state.proof.levels += levels.levels(proven_alone=True)
+            state.proof.levels += levels.levels(only_proven=True)
             _take(state, levels)
 
 
@@ -180,14 +180,14 @@ def _teach(state: FrontState, levels: LevelProof) -> None:
 
 
 def _take(state: FrontState, levels: LevelProof) -> None:
-    """Take the designs that were found at levels, and count the work."""
-    found, own, form = levels.found(), levels.search.form.counters, state.form
+    """Add the new designs of levels to the archive, and count the work."""
+    designs, counters, form = levels.new_designs(), levels.search.form.counters, state.form
     state.learned_at_levels = levels.learned()
-    if found:
-        form.archive.add(*rows_of(found))
+    if designs:
+        form.archive.add(*rows_of(designs))
     state.counters.scalar_problems += len(levels.cutoffs)
-    state.counters.nodes += own.contracted
-    form.counters.add(own, map(levels.own, own.solved_combinations))
+    state.counters.nodes += counters.contracted
+    form.counters.add(counters, map(levels.combination_of, counters.solved_combinations))
 
 
 def _in_numbers(state: FrontState, levels: int) -> Sequence[slice]:
@@ -220,7 +220,7 @@ def _side_by_side(state: FrontState, cutoffs: Cutoffs) -> Cutoffs:
 
 
 def _closed(state: FrontState) -> list[Level]:
-    """Return the levels of the second objective that are proven as finely as is asked for."""
+    """Levels of the second objective that are proven to the requested tolerance."""
     finest = state.rule.tolerance[SOUGHT]
     closed = [level for level in state.proof.levels if level.sought == SOUGHT and not len(level.corners)]
     return [level for level in closed if level.tolerance[SOUGHT] <= finest]

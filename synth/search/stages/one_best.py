@@ -15,8 +15,8 @@ from synth.search.proven_gap import Bound
 from synth.search.pruning import EpsilonCover
 from synth.search.relaxed_boxes import RelaxedBoxes
 from synth.search.resolution import ranges
-from synth.search.stages.best_by_turns import BestByTurns
-from synth.search.stages.trees import close_open_boxes, note_left_open
+from synth.search.stages.best_by_turns import BestOfTwoTrees
+from synth.search.stages.trees import close_open_boxes, note_unresolved
 
 MOST_MEASURES = (
     4  # of the size of an objective near its best value; each is at least 1e5 times finer for a gap of 0.1 %
@@ -32,8 +32,8 @@ def find_extremes(state: FrontState) -> None:
     """
     m, times = state.task.m, 0
     while True:
-        found = [best_in(state, k, brief=times > 1) for k in range(m)]
-        known = [c for c in found if c is not None]
+        bests = [best_in(state, k, brief=times > 1) for k in range(m)]
+        known = [c for c in bests if c is not None]
         times += 1
         values = np.array([state.form.objectives.values_of(c.phi[:m]) for c in known]).reshape(len(known), m)
         if times > MOST_MEASURES or not known or not state.measure_near(values):
@@ -46,7 +46,7 @@ def find_extremes(state: FrontState) -> None:
 
 
 def best_in(state: FrontState, k: int, brief: bool = False) -> Candidate | None:
-    """Return the design that is best in one objective, proven within the gap, or as far as can be proven.
+    """Optimum of one objective, proven within the gap, or as far as can be proven.
 
     Parameters
     ----------
@@ -60,42 +60,42 @@ def best_in(state: FrontState, k: int, brief: bool = False) -> Candidate | None:
     before, limits = len(state.form.archive), state.task.limits
     soon = state.node_limit if state.infeasibility_mode else min(limits.first_try, state.node_limit)
     state.counters.scalar_problems += 1
-    found, outcome, tolerance = _best_within(state, k, no_cutoffs, None, soon)
+    incumbent, outcome, tolerance = _best_within(state, k, no_cutoffs, None, soon)
     if brief and not outcome.closed:
-        note_left_open(state, outcome.open, _rule_for_best(state, k, no_cutoffs, tolerance, found))
+        note_unresolved(state, outcome.open, _rule_for_best(state, k, no_cutoffs, tolerance, incumbent))
         state.proof.exhausted = False
-        return found
+        return incumbent
     if not outcome.closed and not state.infeasibility_mode:
         # What is feasible may be so narrow that it costs most to tell which limits leave nothing.
         plain, open_plain, coarse = state.form, outcome.open, tolerance
         state.begin_again(infeasibility=True)
-        found, outcome, tolerance = _best_within(state, k, no_cutoffs, found, soon)
+        incumbent, outcome, tolerance = _best_within(state, k, no_cutoffs, incumbent, soon)
         if not outcome.closed:
             # What was settled with a coarser tolerance is not settled.
             open_plain = open_plain if coarse <= tolerance else plain.boxes.root()
-            turns = BestByTurns(state, k, (plain, open_plain), outcome.open, tolerance)
-            turns.go_on(limits.together.after)
-            worth = not turns.closed and state.task.thorough and limits.together.boxes > 0
+            trees = BestOfTwoTrees(state, k, (plain, open_plain), outcome.open, tolerance)
+            trees.go_on(limits.together.after)
+            worth = not trees.closed and state.task.thorough and limits.together.boxes > 0
             closed_within = _closed_together(state, k, plain) if worth else None
             if closed_within is None:
-                turns.go_on(np.inf)
-                left = turns.left()
+                trees.go_on(np.inf)
+                unresolved = trees.weakest()
             else:
-                left, tolerance = state.form.boxes.nothing(), closed_within
+                unresolved, tolerance = state.form.boxes.nothing(), closed_within
             known = state.form.archive
             best_known = known[int(np.argmin(known.phi[:, k]))] if len(known) else None
-            if before == 0 and best_known is None and not len(left):
+            if before == 0 and best_known is None and not len(unresolved):
                 state.proof.open_combinations = 0.0
-            return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, best_known), left)
+            return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, best_known), unresolved)
     if not outcome.closed:
-        return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, found), outcome.open)
-    if before == 0 and found is None:
+        return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, incumbent), outcome.open)
+    if before == 0 and incumbent is None:
         state.proof.open_combinations = 0.0
-    return found
+    return incumbent
 
 
 def _closed_together(state: FrontState, k: int, plain: Formulation) -> float | None:
-    """Return within which tolerance a tree of plain boxes closes that are bounded by all limits together; None if not.
+    """Tolerance within which a tree of plain boxes closes, bounded by all limits together; None if it does not.
 
     Boxes may stay open because limits contradict each other only all together.
     """
@@ -106,7 +106,7 @@ def _closed_together(state: FrontState, k: int, plain: Formulation) -> float | N
     if outcome.closed:
         return tolerance
     if state.task.m == 1:
-        # Known whatever becomes of the turns.
+        # Known whatever the alternating trees yield.
         corners = plain.objectives.phi_of(outcome.open.bounds)[:, :1]
         state.proof.bounds.append(Bound(np.array([tolerance]), corners))
     state.go_on_with(other)
@@ -121,7 +121,7 @@ def better_in(
     node_limit: int,
     finest: float = np.inf,
 ) -> Candidate | None:
-    """Return the best design in one objective that is found with few boxes; nothing is proven of it.
+    """Best design in one objective after few boxes, without proof.
 
     Parameters
     ----------
@@ -149,21 +149,21 @@ def _best_within(
     together: bool = False,
     finest: float = np.inf,
 ) -> tuple[Candidate | None, TreeOutcome, float]:
-    """Return the best design found with so many boxes, how the search ended, and the tolerance it had.
+    """Best design within a number of boxes, the outcome of the search, and its tolerance.
 
     ``together``: boxes are bounded by all limits together as well, as long as it looks as if that will close.
     """
     sizes = None if start is None else np.abs(start.phi)
     tolerance = float(state.form.objectives.tolerance(min(state.task.settings.gap, finest), sizes)[k])
-    found, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit, together)
-    while found is not None and outcome.closed:
+    incumbent, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit, together)
+    while incumbent is not None and outcome.closed:
         # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
-        finer = _finer(state, k, tolerance, [found])
+        finer = _finer(state, k, tolerance, [incumbent])
         if finer is None:
             break
         tolerance = finer
-        found, outcome = _tree(state, k, fixed_cutoffs, tolerance, found, node_limit, together)
-    return found, outcome, tolerance
+        incumbent, outcome = _tree(state, k, fixed_cutoffs, tolerance, incumbent, node_limit, together)
+    return incumbent, outcome, tolerance
 
 
 def _tree(
@@ -184,18 +184,18 @@ def _tree(
         return together and looked >= limits.soon and waiting > limits.stays_open * looked
 
     relaxed = RelaxedBoxes(form, k) if together else None
-    found = best(form, state.pool, rule, state.clock, state.rng, start, node_limit, hopeless, relaxed)
+    incumbent = best(form, state.pool, rule, state.clock, state.rng, start, node_limit, hopeless, relaxed)
     state.end_tree()
-    return found
+    return incumbent
 
 
-def _close_best(state: FrontState, rule: EpsilonCover, left: Boxes) -> Candidate | None:
-    """Go on with what a tree for one best design has left open; return the best design known then."""
-    left = close_open_boxes(state, left, rule)
+def _close_best(state: FrontState, rule: EpsilonCover, unresolved: Boxes) -> Candidate | None:
+    """Continue with the unresolved boxes of a tree for one best design; return the incumbent."""
+    unresolved = close_open_boxes(state, unresolved, rule)
     k = rule.columns[0]
-    while not len(left) and (finer := _finer(state, k, float(rule.tolerance[0]), rule.known)) is not None:
+    while not len(unresolved) and (finer := _finer(state, k, float(rule.tolerance[0]), rule.known)) is not None:
         rule = _rule_for_best(state, k, rule.fixed_cutoffs, finer, rule.known[0])
-        left = close_open_boxes(state, state.pool, rule)
+        unresolved = close_open_boxes(state, state.pool, rule)
     return rule.known[0] if len(rule.known) else None
 
 

@@ -51,7 +51,7 @@ def _worth_proving(state: FrontState) -> list[Candidate]:
     """Return as many designs as are asked for that spread best; those that are proven stay."""
     points, phi = state.task.settings.points, state.phi_listed()
     proven = np.flatnonzero(proven_by_levels(state, phi)).tolist()
-    if len(state.given.phi) or not proven:
+    if len(state.start.phi) or not proven:
         return spread(state, state.front, points)
     return [state.front[int(k)] for k in spread_subset(phi, points, [*leading(state, phi), *proven])]
 

@@ -9,7 +9,7 @@ import numpy as np
 from synth.order.pareto import extremes, spread_subset
 from synth.search.archive import Candidate, distinct
 from synth.search.front_state import FrontState
-from synth.search.resolution import ROOM
+from synth.search.resolution import ROUNDING
 
 
 def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[Candidate]:
@@ -19,16 +19,16 @@ def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[C
     """
     m = state.task.m
     phi = np.array([c.phi[:m] for c in designs]).reshape(len(designs), m)
-    kept, ends = state.given.places(phi, state.task.tuning.tolerances.rounded), leading(state, phi)
+    kept, ends = state.start.places(phi, state.task.tuning.tolerances.rounded), leading(state, phi)
     if not kept:
         return [designs[int(k)] for k in spread_subset(phi, most, ends)]
     if not state.proof.closed:
         return [designs[int(k)] for k in spread_subset(phi, most, [*kept, *ends])]
     # What is proven speaks of the best in each objective: they come before designs that were given.
-    some = np.array(list(dict.fromkeys([*ends, *kept])))
-    if len(some) >= most:
-        return [designs[int(some[k])] for k in spread_subset(phi[some], most)]
-    return [designs[int(k)] for k in spread_subset(phi, most, some.tolist())]
+    required = np.array(list(dict.fromkeys([*ends, *kept])))
+    if len(required) >= most:
+        return [designs[int(required[k])] for k in spread_subset(phi[required], most)]
+    return [designs[int(k)] for k in spread_subset(phi, most, required.tolist())]
 
 
 def leading(state: FrontState, phi: np.ndarray) -> list[int]:
@@ -38,6 +38,6 @@ def leading(state: FrontState, phi: np.ndarray) -> list[int]:
 
 
 def different(state: FrontState, designs: Sequence[Candidate]) -> list[Candidate]:
-    """Return designs that still differ when ties are settled, which gives away some of what may be zero."""
+    """Designs that still differ when ties are settled."""
     m = state.task.m
-    return distinct(designs, m, state.task.tuning, np.where(state.form.objectives.log[:m], 0.0, ROOM))
+    return distinct(designs, m, state.task.tuning, np.where(state.form.objectives.log[:m], 0.0, ROUNDING))

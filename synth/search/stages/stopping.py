@@ -8,7 +8,7 @@ from synth.search.stages.spreading import different, spread
 
 
 def stop_early(state: FrontState) -> None:
-    """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""
+    """Keep the known designs when time runs out; the unresolved boxes bound the proven gap."""
     if state.reporting and state.proof.closed:
         # The designs stand; only what the objectives do not see is left as it is.
         state.proof.note_covered_within(state.rule.tolerance)
@@ -18,6 +18,6 @@ def stop_early(state: FrontState) -> None:
     state.proof.give_up()
     staircase, known = state.proof.staircase, state.form.archive
     proven = staircase.finished() if staircase is not None and len(known) else []
-    some = spread(state, proven or list(known), state.task.more_than_asked)
-    state.front = spread(state, different(state, some), state.task.settings.points)
+    candidates = spread(state, proven or list(known), state.task.oversampled)
+    state.front = spread(state, different(state, candidates), state.task.settings.points)
     claim_no_less(state)

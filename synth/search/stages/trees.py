@@ -24,7 +24,7 @@ def cover_everything(
     node_limit: float,
     enough: int | None = None,
     judged: bool = False,
-    left: Boxes | None = None,
+    unresolved: Boxes | None = None,
 ) -> TreeOutcome:
     """Cover everything with one tolerance; if the time runs out, the boxes that are open tell what is proven.
 
@@ -38,10 +38,10 @@ def cover_everything(
         Stop when more designs than this are known.
     judged : bool
         Stop where a front of two objectives will hardly close at once.
-    left : Boxes, optional
-        What an earlier tree has left open that covered as finely; where there was none, the box of everything.
+    unresolved : Boxes, optional
+        Unresolved boxes of an earlier tree that covered as finely; by default the root box.
     """
-    boxes = state.pool if left is None else left
+    boxes = state.pool if unresolved is None else unresolved
     hopeless = state.hopeless if judged else lambda looked, waiting: False
     state.begin_tree(rule.tolerance)
     outcome = branch_and_bound(state.form, boxes, rule, state.clock, state.rng, node_limit, enough, hopeless)
@@ -58,51 +58,51 @@ def _noted(state: FrontState, rule: EpsilonCover, outcome: TreeOutcome) -> TreeO
     return outcome
 
 
-def _reached(state: FrontState, rule: EpsilonCover, left: Boxes) -> EpsilonCover | None:
-    """Return a cover that holds in boxes left open as well, where one as fine as the gap does; None otherwise.
+def _reached(state: FrontState, rule: EpsilonCover, unresolved: Boxes) -> EpsilonCover | None:
+    """Cover that holds in unresolved boxes as well, where one as fine as the gap does; None otherwise.
 
     Boxes too small to be split may stay open at the tolerance of ties, by less than can be told apart.
     """
-    corners = state.form.objectives.phi_of(left.bounds)
-    missed = float(rule.possible_gain(corners, left.cell).max(initial=0.0))
+    corners = state.form.objectives.phi_of(unresolved.bounds)
+    missed = float(rule.possible_gain(corners, unresolved.cell).max(initial=0.0))
     wider = rule.tolerance + missed + state.task.tuning.tolerances.tie  # so that rounding does not decide
     if not np.all(wider <= state.rule.tolerance):
         return None
     cover = state.cover_within(wider)
-    return None if np.any(cover.possible_gain(corners, left.cell) > 0) else cover
+    return None if np.any(cover.possible_gain(corners, unresolved.cell) > 0) else cover
 
 
-def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
-    """Go on with boxes that a first search has left open; return what stays open, and note what is proven then.
+def close_open_boxes(state: FrontState, unresolved: Boxes, rule: TabledPruningRule) -> Boxes:
+    """Continue with boxes that a first search has left unresolved; return the unresolved ones and note their bounds.
 
     Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
     to be solved, Optuna draws some of them.
     """
     solved, proof, thorough = False, state.proof, state.task.thorough
-    if thorough and len(left):
-        solved = _solve_few(state, left, rule)
-        left = _go_on(state, left, rule)
-    if not len(left):
-        return left
-    note_left_open(state, left, rule)
-    if thorough and not solved and not _solve_few(state, left, rule):
-        _sample_parts(state, left, rule)
+    if thorough and len(unresolved):
+        solved = _solve_few(state, unresolved, rule)
+        unresolved = _go_on(state, unresolved, rule)
+    if not len(unresolved):
+        return unresolved
+    note_unresolved(state, unresolved, rule)
+    if thorough and not solved and not _solve_few(state, unresolved, rule):
+        _sample_parts(state, unresolved, rule)
         proof.exhausted = False
     proof.exhausted = proof.exhausted and thorough
-    return left
+    return unresolved
 
 
-def note_left_open(state: FrontState, left: Boxes, rule: TabledPruningRule) -> None:
-    """Note that boxes stay open, and what is proven then."""
+def note_unresolved(state: FrontState, unresolved: Boxes, rule: TabledPruningRule) -> None:
+    """Note unresolved boxes and their bounds."""
     proof = state.proof
     proof.closed = False
-    proof.unresolved += len(left)
+    proof.unresolved += len(unresolved)
     if len(rule.columns) == state.task.m:
-        proof.bounds.append(Bound(rule.tolerance, state.form.objectives.phi_of(left.bounds)[:, : state.task.m]))
+        proof.bounds.append(Bound(rule.tolerance, state.form.objectives.phi_of(unresolved.bounds)[:, : state.task.m]))
 
 
-class LeftOpen(Protocol):
-    """What trees have left open."""
+class UnresolvedTree(Protocol):
+    """Interface of a tree with unresolved boxes."""
 
     @property
     def open_boxes(self) -> int:
@@ -112,12 +112,12 @@ class LeftOpen(Protocol):
         """Return combinations in them, at most so many."""
 
 
-def leave_open(state: FrontState, left: LeftOpen, rule: PruningRule) -> None:
-    """Note that something stays open; its combinations are solved one by one where they are few, else some drawn."""
+def leave_open(state: FrontState, unresolved: UnresolvedTree, rule: PruningRule) -> None:
+    """Note unresolved boxes; their combinations are solved one by one where they are few, else a sample."""
     proof, thorough = state.proof, state.task.thorough
     proof.closed = False
-    proof.unresolved += left.open_boxes
-    solved = thorough and _solved(state, left.open_combinations(state.task.limits.few_combinations + 1), rule)
+    proof.unresolved += unresolved.open_boxes
+    solved = thorough and _solved(state, unresolved.open_combinations(state.task.limits.few_combinations + 1), rule)
     if thorough and not solved and not state.sampled:
         _sample_parts(state, state.pool, rule)
         state.sampled = True
@@ -138,12 +138,12 @@ def _solved(state: FrontState, combinations: np.ndarray, rule: PruningRule) -> b
     return few
 
 
-def _go_on(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
-    """Go on with boxes while they keep closing and there is time; return what stays open."""
+def _go_on(state: FrontState, unresolved: Boxes, rule: TabledPruningRule) -> Boxes:
+    """Continue with boxes while they keep closing and there is time; return the unresolved ones."""
     state.begin_tree(rule.tolerance if len(rule.columns) == state.task.m else None)
     begun, budget = time.monotonic(), state.budget
     limits = replace(state.task.limits.further, seconds=budget.seconds)
-    outcome = best_first(state.form, left, rule, state.clock, state.rng, limits)
+    outcome = best_first(state.form, unresolved, rule, state.clock, state.rng, limits)
     budget.seconds -= time.monotonic() - begun
     budget.spent |= outcome.spent
     state.counters.nodes += outcome.looked
@@ -151,10 +151,10 @@ def _go_on(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
     return outcome.open
 
 
-def _sample_parts(state: FrontState, left: Boxes, rule: PruningRule) -> None:
-    """Look for designs in some of the combinations of boxes, which prove nothing."""
+def _sample_parts(state: FrontState, unresolved: Boxes, rule: PruningRule) -> None:
+    """Search sampled combinations of boxes, without proof."""
     task, seed = state.task, state.task.settings.seed
     journal = study_file(task.instance, task.chosen, seed, task.tuning)
     state.progress.say("parts", 0.0, BEGUN_ANEW if passed_over(journal) else "")
     trials = task.tuning.heuristics.parts.trials
-    state.counters.sampled_parts += sample_parts(state.form, left, rule, state.clock, journal, seed, trials)
+    state.counters.sampled_parts += sample_parts(state.form, unresolved, rule, state.clock, journal, seed, trials)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from synth.order.margins import MARGINS
-from synth.order.pareto import signs_of, spread_subset
+from synth.order.pareto import senses_of, spread_subset
 from synth.results import Design
 from synth.studies.families.competitor import Competitor
 
@@ -30,7 +30,7 @@ class CommonFront:
 
     def __init__(self, objectives: Mapping[str, str], points: int) -> None:
         self.objectives, self.points = dict(objectives), points
-        self.senses = signs_of(self.objectives)
+        self.senses = senses_of(self.objectives)
         self.members: list[Competitor] = []
 
     def signed(self, designs: Sequence[Design]) -> np.ndarray:

@@ -72,7 +72,7 @@ class Competitor:
         if stopped:
             raise Stopped(stopped)
         rated = [replace(d, frame=self.front.frame, robust=r) for d, r in zip(designs, ratings, strict=True)]
-        return [d for d in rated if d.robust["holds"] is not False or self.rater.asked.mode == RATE]
+        return [d for d in rated if d.robust["holds"] is not False or self.rater.uncertainty.mode == RATE]
 
 
 class KeptQuestion:

@@ -162,7 +162,7 @@ class Resolver:
         if form.n:
             low, high = self._ends(moves)
             possible = np.all(low <= high, axis=1)
-            found = form.continuous.solve_many(
+            found = form.continuous.solve_batch(
                 tasks, combinations, start, np.minimum(low, high), high, self.fixed, data
             )
         else:

@@ -38,7 +38,7 @@ from synth.studies.prices.price_list import (
     Price,
     Prices,
     PriceStore,
-    told,
+    report_progress,
 )
 from synth.studies.prices.resolve import Move, Resolver
 from synth.studies.settings import PRICES, PriceLimits
@@ -349,7 +349,7 @@ class _Case:
         cutoffs[:, self.k] = self.base + reach
         slopes[:, : self.again.m] = np.where(form.objectives.log, 1.0, np.abs(self.phi))[: self.again.m]
         tasks = Tasks(nothing, slopes, cutoffs, form.objectives.scales, elastic=1.0)
-        return form.continuous.solve_many(tasks, combinations, start, skipped=self.again.fixed)
+        return form.continuous.solve_batch(tasks, combinations, start, skipped=self.again.fixed)
 
     # -- prices --------------------------------------------------------------------------------
 
@@ -538,7 +538,7 @@ class _Case:
         if move.kind == "requirement" and self.again.instance.model.declaration.requirements[move.name].unit == "degC":
             shown = f"{move.name} (in kelvin)"
         steps = (shares[0] * self.again.step, shares[1] * self.again.step)
-        sentence = told(shown, kind, self.objective, sense, steps, up, down, changes)
+        sentence = report_progress(shown, kind, self.objective, sense, steps, up, down, changes)
         compared = self.compared if status != WITHHELD else ""
         return Price(
             int(self.design.rank or 0),

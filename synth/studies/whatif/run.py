@@ -327,7 +327,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
     """Return the hash of all that decides an answer but ideas: question, settings, and what computes."""
     settings = {k: repr(v) for k, v in question.record().items() if weights or k != "weights"}
-    robust = None if rater is None else rater.asked.block()
+    robust = None if rater is None else rater.uncertainty.block()
     return hash_of(
         [STUDY_FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust]
     )

@@ -223,7 +223,7 @@ class Steps:
     def stands(self, values: Sequence[Value], design: Design) -> bool:
         """True if a design is shown to keep its limits over the whole range, if that is asked at some values."""
         rater = _rater_of(self._at(values))
-        return rater is None or rater.asked.mode == RATE or bool(rater.one(design)["holds"])
+        return rater is None or rater.uncertainty.mode == RATE or bool(rater.one(design)["holds"])
 
     def _with_learned(self, asked: Request) -> Request:
         if asked.robust is None or asked.robust.names not in self._learned:
@@ -261,7 +261,7 @@ class Steps:
                 asked = self._at(values)
                 rater, question = _rater_of(asked), self._pose(asked, self.settings)
                 if rater is not None:
-                    check_rows(rater.things, question.instance.selection.slots)
+                    check_rows(rater.quantities, question.instance.selection.slots)
                 questions.append(question)
                 self.raters.append(rater)
             except InputError as error:

@@ -298,7 +298,7 @@ def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     first, last, step = numbers
     if step == 0 or (last - first) * step < 0:
         raise InputError(field, text, f"a step that leads from the first value to the last, as in {RANGE}")
-    steps = (last - first) / step * (1 + MARGINS.stated) + MARGINS.step
+    steps = (last - first) / step * (1 + MARGINS.conversion) + MARGINS.step
     _check_number(field, math.floor(steps) + 1 if math.isfinite(steps) else steps)
     count = math.floor(steps) + 1
     if count == 1 and first != last:

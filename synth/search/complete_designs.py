@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from synth.search.formulation import Formulation
 
 
-def found_designs(
+def complete_designs(
     form: Formulation,
     frames: Sequence[Frame],
     candidates: Sequence[Candidate],
@@ -39,19 +39,19 @@ def found_designs(
     """
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     # Questions that are searched together have their model and limits in common.
-    told = told_by(form.instance, result, points, range(len(candidates)))
+    calculated = told_by(form.instance, result, points, range(len(candidates)))
     known: dict[tuple[str, int], PartRow] = {}
     data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
-    beside = [
+    derived = [
         {"steps": DesignSteps(steps), "next_rows": rows, "rows": rows_beside(form.model, rows)}
         for steps, rows in zip(form.model.steps(points, data), form.model.next_rows(points, data), strict=True)
     ]
     designs = []
-    for frame, candidate, own, unsearched, details in zip(frames, candidates, told, beside, more, strict=True):
+    for frame, candidate, point, unsearched, extra in zip(frames, candidates, calculated, derived, more, strict=True):
         parts, _, choices = form.instance.combinations.describe(candidate.combination)
         for slot, (table, number) in parts.items():
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
         rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
-        designs.append(design_of(frame, own, rows, choices, {**unsearched, **details}))
+        designs.append(design_of(frame, point, rows, choices, {**unsearched, **extra}))
     return designs

@@ -12,8 +12,8 @@ from synth.search.formulation import Formulation
 
 
 @dataclass(frozen=True)
-class GivenFront:
-    """What an earlier search has found and claimed.
+class StartingFront:
+    """Designs and proven gap of an earlier search.
 
     Parameters
     ----------
@@ -30,12 +30,12 @@ class GivenFront:
     amounts: np.ndarray
 
     @classmethod
-    def nothing(cls, objectives: int) -> GivenFront:
+    def nothing(cls, objectives: int) -> StartingFront:
         """Stand-in for no earlier search."""
         return cls(np.empty((0, objectives)), None, np.full(objectives, math.inf))
 
     def places(self, phi: np.ndarray, rounded: float) -> list[int]:
-        """Return the positions of those designs that take the places of the given ones: each as good in everything.
+        """Positions of designs that weakly dominate those of the starting front.
 
         Parameters
         ----------
@@ -44,16 +44,16 @@ class GivenFront:
             Relative: objectives closer than this are the same.
         """
         places = dict[int, None]()
-        for own in self.phi:
-            room = rounded * np.maximum(np.abs(own), 1.0)
-            as_good = np.flatnonzero(np.all(phi <= own + room, axis=1))
+        for listed in self.phi:
+            rounding = rounded * np.maximum(np.abs(listed), 1.0)
+            as_good = np.flatnonzero(np.all(phi <= listed + rounding, axis=1))
             if len(as_good):
                 places[int(as_good[np.argmin(phi[as_good].sum(axis=1))])] = None
         return list(places)
 
 
-def given_front(form: Formulation, front: ParetoFront) -> GivenFront:
-    """Put the designs of an earlier search into the archive, and return what is known of them."""
+def starting_front(form: Formulation, front: ParetoFront) -> StartingFront:
+    """Add the designs of an earlier search to the archive; return them with their proven gap."""
     points = np.array([[d.values[v.name] for v in form.model.variables] for d in front.designs])
     points = points.reshape(len(front.designs), form.n)
     combinations = np.array([form.instance.combinations.number(d) for d in front.designs], dtype=np.int64)
@@ -62,6 +62,6 @@ def given_front(form: Formulation, front: ParetoFront) -> GivenFront:
     phi[edge] += form.tuning.tolerances.edge_worth
     rows = np.concatenate([closely, edge])
     form.archive.add(combinations[rows], points[rows], phi[rows])
-    told, traded = front.certificate.resolution, form.names[: form.traded]
-    amounts = np.array([told.get(name, math.inf) for name in traded])
-    return GivenFront(phi[rows, : form.traded], front.certificate.gap, amounts)
+    resolutions, traded = front.certificate.resolution, form.names[: form.traded]
+    amounts = np.array([resolutions.get(name, math.inf) for name in traded])
+    return StartingFront(phi[rows, : form.traded], front.certificate.gap, amounts)
