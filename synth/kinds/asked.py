@@ -21,7 +21,7 @@ from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import FIELDS, OF_A_DESIGN, SEARCHED, no_family, refuse_several, refuse_values, shown_kind
 from synth.question.spec_patch import patched
-from synth.queue.records import QUESTION, TABLE, Record, Sources, Tell
+from synth.queue.records import QUESTION, TABLE, Record, ReportProgress, Sources
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
 from synth.results.loading import COMPARISON, front_of_record
@@ -495,7 +495,7 @@ def _shown(value: Any, unit: str) -> str:
 # ---- what comes out -------------------------------------------------------------------------------------------------
 
 
-def told(tell: Tell) -> Tell:
+def told(tell: ReportProgress) -> ReportProgress:
     """Return a progress function that tells what JSON can hold."""
 
     def show(state: Mapping[str, Any]) -> None:

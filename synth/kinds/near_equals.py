@@ -21,7 +21,7 @@ from synth.kinds.asked import (
 )
 from synth.kinds.request_schemas import keys_of
 from synth.order.feasibility import Status
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
 from synth.text.input_limits import INPUT_LIMITS
 
@@ -30,7 +30,7 @@ KEYS = keys_of("near_equals")
 USUAL: Mapping[str, Any] = {"design": 1, "within": "2 %", "count": 5}
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -47,14 +47,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     limit = seconds(given.get("time_limit"))
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
     stated |= {"design": rank, "within": given["within"], "count": count, "seed": seed(given.get("seed"))}
-    return Posed(
+    return CheckedRequest(
         request={**stated, **({} if limit is None else {"time_limit": limit})},
         title=f"Near equals within {given['within']} of design {rank}: {front.frame.title}",
         families=(front.frame.family,),
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what is nearly as good."""
     front, tables = front_of(request, sources)
     found = near_equals(

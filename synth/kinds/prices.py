@@ -19,7 +19,7 @@ from synth.kinds.asked import (
 )
 from synth.kinds.request_schemas import keys_of
 from synth.order.feasibility import Status
-from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
+from synth.queue.records import QUESTION, CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.prices.run import chosen_designs, prices, read_step
 
 MAIN = "prices.json"
@@ -27,7 +27,7 @@ KEYS = keys_of("prices")
 STEP = "1 %"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; ``design`` is a rank or a list of ranks, all where it is left out.
 
     Raises
@@ -42,14 +42,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     read_step(step)
     limit = seconds(given.get("time_limit"))
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
-    return Posed(
+    return CheckedRequest(
         request={**stated, "design": ranks, "step": step, **({} if limit is None else {"time_limit": limit})},
         title=f"Prices: {front.frame.title}, {step}",
         families=(front.frame.family,),
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Tell what a per cent of everything costs."""
     front, tables = front_of(request, sources)
     found = prices(

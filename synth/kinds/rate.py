@@ -29,7 +29,7 @@ from synth.model.problem import DesignProblem
 from synth.order.feasibility import Status
 from synth.question.spec import spec_from_mapping
 from synth.question.uncertainty import read_block
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results import Design, Frame
 from synth.results.plain import plain
 from synth.results.ratings import NOT_SHOWN, YES
@@ -42,7 +42,7 @@ ROBUST = "robust"
 OF_JOB, OF_DESIGN = (tuple(schema["properties"]) for schema in (RATED, DESIGN))
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -60,7 +60,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     else:
         stated = {str(k): plain(v) for k, v in request.items() if v is not None and k not in (ROBUST, "time_limit")}
     stated |= {ROBUST: plain(block), **({} if limit is None else {"time_limit": limit})}
-    return Posed(
+    return CheckedRequest(
         request=stated,
         title=f"Rating: {frame.title}, {', '.join(map(words, scattering.names))}",
         families=(frame.family,),
@@ -68,7 +68,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Rate the designs."""
     designs, problem, tables, block, _ = _designs(request, sources)
     found = rate(

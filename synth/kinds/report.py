@@ -31,7 +31,7 @@ from synth.kinds.request_schemas import REPORT_LENGTHS as LENGTHS
 from synth.kinds.request_schemas import keys_of
 from synth.kinds.verify import unpack
 from synth.question.spec_keys import shown_kind
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results import named_designs
 from synth.results.drawings import EXTRAS, can_make
 from synth.results.loading import load_front
@@ -108,7 +108,7 @@ def _about(given: Any) -> dict[str, Any] | None:
     return {str(name): value for name, value in given.items()}
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -133,10 +133,10 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         except InputError as error:
             raise InputError(f"{WHERE}: design", error.value, error.expected, error.path) from error
     stated = {key: given[key] for key in (OF, FAMILY) if key in given}
-    return Posed(request={**stated, **asked.stated()}, title=f"Report: {title}", families=families)
+    return CheckedRequest(request={**stated, **asked.stated()}, title=f"Report: {title}", families=families)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Write the report and the sheets."""
     tell({"stage": "report", "done": 0.0, "message": ""})
     records = records_of(sources, request[OF])

@@ -14,7 +14,7 @@ from synth.kinds.request_schemas import keys_of
 from synth.question.spec_keys import shown_kind
 from synth.queue.job_table import BATCH, LIVE
 from synth.queue.models import Job
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.variants.size_range import check_size_range, size_range
 from synth.variants.variant_settings import VARIANTS
 
@@ -22,7 +22,7 @@ MAIN = "size_range.json"
 KEYS = keys_of("size_range")
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request: the batch must be there and done.
 
     Raises
@@ -34,10 +34,11 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     asked = _asked(stated)
     job = _batch(stated.get(OF), sources)
     families = tuple(job.content["families"])
-    return Posed(request={OF: job.id, **asked}, title=f"Size range of {job.title}", families=families, bulk=True)
+    title = f"Size range of {job.title}"
+    return CheckedRequest(request={OF: job.id, **asked}, title=title, families=families, bulk=True)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Choose the variants."""
     job = _batch(request[OF], sources)
     stated = job.request.get("catalogs")

@@ -26,7 +26,7 @@ from synth.kinds.asked import (
 )
 from synth.kinds.request_schemas import keys_of
 from synth.kinds.settings import KIND_SETTINGS
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.front_record import FRONT_FILE, KEPT, fits
 from synth.results.verification import Verification
 from synth.verification.verify import verify
@@ -37,7 +37,7 @@ KEYS = keys_of("verify")
 WHOLE = "all of the comparison"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; without ``family`` a comparison is checked as a whole.
 
     Raises
@@ -55,14 +55,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     else:
         front = front_in(records, given.get(FAMILY), check=False)
         families, title = (front.frame.family,), front.frame.title
-    return Posed(
+    return CheckedRequest(
         request={**stated, "time_limit": KIND_SETTINGS.verify_seconds if limit is None else limit},
         title=f"Verification: {title}",
         families=families,
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Check what was saved; how far the proof is cannot be told before it ends."""
     tell({"stage": "verify", "done": 0.0, "message": ""})
     records, limit = records_of(sources, request[OF]), float(request["time_limit"])

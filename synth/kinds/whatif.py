@@ -41,7 +41,7 @@ from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import shown_kind
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.plain import plain
 from synth.studies.whatif.run import POINTS, study_of
 from synth.studies.whatif.steps import check_steps
@@ -53,7 +53,7 @@ VARY, BREAKS = "vary", "breaks"
 VARIES = "names with values, {'load_torque': '500:700:50 N*m'}"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; of many steps some are posed, spread evenly, and all when the work begins.
 
     Raises
@@ -70,7 +70,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     if count > KIND_SETTINGS.steps:
         raise InputError(f"{WHERE}: vary", f"{count} steps", f"at most {KIND_SETTINGS.steps} steps", (VARY,))
     stated = stated_spec(asked, settings)
-    return Posed(
+    return CheckedRequest(
         request={**stated, VARY: _stated_vary(own[VARY]), BREAKS: flag(BREAKS, own.get(BREAKS, True))},
         title=f"What if {', '.join(map(words, varied))}: {titled(asked)}",
         families=(asked.problem.name,),
@@ -120,7 +120,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     return spec, faults
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Answer all steps, and find where the best parts or counts change."""
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     study = study_of(*_asked(spec, sources), _vary(own[VARY]), told(tell), bool(own.get(BREAKS, True)))

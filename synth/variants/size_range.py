@@ -155,7 +155,7 @@ def size_range(
     check_size_range(variants, candidates, gap, time_limit)
     started = time.monotonic()
     if isinstance(source, BatchResult):
-        database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
+        database, job, catalogs, own = source.database, source.job, source.catalogs, source.user_family
     else:
         catalogs = own = None
     with opened_batch(source, database) as store:

@@ -28,9 +28,9 @@ class EngineSettings:
     stuck : float
         Times a limit of processor time that may pass on the clock: on a busy machine a process waits for its turn, one
         that waits for ever is stuck.
-    look : float
-        In s, between two looks at how much processor time it has had.
-    tell : float
+    poll : float
+        In s, between two readings of how much processor time it has had.
+    report_pause : float
         In s, between two reports of how far it is.
     """
 
@@ -41,8 +41,8 @@ class EngineSettings:
     calls: int = 500
     start: float = 60.0
     stuck: float = 10.0
-    look: float = 0.2
-    tell: float = 0.25
+    poll: float = 0.2
+    report_pause: float = 0.25
 
 
 # Somebody waits for the answer: no search of a worker comes before it.
@@ -60,7 +60,7 @@ class WorkerSettings:
     watch : float
         In s, between two looks at whether what is computed is still wanted.
     weigh : float
-        In s, between two looks at how much memory it takes.
+        In s, between two readings of how much memory it takes.
     lease : float
         In s, that a claim lasts without a sign of life: so long a job waits whose machine has gone.
     sign : float
