@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from synth.analysis.design_spec import given_design, must_be_a_design
+from synth.analysis.design_spec import design_of_spec, must_be_a_design
 from synth.errors import InputError
 from synth.kinds.asked import (
     FAMILY,
@@ -109,7 +109,7 @@ def _designs(
         tables = catalogs_of(given.get("catalogs"), sources)
         asked = spec_from_mapping({k: v for k, v in given.items() if k != "catalogs"}, WHERE, Path())
         must_be_a_design(asked)
-        problem, tables, design = given_design(asked, tables)
+        problem, tables, design = design_of_spec(asked, tables)
         designs, frame, block = [design], design.frame, dict(asked.robust)
     if not block:
         right = "what scatters, for example {'friction': 'catalogue range'} (the question has no robust block)"

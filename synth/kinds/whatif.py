@@ -115,7 +115,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
         if not faults:
             with noted(faults):
                 read_vary(vary, model, chosen)
-        given |= {x.name: x.asked(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
+        given |= {x.name: x.spec_value(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
         return {**spec, **whole, "requirements": given}, faults
     return spec, faults
 
