@@ -29,7 +29,7 @@ from .sheet.blocks import (
     State,
     TableBlock,
     TableRow,
-    said,
+    inline,
 )
 from .sheet.design_sheet import front_state
 
@@ -41,9 +41,9 @@ AT_WORK = {
     "failed": "it has failed",
 }
 NAMES = 2  # columns by which rows are called
-SHOWN_CELLS = 5  # columns of the table that was brought, beside each other
-TOLD = 200  # rows without a design that are told one by one
-TOLD_CAUSES = 30
+SHOWN_CELLS = 5  # columns of the uploaded table, next to each other
+LISTED_FAILURES = 200  # rows without a design that are listed one by one
+LISTED_CAUSES = 30
 LONGEST = 600  # letters of a cell or a reason
 LONGEST_IN_LINE = 240  # where many rows stand below each other
 LONGEST_NAME = 80  # of a row
@@ -53,7 +53,7 @@ ELSEWHERE = "report.html or rows.csv"
 def batch_report(batch: BatchRecord, about: About) -> Document:
     """Return the report of a batch."""
     blocks = [_state(batch), *_leads(batch), *_counted(batch), *_causes(batch), *_all_rows(batch)]
-    blocks += [*_size_range(batch), *_failures(batch), *_in_full(batch, about), *_asked(batch)]
+    blocks += [*_size_range(batch), *_failures(batch), *_in_full(batch, about), *_question(batch)]
     return Document(
         kind="Batch report",
         title=about.title or f"{_short(batch.source, LONGEST_NAME)}: {counted(len(batch.rows), 'row')}",
@@ -83,8 +83,8 @@ def short_reason(row: BatchRow) -> str:
 
 
 def _short(text: str, most: int = LONGEST) -> str:
-    told = printable(" ".join(text.split()))
-    return told if len(told) <= most else f"{told[: most - 1].rstrip()}…"
+    cleaned = printable(" ".join(text.split()))
+    return cleaned if len(cleaned) <= most else f"{cleaned[: most - 1].rstrip()}…"
 
 
 def _program(batch: BatchRecord) -> str:
@@ -94,35 +94,35 @@ def _program(batch: BatchRecord) -> str:
 def _state(batch: BatchRecord) -> State:
     counts, rows = batch.counts, len(batch.rows)
     every = counted(rows, "row")
-    told = (", ".join(f"{thousands(count)} {IN_WORDS[status]}" for status, count in counts.items()) + ".",)
-    found = sum(counts.get(status, 0) for status in WITH_DESIGNS)
-    have = "has designs" if found == 1 else "have designs"
+    text = (", ".join(f"{thousands(count)} {IN_WORDS[status]}" for status, count in counts.items()) + ".",)
+    good = sum(counts.get(status, 0) for status in WITH_DESIGNS)
+    have = "has designs" if good == 1 else "have designs"
     if not batch.finished:
         done = f"NOT FINISHED: {thousands(batch.answered)} of {every} are answered"
-        return State("open", f"{done}; {AT_WORK.get(batch.state, batch.state)}", told)
-    if not found:
-        return State("bad", f"NO DESIGN: none of {every} has one", told)
+        return State("open", f"{done}; {AT_WORK.get(batch.state, batch.state)}", text)
+    if not good:
+        return State("bad", f"NO DESIGN: none of {every} has one", text)
     if counts.get("failed"):
-        return State("bad", f"{counted(counts['failed'], 'row')} FAILED; {thousands(found)} of {every} {have}", told)
-    if found < rows:
-        return State("open", f"{thousands(found)} of {every} {have}, {thousands(rows - found)} NOT", told)
+        return State("bad", f"{counted(counts['failed'], 'row')} FAILED; {thousands(good)} of {every} {have}", text)
+    if good < rows:
+        return State("open", f"{thousands(good)} of {every} {have}, {thousands(rows - good)} NOT", text)
     if counts.get("feasible"):
-        return State("open", f"{'The row' if rows == 1 else 'All rows'} {have}, not all PROVEN", told)
+        return State("open", f"{'The row' if rows == 1 else 'All rows'} {have}, not all PROVEN", text)
     gap = gap_text(float(batch.settings.get("gap") or 0))
-    return State("good", f"{'The row has' if rows == 1 else 'All rows have'} designs, proven to {gap}", told)
+    return State("good", f"{'The row has' if rows == 1 else 'All rows have'} designs, proven to {gap}", text)
 
 
 def _leads(batch: BatchRecord) -> list[Block]:
     """Places of the sections that somebody looks for in a long file."""
-    told: list[Cell] = []
+    links: list[Cell] = []
     if batch.chosen is not None:
-        told.append(said("In full: ", Link(row_name(batch, batch.chosen.row), "#row")))
+        links.append(inline("In full: ", Link(row_name(batch, batch.chosen.row), "#row")))
     failed = sum(batch.counts.get(status, 0) for status in FAILURES)
     if failed:
-        told.append(Link(f"{counted(failed, 'row')} without a design, and why", "#failures"))
+        links.append(Link(f"{counted(failed, 'row')} without a design, and why", "#failures"))
     if batch.size_range:
-        told.append(Link("Size range", "#size-range"))
-    return [Bullets(tuple(told))] if told else []
+        links.append(Link("Size range", "#size-range"))
+    return [Bullets(tuple(links))] if links else []
 
 
 def _counted(batch: BatchRecord) -> list[Block]:
@@ -139,8 +139,8 @@ def _counted(batch: BatchRecord) -> list[Block]:
     for k, heading in enumerate(batch.objectives):
         values = sorted(x for row in batch.rows if (x := row.objectives[k]) is not None)
         if values:
-            told = (values[0], statistics.median(values), values[-1])
-            spread.append(TableRow((_heading(heading), thousands(len(values)), *(page_text(value) for value in told))))
+            ends = (values[0], statistics.median(values), values[-1])
+            spread.append(TableRow((_heading(heading), thousands(len(values)), *(page_text(value) for value in ends))))
     if spread:
         blocks.append(TableBlock.of("The best design of each row", SPREAD_COLUMNS, spread))
     return blocks
@@ -148,15 +148,15 @@ def _counted(batch: BatchRecord) -> list[Block]:
 
 def _causes(batch: BatchRecord) -> list[Block]:
     """Reasons why rows have no design, counted."""
-    found = Counter((row.status, cause) for row in batch.rows if row.status in FAILURES for cause in row.causes)
-    if not found:
+    tally = Counter((row.status, cause) for row in batch.rows if row.status in FAILURES for cause in row.causes)
+    if not tally:
         return []
-    ordered = sorted(found.items(), key=lambda entry: (-entry[1], entry[0]))
+    ordered = sorted(tally.items(), key=lambda entry: (-entry[1], entry[0]))
     table = [
-        TableRow((said(_way(status), " ", Code(_short(cause, LONGEST_NAME))), STATES[status], thousands(count)))
-        for (status, cause), count in ordered[:TOLD_CAUSES]
+        TableRow((inline(_way(status), " ", Code(_short(cause, LONGEST_NAME))), STATES[status], thousands(count)))
+        for (status, cause), count in ordered[:LISTED_CAUSES]
     ]
-    more = len(ordered) - TOLD_CAUSES
+    more = len(ordered) - LISTED_CAUSES
     blocks: list[Block] = [
         Heading("What stands in the way", anchor="causes"),
         TableBlock.of("Limits that the nearest design misses, and columns with faults", CAUSE_COLUMNS, table),
@@ -177,17 +177,17 @@ def _heading(text: str) -> str:
 def _all_rows(batch: BatchRecord) -> list[Block]:
     names = list(batch.carried[:NAMES])
     others = [*batch.carried[NAMES:], *(k for k in range(len(batch.headings)) if k not in batch.carried)]
-    asked = [k for k in others if batch.headings[k] != "family"][: SHOWN_CELLS - len(names)]
+    inputs = [k for k in others if batch.headings[k] != "family"][: SHOWN_CELLS - len(names)]
     families = len({row.family for row in batch.rows}) > 1
 
-    def brought(places: Sequence[int]) -> list[Column]:
+    def columns_of(places: Sequence[int]) -> list[Column]:
         return [Column(_short(batch.headings[k], LONGEST_NAME)) for k in places]
 
-    columns = [Column("line", number=True, width=0.5), *brought(names)]
+    columns = [Column("line", number=True, width=0.5), *columns_of(names)]
     kind = len(columns)
     columns += [Column("state"), Column("designs", number=True)]
     columns += [Column(_heading(name), number=True) for name in batch.objectives]
-    columns += [*([Column("family")] if families else []), *brought(asked)]
+    columns += [*([Column("family")] if families else []), *columns_of(inputs)]
     columns += [Column("best design", width=2), Column("why none, remarks", width=2)]
     rows: list[tuple[str | float | None, ...]] = [
         (
@@ -197,7 +197,7 @@ def _all_rows(batch: BatchRecord) -> list[Block]:
             row.designs,
             *row.objectives,
             *((row.family,) if families else ()),
-            *(_short(row.cells[k], LONGEST_NAME) for k in asked),
+            *(_short(row.cells[k], LONGEST_NAME) for k in inputs),
             _short(row.best, LONGEST_IN_LINE),
             _short("; ".join(text for text in (short_reason(row), row.remarks) if text), LONGEST_IN_LINE),
         )
@@ -209,24 +209,24 @@ def _all_rows(batch: BatchRecord) -> list[Block]:
 
 def _size_range(batch: BatchRecord) -> list[Block]:
     """Return the variants that serve all rows."""
-    found = batch.size_range
-    if not found:
+    size_range = batch.size_range
+    if not size_range:
         return []
-    told: Mapping[str, Any] = found["told"]
-    count, unit = int(told.get("variants") or 0), str(told.get("unit") or "-")
-    excess = told.get("total_excess")
+    chosen: Mapping[str, Any] = size_range["told"]
+    count, unit = int(chosen.get("variants") or 0), str(chosen.get("unit") or "-")
+    excess = chosen.get("total_excess")
     serve = "variant serves" if count == 1 else "variants serve"
     sentences: list[Cell] = [f"{thousands(count)} {serve} all rows that have designs."]
     if isinstance(excess, (int, float)):
         amount = page_text(float(excess)) + ("" if unit == "-" else f" {unit}")
-        over = words(str(told.get("objective", "")))
+        over = words(str(chosen.get("objective", "")))
         sentences.append(f"Over each row's own best they exceed the {over} by {amount} in all rows together.")
-    proven = "proven" if told.get("fewest_proven") else "not proven to be the fewest"
-    least = int(told.get("fewest") or 0)
+    proven = "proven" if chosen.get("fewest_proven") else "not proven to be the fewest"
+    least = int(chosen.get("fewest") or 0)
     sentences.append(f"At least {least} {'is' if least == 1 else 'are'} needed ({proven}).")
-    names = [name for name in found["columns"] if any(row.get(name) for row in found["rows"])][:RANGE_COLUMNS]
-    columns = [Column(_heading(name), number=_is_number(found["rows"], name)) for name in names]
-    rows = [TableRow(tuple(_told_cell(str(row.get(name, ""))) for name in names)) for row in found["rows"]]
+    names = [name for name in size_range["columns"] if any(row.get(name) for row in size_range["rows"])][:RANGE_COLUMNS]
+    columns = [Column(_heading(name), number=_is_number(size_range["rows"], name)) for name in names]
+    rows = [TableRow(tuple(_range_cell(str(row.get(name, ""))) for name in names)) for row in size_range["rows"]]
     return [
         Heading("Size range", anchor="size-range"),
         Bullets(tuple(sentences)),
@@ -235,7 +235,7 @@ def _size_range(batch: BatchRecord) -> list[Block]:
     ]
 
 
-def _told_cell(cell: str) -> str:
+def _range_cell(cell: str) -> str:
     number = _number(cell)
     return _short(cell, LONGEST_NAME) if number is None else page_text(number)
 
@@ -255,13 +255,13 @@ def _is_number(rows: Sequence[Mapping[str, str]], name: str) -> bool:
 
 
 def _in_full(batch: BatchRecord, about: About) -> list[Block]:
-    told = batch.chosen
-    if told is None:
+    chosen = batch.chosen
+    if chosen is None:
         return []
-    row = told.row
+    row = chosen.row
     name = row_name(batch, row)
     title = f"Line {row.line}" + ("" if name == f"line {row.line}" else f": {name}")
-    blocks: list[Block] = [Heading(title, anchor="row"), _row_state(told)]
+    blocks: list[Block] = [Heading(title, anchor="row"), _row_state(chosen)]
     cells = [
         TableRow((_short(heading, LONGEST_NAME), _short(cell)))
         for heading, cell in zip(batch.headings, row.cells, strict=True)
@@ -270,14 +270,14 @@ def _in_full(batch: BatchRecord, about: About) -> list[Block]:
     blocks.append(TableBlock.of("The row as it was brought", CELL_COLUMNS, cells))
     if row.remarks:
         blocks.append(Paragraph(f"{row.remarks[:1].upper()}{_short(row.remarks)[1:]}.", small=True))
-    if told.front is None or told.calculation is None:
+    if chosen.front is None or chosen.calculation is None:
         return blocks
     drawings = {}
-    if told.drawing is not None:
-        title = told.front.frame.title
-        drawings[told.front.designs[0].rank or 0] = svg_of(told.drawing, title, _program(batch), about)
+    if chosen.drawing is not None:
+        title = chosen.front.frame.title
+        drawings[chosen.front.designs[0].rank or 0] = svg_of(chosen.drawing, title, _program(batch), about)
     inner = first_design(
-        FrontReportRequest(front=told.front, calculation=told.calculation, about=about, drawings=drawings)
+        FrontReportRequest(front=chosen.front, calculation=chosen.calculation, about=about, drawings=drawings)
     )
     return blocks + [_deeper(block) for block in inner]
 
@@ -289,14 +289,14 @@ def _deeper(block: Block) -> Block:
     return block
 
 
-def _row_state(told: RowInFull) -> State:
-    row = told.row
-    if told.front is not None:
-        level, head = front_state(told.front)
+def _row_state(chosen: RowInFull) -> State:
+    row = chosen.row
+    if chosen.front is not None:
+        level, head = front_state(chosen.front)
         count = f"{row.designs} designs" if row.designs != 1 else "One design"
-        stopped = (f"Stopped: {told.front.interrupted}.",) if told.front.interrupted else ()
+        stopped = (f"Stopped: {chosen.front.interrupted}.",) if chosen.front.interrupted else ()
         return State(level, f"{count}: {head[:1].lower()}{head[1:]}", stopped)
-    details = tuple(_short(text, 10 * LONGEST) for text in (row.reason, row.best, told.note) if text)
+    details = tuple(_short(text, 10 * LONGEST) for text in (row.reason, row.best, chosen.note) if text)
     if row.designs:
         return State("open", f"{row.designs} designs, not told in full", details)
     level = "open" if row.status == "not_solved" else "bad"
@@ -307,18 +307,18 @@ def _row_state(told: RowInFull) -> State:
 
 
 def _failures(batch: BatchRecord) -> list[Block]:
-    shares = _shares({status: batch.counts[status] for status in FAILURES if batch.counts.get(status)}, TOLD)
+    shares = _shares({status: batch.counts[status] for status in FAILURES if batch.counts.get(status)}, LISTED_FAILURES)
     if not shares:
         return []
     groups: list[tuple[str, tuple[TableRow, ...]]] = []
     for status, share in shares.items():
         rows = list(islice((row for row in batch.rows if row.status == status), share))
-        told = tuple(
+        listed = tuple(
             TableRow((str(row.line), row_name(batch, row), _short(row.reason) or "no reason is kept")) for row in rows
         )
         first = "" if share == batch.counts[status] else f", the first {share}"
         label = STATES[status][:1].upper() + STATES[status][1:]
-        groups.append((f"{label}: {counted(batch.counts[status], 'row')}{first}", told))
+        groups.append((f"{label}: {counted(batch.counts[status], 'row')}{first}", listed))
     blocks: list[Block] = [
         Heading("Rows without a design, and why", anchor="failures"),
         TableBlock("Lines of the table that was brought", FAILURE_COLUMNS, tuple(groups)),
@@ -330,43 +330,45 @@ def _failures(batch: BatchRecord) -> list[Block]:
 
 
 def _shares(counts: Mapping[str, int], most: int) -> dict[str, int]:
-    """Number of rows told of each kind: all of what is rare, and of the rest alike.
+    """Number of rows listed of each kind: all of rare kinds, and equally many of the others.
 
     Examples
     --------
     >>> _shares({"failed": 3, "bad_input": 2000, "infeasible": 90}, 200)
     {'failed': 3, 'bad_input': 107, 'infeasible': 90}
     """
-    found: dict[str, int] = {}
+    shares: dict[str, int] = {}
     for place, status in enumerate(sorted(counts, key=lambda status: counts[status])):
-        found[status] = min(counts[status], (most - sum(found.values())) // (len(counts) - place))
-    return {status: found[status] for status in counts}
+        shares[status] = min(counts[status], (most - sum(shares.values())) // (len(counts) - place))
+    return {status: shares[status] for status in counts}
 
 
-def _asked(batch: BatchRecord) -> list[Block]:
+def _question(batch: BatchRecord) -> list[Block]:
     settings = batch.settings
     gap, sizes = gap_text(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
-    told: list[Cell] = []
+    lines: list[Cell] = []
     if settings.get("objectives"):
-        asked = settings["objectives"]
-        names = [f"{name} ({sense})" for name, sense in asked.items()] if isinstance(asked, Mapping) else asked
-        told.append(f"Objectives: {', '.join(map(str, names))}")
+        goals = settings["objectives"]
+        names = [f"{name} ({sense})" for name, sense in goals.items()] if isinstance(goals, Mapping) else goals
+        lines.append(f"Objectives: {', '.join(map(str, names))}")
     else:
-        told.append("Objectives: those that each family has by default")
-    told.append(
+        lines.append("Objectives: those that each family has by default")
+    lines.append(
         f"At most {settings.get('points')} designs per row, gap {gap}, {sizes} sizes, seed {settings.get('seed')}"
     )
     if settings.get("time_limit"):
-        told.append(f"At most {page_text(float(settings['time_limit']))} s per row: results depend on the machine")
+        lines.append(f"At most {page_text(float(settings['time_limit']))} s per row: results depend on the machine")
     versions = ", ".join(f"{name} {version}" for name, version in batch.versions.items())
-    digests: list[Cell] = [said(f"{name}: ", Code(_short(value, LONGEST_NAME))) for name, value in batch.hashes.items()]
+    digests: list[Cell] = [inline(f"{name}: ", Code(_short(x, LONGEST_NAME))) for name, x in batch.hashes.items()]
     return [
         Heading("What was asked of all rows", anchor="asked"),
-        Bullets(tuple(told)),
+        Bullets(tuple(lines)),
         Heading("To reproduce", anchor="again"),
         Bullets(
             (
-                said("The table ", Code(_short(batch.source, LONGEST_NAME)), " with ", Code("clutchsynth batch"), "."),
+                inline(
+                    "The table ", Code(_short(batch.source, LONGEST_NAME)), " with ", Code("clutchsynth batch"), "."
+                ),
                 f"Reported with {versions}.",
                 *digests,
             )

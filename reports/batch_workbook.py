@@ -10,10 +10,10 @@ from synth.results.report_request import About
 from .batch_report import batch_state
 from .excel_sheets import Book
 
-ASKED = "--xlsx"
+OPTION = "--xlsx"
 LEADING = (("line", 8), ("row", 14), ("family", 22), ("state", 14), ("designs", 9))
 TRAILING = (("best design", 60), ("why none", 60), ("remarks", 40))
-OBJECTIVE, BROUGHT = 16.0, 18.0  # widths [characters]
+OBJECTIVE, CELL = 16.0, 18.0  # widths [characters]
 HEAD_ROW = 3
 
 
@@ -26,7 +26,7 @@ def batch_workbook(batch: BatchRecord, about: About) -> bytes:
         The extra ``excel`` is not there.
     """
     # Of many rows nothing is kept that is written.
-    book = Book(ASKED, about.title or batch.source, row_by_row=True)
+    book = Book(OPTION, about.title or batch.source, row_by_row=True)
     _summary(book, batch, about)
     _rows(book, "rows", batch, batch.rows)
     failed = [row for row in batch.rows if row.status in FAILURES]
@@ -45,8 +45,8 @@ def _summary(book: Book, batch: BatchRecord, about: About) -> None:
     for place, (status, count) in enumerate(batch.counts.items(), start=below):
         sheet.text(place, 0, status, "plain")
         sheet.number(place, 1, count)
-    told = (*about.facts(), *((name, str(value)) for name, value in batch.settings.items() if value))
-    for place, (label, words) in enumerate(told, start=below + len(batch.counts) + 1):
+    facts = (*about.facts(), *((name, str(value)) for name, value in batch.settings.items() if value))
+    for place, (label, words) in enumerate(facts, start=below + len(batch.counts) + 1):
         sheet.text(place, 0, label, "plain")
         sheet.text(place, 1, words, "line")
 
@@ -54,13 +54,13 @@ def _summary(book: Book, batch: BatchRecord, about: About) -> None:
 def _rows(book: Book, name: str, batch: BatchRecord, rows: Sequence[BatchRow]) -> None:
     """Write rows, each cell once and from the top, as nothing is kept of them."""
     columns = [*LEADING, *((heading, OBJECTIVE) for heading in batch.objectives), *TRAILING]
-    columns += [(heading, BROUGHT) for heading in batch.headings]
+    columns += [(heading, CELL) for heading in batch.headings]
     heads = [heading for heading, _ in columns]
     numeric = {0, 4, *range(len(LEADING), len(LEADING) + len(batch.objectives))}
-    sheet = book.sheet(name, [width for _, width in columns], locked=False, wide=True)
-    sheet.own.freeze_panes(1, 1)
-    sheet.own.repeat_rows(0)
-    sheet.own.autofilter(0, 0, max(len(rows), 1), len(heads) - 1)
+    sheet = book.sheet(name, [width for _, width in columns], locked=False, over_pages=True)
+    sheet.worksheet.freeze_panes(1, 1)
+    sheet.worksheet.repeat_rows(0)
+    sheet.worksheet.autofilter(0, 0, max(len(rows), 1), len(heads) - 1)
     sheet.heads(0, heads, numeric)
     for place, row in enumerate(rows, start=1):
         leading = (row.line, row.key, row.family, row.status, row.designs)

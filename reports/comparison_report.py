@@ -1,4 +1,4 @@
-"""The report of several families that were asked the same: which serves best, and why others lost."""
+"""The report of several families for one requirement sheet: which serves best, and why others lost."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
 FAMILY_COLUMNS = (Column("family", width=1.6), Column("outcome", width=0.9), Column("why", width=3.6))
 
 
-def comparison_report(asked: ComparisonRequest) -> Document:
+def comparison_report(request: ComparisonRequest) -> Document:
     """Report of a comparison."""
-    content, fronts, links, about = asked.content, asked.fronts, asked.links, asked.how.about
+    content, fronts, links, about = request.content, request.fronts, request.links, request.how.about
     designs: Sequence[Mapping[str, Any]] = content["designs"]
-    told = str(content["sentence"])
-    sentence = told[:1].upper() + told[1:] + "."
+    verdict = str(content["sentence"])
+    sentence = verdict[:1].upper() + verdict[1:] + "."
     blocks: list[Block] = [_state(content, sentence)]
     if designs:
         blocks.append(Heading("The common front", anchor="designs"))
-        blocks += [*_drawn(asked, designs), _ranked(asked, designs)]
+        blocks += [*_drawn(request, designs), _ranked(request, designs)]
     rows = [
         TableRow(
             (
@@ -77,22 +77,22 @@ def _state(content: Mapping[str, Any], sentence: str) -> State:
     return State(LEVELS[kind], head, (sentence,))
 
 
-def _drawn(asked: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> list[Block]:
+def _drawn(request: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> list[Block]:
     """Drawing of the common front; nothing where there is none to draw."""
-    content, fronts = asked.content, asked.fronts
+    content, fronts = request.content, request.fronts
     titles = {x["family"]: str(x["title"]) for x in content["families"]}
-    own = [replace(fronts[x["family"]].designs[x["own_rank"] - 1], rank=x["rank"], note=x["note"]) for x in designs]
+    ranked = [replace(fronts[x["family"]].designs[x["own_rank"] - 1], rank=x["rank"], note=x["note"]) for x in designs]
     families = [titles[x["family"]] for x in designs]
-    svg = front_file(own, content["objectives"], "Common front", families=families)
+    svg = front_file(ranked, content["objectives"], "Common front", families=families)
     if not svg:
         return []
-    told = f"{len(own)} designs of {', '.join(dict.fromkeys(families))}; the table below lists them"
-    own_colours = CLASS.sub("", svg.partition("\n")[2])  # on white paper of its own, whatever the page is like
-    return [Figure(own_colours, told, "Each point is a design, its shape and colour the family.")]
+    caption = f"{len(ranked)} designs of {', '.join(dict.fromkeys(families))}; the table below lists them"
+    unstyled = CLASS.sub("", svg.partition("\n")[2])  # on white paper of its own, whatever the page is like
+    return [Figure(unstyled, caption, "Each point is a design, its shape and colour the family.")]
 
 
-def _ranked(asked: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> TableBlock:
-    content, fronts, links = asked.content, asked.fronts, asked.links
+def _ranked(request: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) -> TableBlock:
+    content, fronts, links = request.content, request.fronts, request.links
     units = {name: unit for front in fronts.values() for name, unit in front.frame.units.items()}
     titles = {x["family"]: str(x["title"]) for x in content["families"]}
     columns = [

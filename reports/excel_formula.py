@@ -18,7 +18,7 @@ from synth.units import parse_unit
 
 LONGEST = 2000  # characters; Excel takes 8192, people read fewer
 DEEPEST = 60  # brackets inside each other; Excel takes 64 functions
-MANY = 6  # parts of a sum or product from which on halves of it are told alone
+HALVED = 6  # parts of a sum or product from which on its halves get cells
 WIDTH = 5  # decimals of a number from which on it is looked for among fractions
 
 # How firmly what stands there must hold together: a term, a factor, what is divided by, what is raised.
@@ -171,33 +171,33 @@ def _shorter(tree: Expression, known: dict[str, str], helper: Helper) -> Express
     Raises
     ------
     ValueError
-        Nothing in it can be told alone.
+        No part of it can have a cell.
     """
 
-    def alone(part: Expression) -> Expression:
-        if part[0] in SIGN_OF:  # what is compared is told alone, not the comparison
-            return with_parts(part, [alone(side) if parts_of(side) else side for side in part[1:]])
+    def apart(part: Expression) -> Expression:
+        if part[0] in SIGN_OF:  # the sides of a comparison get cells, not the comparison
+            return with_parts(part, [apart(side) if parts_of(side) else side for side in part[1:]])
         if part[0] in CONDITIONS:
-            return with_parts(part, [["!=", told(["if", x, ["n", 1.0], ["n", 0.0]]), ["n", 0.0]] for x in part[1:]])
-        return told(part)
+            return with_parts(part, [["!=", named(["if", x, ["n", 1.0], ["n", 0.0]]), ["n", 0.0]] for x in part[1:]])
+        return named(part)
 
-    def told(part: Expression) -> Expression:
+    def named(part: Expression) -> Expression:
         cell = helper(part)
         known[cell] = cell
         return ["q", cell]
 
     def halves(several: list[Expression], joined: Callable[[list[Expression]], Expression]) -> list[Expression]:
         half = len(several) // 2
-        return [alone(joined(several[:half])), alone(joined(several[half:]))] if len(several) >= MANY else several
+        return [apart(joined(several[:half])), apart(joined(several[half:]))] if len(several) >= HALVED else several
 
     parts = parts_of(tree)
-    if len(parts) >= MANY and tree[0] in ("+", "f"):
-        return _joined(tree, halves(parts, lambda some: _joined(tree, some)))
-    if tree[0] == "*" and max(map(len, tree[1:])) >= MANY:
-        return ["*", *(halves(side, lambda some: ["*", some, []]) for side in tree[1:])]
+    if len(parts) >= HALVED and tree[0] in ("+", "f"):
+        return _joined(tree, halves(parts, lambda chunk: _joined(tree, chunk)))
+    if tree[0] == "*" and max(map(len, tree[1:])) >= HALVED:
+        return ["*", *(halves(side, lambda chunk: ["*", chunk, []]) for side in tree[1:])]
     if not any(parts_of(part) for part in parts):
         raise ValueError("a formula of few names is too long: the names are")
-    return with_parts(tree, [alone(part) if parts_of(part) else part for part in parts])
+    return with_parts(tree, [apart(part) if parts_of(part) else part for part in parts])
 
 
 def _joined(tree: Expression, parts: list[Expression]) -> Expression:
@@ -251,8 +251,8 @@ class _Writer:
         if not math.isfinite(value):
             return "NA()" if math.isnan(value) else f"{'-' if value < 0 else ''}1E+308"
         text = number_text(value)
-        whole = not any(sign in text for sign in "*/^")
-        return _bracketed(text, firm >= TERM if value < 0 else firm >= DIVISOR and not whole)
+        is_plain = not any(sign in text for sign in "*/^")
+        return _bracketed(text, firm >= TERM if value < 0 else firm >= DIVISOR and not is_plain)
 
     def _sum(self, terms: list[Expression]) -> str:
         text = self.number(terms[0])
@@ -326,5 +326,5 @@ def may_fail(expression: Expression, doubtful: Collection[str]) -> bool:
     return _Writer({}, None, frozenset(doubtful))._fails(expression)
 
 
-def _bracketed(text: str, wanted: bool) -> str:
-    return f"({text})" if wanted else text
+def _bracketed(text: str, needed: bool) -> str:
+    return f"({text})" if needed else text

@@ -22,8 +22,8 @@ class LegalNames:
     ['torque', 'wire.d', 'F0_', 'R_', 'rc_', 'log10_', 'Torque_2', 'a_b_c', '_2nd', 'r1c1.x']
     """
 
-    def __init__(self, taken: Iterable[str] = ()) -> None:
-        self._taken = {name.lower() for name in taken}
+    def __init__(self, used: Iterable[str] = ()) -> None:
+        self._used = {name.lower() for name in used}
 
     def of(self, public: str) -> str:
         """Return the name for a public name."""
@@ -32,9 +32,9 @@ class LegalNames:
             name = f"_{name}"
         if CELL.fullmatch(name) or ROW_AND_COLUMN.fullmatch(name) or name.lower() in RESERVED:
             name = f"{name}_"
-        found, number = name, 1
-        while found.lower() in self._taken:
+        candidate, number = name, 1
+        while candidate.lower() in self._used:
             number += 1
-            found = f"{name.rstrip('_')}_{number}"
-        self._taken.add(found.lower())
-        return found
+            candidate = f"{name.rstrip('_')}_{number}"
+        self._used.add(candidate.lower())
+        return candidate

@@ -18,7 +18,7 @@ Result: TypeAlias = float | str | bool
 MOST_TEXT = 32767  # what a cell holds, in units of UTF-16
 CREATED = datetime(1980, 1, 1)  # the same input gives the same bytes
 LINE = 15.5  # points
-ROOM = 1.15  # letters in a cell by its width; other fonts than ours may be wider
+LETTERS_PER_WIDTH = 1.15  # letters in a cell by its width; other fonts than ours may be wider
 BROAD = 1.15  # bold letters against others
 MOST_LINES, LONGEST = 12, 3000
 ROUND = 1e10  # below, numbers of few digits are written in full
@@ -76,16 +76,16 @@ class Book:
 
     Parameters
     ----------
-    asked : str
-        What it is made for, as people typed it: for the sentence that tells that the extra is not there.
+    option : str
+        The option that requested it, for the message that the extra is not installed.
     title : str
     row_by_row : bool
         Whether rows are written from the first to the last, each cell once, and not kept: for many of them. Sheets too
         are written one after the other, and rows do not grow with their texts.
     """
 
-    def __init__(self, asked: str, title: str, row_by_row: bool = False) -> None:
-        xlsxwriter = needed("xlsxwriter", asked, "excel")
+    def __init__(self, option: str, title: str, row_by_row: bool = False) -> None:
+        xlsxwriter = needed("xlsxwriter", option, "excel")
         self._buffer, self._row_by_row = io.BytesIO(), row_by_row
         # Nothing that is written as text is looked at: it is no formula, no address and no number.
         kept = {"constant_memory": True} if row_by_row else {"in_memory": True}
@@ -96,14 +96,14 @@ class Book:
         self._formats: dict[tuple[str, str], Any] = {}
         self._sheets: list[Sheet] = []
 
-    def sheet(self, name: str, widths: Sequence[float], locked: bool = True, wide: bool = False) -> Sheet:
+    def sheet(self, name: str, widths: Sequence[float], locked: bool = True, over_pages: bool = False) -> Sheet:
         """Return a new sheet with columns of these widths [characters].
 
         Parameters
         ----------
         locked : bool
             Whether it is protected, without a password; cells for inputs stay open.
-        wide : bool
+        over_pages : bool
             Whether it is too wide for one page.
         """
         sheet = self._book.add_worksheet(name)
@@ -113,7 +113,7 @@ class Book:
         sheet.set_paper(9)
         sheet.set_landscape()
         sheet.set_margins(0.4, 0.4, 0.5, 0.6)
-        if wide:
+        if over_pages:
             sheet.set_print_scale(60)
             sheet.repeat_columns(0)
         else:
@@ -144,7 +144,7 @@ class Book:
     def bytes(self) -> bytes:
         """Return the file."""
         for sheet in self._sheets if not self._row_by_row else ():
-            sheet.give_room()
+            sheet.set_heights()
         self._book.close()
         return self._buffer.getvalue()
 
@@ -152,23 +152,23 @@ class Book:
 class Sheet:
     """One sheet; rows and columns count from 0, ``last`` is the last row with a text in it."""
 
-    def __init__(self, book: Book, own: Any, name: str, widths: Sequence[float]) -> None:
-        self.book, self.own, self.name = book, own, name
+    def __init__(self, book: Book, worksheet: Any, name: str, widths: Sequence[float]) -> None:
+        self.book, self.worksheet, self.name = book, worksheet, name
         self.widths, self._heights = widths, dict[int, float]()
         self.last = 1
         self._joined = set[tuple[int, int]]()
 
     def text(self, row: int, column: int, text: str, style: str = "text") -> None:
         """Write a text, whatever stands in it, as a text."""
-        self.own.write_string(row, column, cell_text(text), self.book.style(style))
+        self.worksheet.write_string(row, column, cell_text(text), self.book.style(style))
         self.last = max(self.last, row)
-        self._needs_room(row, column, text, style)
+        self._fit_height(row, column, text, style)
 
     def heads(self, row: int, heads: Sequence[str], right: Container[int] = (), centre: Container[int] = ()) -> None:
         """Write the heads of columns, over numbers to the right."""
         for column, text in enumerate(heads):
-            aside = "head_centre" if column in centre else "head"
-            self.text(row, column, text, "head_right" if column in right else aside)
+            plain_head = "head_centre" if column in centre else "head"
+            self.text(row, column, text, "head_right" if column in right else plain_head)
 
     def texts(self, row: int, texts: Sequence[str], style: str = "text", first: int = 0) -> None:
         """Write texts side by side."""
@@ -184,9 +184,10 @@ class Sheet:
             Whether it is shown with few digits, as what was measured or computed.
         """
         if value is None or not math.isfinite(value):
-            self.own.write_blank(row, column, None, self.book.style(style))
+            self.worksheet.write_blank(row, column, None, self.book.style(style))
         else:
-            self.own.write_number(row, column, value, self.book.style(style, number_format(value) if digits else ""))
+            form = number_format(value) if digits else ""
+            self.worksheet.write_number(row, column, value, self.book.style(style, form))
 
     def formula(
         self,
@@ -212,16 +213,16 @@ class Sheet:
             shown = ERRORS[str(result)]
         elif isinstance(result, str):
             shown = cell_text(result)
-            self._needs_room(row, column, result, style)
-        self.own.write_formula(row, column, f"={formula}", self.book.style(style, form), shown)
+            self._fit_height(row, column, result, style)
+        self.worksheet.write_formula(row, column, f"={formula}", self.book.style(style, form), shown)
 
-    def wide(self, row: int, first: int, last: int, text: str) -> None:
+    def merge(self, row: int, first: int, last: int, text: str) -> None:
         """Join the cells of a row, to be written afterwards with a text of this length."""
-        self.own.merge_range(row, first, row, last, "", self.book.style("text"))
+        self.worksheet.merge_range(row, first, row, last, "", self.book.style("text"))
         self._grow(row, LINE * lines_of(text, sum(self.widths[first : last + 1])))
         self._joined.add((row, first))
 
-    def _needs_room(self, row: int, column: int, text: str, style: str) -> None:
+    def _fit_height(self, row: int, column: int, text: str, style: str) -> None:
         if STYLES[style].get("text_wrap") and (row, column) not in self._joined and column < len(self.widths):
             size = STYLES[style].get("font_size", 11) / 11
             broad = size * (BROAD if STYLES[style].get("bold") else 1)
@@ -230,11 +231,11 @@ class Sheet:
     def _grow(self, row: int, height: float) -> None:
         self._heights[row] = max(self._heights.get(row, LINE), height)
 
-    def give_room(self) -> None:
+    def set_heights(self) -> None:
         """Make rows as high as their texts are long; not every program does that by itself."""
         for row, height in self._heights.items():
             if height > LINE:
-                self.own.set_row(row, round(height, 1))
+                self.worksheet.set_row(row, round(height, 1))
 
     def scale(self, column: int, first: int, last: int, cells: str = "") -> None:
         """Colour shares by their size, from white over yellow to orange where all is used.
@@ -249,7 +250,7 @@ class Sheet:
         rule: dict[str, Any] = {"type": "3_color_scale", "min_type": "num", "mid_type": "num", "max_type": "num"}
         rule |= {"min_value": 0, "mid_value": NEARLY, "max_value": 1}
         rule |= {"min_color": "#FFFFFF", "mid_color": MARKED, "max_color": FULL}
-        self.own.conditional_format(first, column, last, column, rule | ({"multi_range": cells} if cells else {}))
+        self.worksheet.conditional_format(first, column, last, column, rule | ({"multi_range": cells} if cells else {}))
 
     def place(self, row: int, column: int) -> str:
         """Return a cell as formulas of any sheet call it."""
@@ -269,9 +270,9 @@ def cell(row: int, column: int, fixed: bool = False) -> str:
     >>> cell(4, 2), cell(0, 27, fixed=True)
     ('C5', '$AB$1')
     """
-    letters, rest = "", column + 1
-    while rest:
-        rest, letter = divmod(rest - 1, 26)
+    letters, remaining = "", column + 1
+    while remaining:
+        remaining, letter = divmod(remaining - 1, 26)
         letters = chr(65 + letter) + letters
     return f"${letters}${row + 1}" if fixed else f"{letters}{row + 1}"
 
@@ -284,8 +285,8 @@ def lines_of(text: str, letters: float) -> int:
     >>> lines_of("a short text", 20), lines_of("one line and then a bit more", 20), lines_of("x" * 10000, 20)
     (1, 2, 12)
     """
-    room = max(1, int(letters * ROOM))
-    return min(MOST_LINES, sum(max(1, len(textwrap.wrap(line, room))) for line in text[:LONGEST].split("\n")))
+    width = max(1, int(letters * LETTERS_PER_WIDTH))
+    return min(MOST_LINES, sum(max(1, len(textwrap.wrap(line, width))) for line in text[:LONGEST].split("\n")))
 
 
 def cell_text(text: str) -> str:

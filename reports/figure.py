@@ -41,7 +41,7 @@ DASHES: tuple[Any, ...] = (
 LEGEND_LETTERS = 21  # of a line beside the panels
 LEGEND_ROW, LEGEND_LINE = 0.165, 0.125  # inches of a name in a legend, and of each further line of it
 JOINT = re.compile(r"(?<=[0-9]) (?=[^0-9\s])")  # between a number and its unit no line is broken
-BESIDE = 0.03  # inches by which the name of a line may stand below it
+NAME_SHIFT = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
 STYLE: dict[str, Any] = {
@@ -137,8 +137,8 @@ def make_figure(frame: pd.DataFrame) -> Figure:
 
     left, right, bottom = 0.78, 1.75, 0.5
     axis_width = WIDTH - left - right
-    words, rotation, room = _tick_words(ticks, axis_width)
-    bottom += room
+    words, rotation, tick_height = _tick_words(ticks, axis_width)
+    bottom += tick_height
     strips = _label_rows(spans, marks, limits, axis_width)
     title = textwrap.wrap(str(attrs.get("title", "")), 76)
     footer = textwrap.wrap(str(attrs.get("source", "")), 115)
@@ -210,10 +210,10 @@ def _notes(texts: Sequence[str]) -> list[str]:
     parts = [text.rpartition("\t") for text in texts]
     digits = max((len(number) for number, _, _ in parts), default=0)
     lines = []
-    for number, tab, said in parts:
-        beside = number.ljust(digits + 2) if tab else ""
-        for k, line in enumerate(textwrap.wrap(JOINT.sub("\u00a0", said), NOTE_LETTERS)):
-            lines.append((" " * len(beside) if k else beside).replace(" ", "\u2007") + line)  # as wide as a digit
+    for number, tab, note in parts:
+        prefix = number.ljust(digits + 2) if tab else ""
+        for k, line in enumerate(textwrap.wrap(JOINT.sub("\u00a0", note), NOTE_LETTERS)):
+            lines.append((" " * len(prefix) if k else prefix).replace(" ", "\u2007") + line)  # as wide as a digit
     return lines
 
 
@@ -356,7 +356,7 @@ def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, l
             fontsize=7.5,
             color="#333333",
         )
-        if level - middle > BESIDE:
+        if level - middle > NAME_SHIFT:
             joined = {"arrowstyle": "-", "shrinkA": 0, "shrinkB": 0, "color": "#777777", "lw": 0.6}
             axis.annotate("", (1.0, level / height), (1.014, middle / height), "axes fraction", arrowprops=joined)
 
@@ -380,23 +380,23 @@ def _label_rows(
 ) -> list[tuple[float, str, int, str]]:
     """Return position, text, row and colour of the labels above the panels, so that none covers another."""
     scale = width / (limits[1] - limits[0])
-    wanted = [((float(s["from"]) + float(s["to"])) / 2, str(s.get("label", "")), "#666666") for s in spans]
-    wanted += [(float(m["x"]), str(m.get("label", "")), "#222222") for m in marks]
-    taken: list[list[tuple[float, float]]] = []
-    found = []
+    labels = [((float(s["from"]) + float(s["to"])) / 2, str(s.get("label", "")), "#666666") for s in spans]
+    labels += [(float(m["x"]), str(m.get("label", "")), "#222222") for m in marks]
+    occupied: list[list[tuple[float, float]]] = []
+    placed = []
     first_of_marks = 0
-    for k, (position, text, colour) in enumerate(wanted):
+    for k, (position, text, colour) in enumerate(labels):
         if not text or not limits[0] <= position <= limits[1]:
             continue
         if k == len(spans):
-            first_of_marks = len(taken)  # marks above the spans: two kinds, two rows
+            first_of_marks = len(occupied)  # marks above the spans: two kinds, two rows
         half = LETTER * len(text) / 2 + 0.05
         reach = (scale * position - half, scale * position + half)
         row = first_of_marks
-        while row < len(taken) and any(reach[0] < b and a < reach[1] for a, b in taken[row]):
+        while row < len(occupied) and any(reach[0] < b and a < reach[1] for a, b in occupied[row]):
             row += 1
-        while row >= len(taken):
-            taken.append([])
-        taken[row].append(reach)
-        found.append((position, text, row, colour))
-    return found
+        while row >= len(occupied):
+            occupied.append([])
+        occupied[row].append(reach)
+        placed.append((position, text, row, colour))
+    return placed

@@ -16,7 +16,7 @@ from synth.results.report_request import BatchReportRequest, ComparisonRequest, 
 from .batch_report import batch_report
 from .batch_workbook import batch_workbook
 from .comparison_report import comparison_report
-from .drawing.bodies import glb_of, left_out, round_areas, step_of
+from .drawing.bodies import glb_of, not_bodies, round_areas, step_of
 from .drawing.files import dxf_of, svg_of
 from .explorer.comparison import comparison_record
 from .explorer.page import explorer_page
@@ -36,7 +36,7 @@ BODIES = {"step": step_of, "glb": glb_of}  # of what is round in drawings
 MAKERS: Mapping[str, Callable[..., str | bytes]] = {"svg": svg_of, "dxf": dxf_of, **BODIES}  # of drawings
 
 
-def report_files(asked: ReportRequest) -> Made:
+def report_files(request: ReportRequest) -> Made:
     """Files of the report of a front or of a design by name, notes, and which extras lack for more files.
 
     Raises
@@ -44,45 +44,45 @@ def report_files(asked: ReportRequest) -> Made:
     InputError
         Something asked is unknown, a design is not on the front, or a record differs from its formulas.
     """
-    if asked.how.length not in LENGTHS:
-        raise InputError("length", asked.how.length, f"one of {', '.join(LENGTHS)}", ("length",))
-    for word in asked.how.formats or [""]:
+    if request.how.length not in LENGTHS:
+        raise InputError("length", request.how.length, f"one of {', '.join(LENGTHS)}", ("length",))
+    for word in request.how.formats or [""]:
         if word not in FORMATS:
             raise InputError("formats", word, f"some of {', '.join(FORMATS)}", ("formats",))
-    return _Files(asked).all()
+    return _Files(request).all()
 
 
-def comparison_files(asked: ComparisonRequest) -> Made:
+def comparison_files(request: ComparisonRequest) -> Made:
     """Files of the report of several families by name, notes, and which extras lack for more files."""
-    formats = Formats(asked.how.formats)
-    files, notes = documents({"report": comparison_report(asked)}, formats, asked.how.fonts)
-    if "explorer" in asked.how.formats:
-        beside = {family: file for family, file in asked.links.items() if "explorer" not in file}
-        files["explorer.html"] = explorer_page(comparison_record(replace(asked, links=beside)))
+    formats = Formats(request.how.formats)
+    files, notes = documents({"report": comparison_report(request)}, formats, request.how.fonts)
+    if "explorer" in request.how.formats:
+        links = {family: file for family, file in request.links.items() if "explorer" not in file}
+        files["explorer.html"] = explorer_page(comparison_record(replace(request, links=links)))
     return files, notes, formats.lacking
 
 
-def batch_files(asked: BatchReportRequest) -> Made:
+def batch_files(request: BatchReportRequest) -> Made:
     """Files of the report of a batch by name, notes, and which extras lack for more files."""
-    formats = Formats(asked.how.formats)
-    files, notes = documents({"report": batch_report(asked.batch, asked.how.about)}, formats, asked.how.fonts)
+    formats = Formats(request.how.formats)
+    files, notes = documents({"report": batch_report(request.batch, request.how.about)}, formats, request.how.fonts)
     if formats.make("xlsx"):
-        files["batch.xlsx"] = batch_workbook(asked.batch, asked.how.about)
+        files["batch.xlsx"] = batch_workbook(request.batch, request.how.about)
     return files, notes, formats.lacking
 
 
 def documents(
     made: Mapping[str, Document], formats: Formats, fonts: Sequence[Path]
 ) -> tuple[dict[str, str | bytes], list[str]]:
-    """Return documents as files of the formats asked for, by name without ending, and what else is to be told."""
+    """Documents as files of the requested formats, by name without ending, and notes."""
     files: dict[str, str | bytes] = {}
     notes: list[str] = []
     for name, document in made.items():
         if formats.make("html"):
             files[f"{name}.html"] = html(document)
         if formats.make("pdf"):
-            files[f"{name}.pdf"], told = pdf_with_notes(document, fonts)
-            notes += [note for note in told if note not in notes]
+            files[f"{name}.pdf"], messages = pdf_with_notes(document, fonts)
+            notes += [note for note in messages if note not in notes]
     return files, notes
 
 
@@ -150,11 +150,11 @@ class _Files:
     def _explorer(self, front: ParetoFront, sheets: Mapping[int, str], names: Mapping[int, str]) -> str:
         """Return the page of the explorer; it leads to the files that are written beside it."""
         request = self.request
-        beside: dict[int, dict[str, str]] = {rank: {"Calculation sheet": file} for rank, file in sheets.items()}
+        linked: dict[int, dict[str, str]] = {rank: {"Calculation sheet": file} for rank, file in sheets.items()}
         for rank, name in names.items():
             drawn = {f"Drawing, {word.upper()}": file for word, file in self._drawing_files(rank, name).items()}
-            beside[rank] = {**beside.get(rank, {}), **drawn}
-        return explorer_page(explorer_record(request, beside))
+            linked[rank] = {**linked.get(rank, {}), **drawn}
+        return explorer_page(explorer_record(request, linked))
 
     def _document(self, document: Document, name: str) -> None:
         files, notes = documents({name: document}, self.formats, self.request.how.fonts)
@@ -179,20 +179,20 @@ class _Files:
                 request.calculation, design, request.rows, request.how.about, proven
             )
         for word, file in self._drawing_files(design.rank or 0, name).items():
-            told = design.frame.title, program_name(request.front), request.how.about
-            self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *told)
+            heading = design.frame.title, program_name(request.front), request.how.about
+            self.files[file] = MAKERS[word](request.drawings[design.rank or 0], *heading)
         bodies = [word for word in BODIES if word in request.how.formats]
         if drawing is not None and bodies and (not round_areas(drawing) or any(map(self.formats.make, bodies))):
-            self._tell_left_out(drawing)
+            self._note_missing_bodies(drawing)
 
     def _picture(self, design: Design, prefix: str = "drawing") -> str:
         """Return the drawing of a design as SVG, with names inside that begin so."""
-        told = design.frame.title, program_name(self.request.front), self.request.how.about
-        return svg_of(self.request.drawings[design.rank or 0], *told, prefix)
+        heading = design.frame.title, program_name(self.request.front), self.request.how.about
+        return svg_of(self.request.drawings[design.rank or 0], *heading, prefix)
 
-    def _tell_left_out(self, drawing: Drawing) -> None:
-        """Tell which parts of a drawing are not among its bodies."""
-        names = ", ".join(item.name for item in left_out(drawing))
+    def _note_missing_bodies(self, drawing: Drawing) -> None:
+        """Note which parts of a drawing have no body."""
+        names = ", ".join(item.name for item in not_bodies(drawing))
         if not round_areas(drawing):
             names = f"all parts ({names})"
         note = f"STEP and glTF are without {names}: only parts that are round about the axis are bodies"

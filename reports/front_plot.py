@@ -19,14 +19,14 @@ from .label_spots import Box, label_spots
 
 MOST_PANELS = 3  # of objectives that are drawn in pairs
 LABELLED = 20  # designs up to which every point has its rank beside it
-WIDE, HIGH = 640, 400  # of one panel, in points of the drawing
+WIDTH, HEIGHT = 640, 400  # of one panel, in points of the drawing
 LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58  # left of the field at least
-BESIDE = 38  # of that for the name of the axis, and between it and the numbers
+NAME_SPACE = 38  # of that for the name of the axis, and between it and the numbers
 TICKS = 6
-ROOM = 0.04  # beside the outermost values, as a share of the range
+MARGIN = 0.04  # beside the outermost values, as a share of the range
 ALIKE = 1e-9  # share of their size by which values differ that are drawn as one
-WIDE_RANGE = 20  # largest over smallest value from which on an axis is logarithmic
-MANY_DECADES = 2000
+LOG_FROM = 20  # largest over smallest value from which on an axis is logarithmic
+DECADES_FROM = 2000
 FONTS = "system-ui, Noto Sans, DejaVu Sans, sans-serif"
 LETTER, LINE = 8.0, 13.0  # of a rank beside its point: width of a character, height
 DOT, KNEE = 5.5, 10.0  # radii
@@ -54,13 +54,13 @@ class Axis:
     def of(name: str, unit: str, values: Sequence[float]) -> Axis:
         """Return an axis with round ticks on which all values have room."""
         low, high = min(values), max(values)
-        if low > 0 and high / low >= WIDE_RANGE:
+        if low > 0 and high / low >= LOG_FROM:
             return Axis._logarithmic(name, unit, low, high)
         span = high - low
         if span <= ALIKE * max(abs(low), abs(high)):
             span = abs(high) or 1.0
         step = _round_step(span / TICKS)
-        first, last = math.floor((low - ROOM * span) / step), math.ceil((high + ROOM * span) / step)
+        first, last = math.floor((low - MARGIN * span) / step), math.ceil((high + MARGIN * span) / step)
         if low >= 0:
             first = max(first, 0)
         ticks = tuple(k * step for k in range(first, last + 1))
@@ -69,10 +69,10 @@ class Axis:
     @staticmethod
     def _logarithmic(name: str, unit: str, low: float, high: float) -> Axis:
         decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2)
-        steps = (1, 2, 5) if high / low < MANY_DECADES else (1,)
+        steps = (1, 2, 5) if high / low < DECADES_FROM else (1,)
         every = [step * 10.0**decade for decade in decades for step in steps]
-        first = max(t for t in every if t <= low / (1 + ROOM))
-        last = min((t for t in every if t >= high * (1 + ROOM)), default=every[-1])
+        first = max(t for t in every if t <= low / (1 + MARGIN))
+        last = min((t for t in every if t >= high * (1 + MARGIN)), default=every[-1])
         return Axis(name, unit, first, last, tuple(t for t in every if first <= t <= last), True)
 
     def share(self, value: float) -> float:
@@ -117,8 +117,8 @@ class Drawn:
 
     def axis(self, name: str) -> Axis:
         """Return the axis of an objective; it tells where more is better."""
-        told = "" if self.objectives[name] == "min" else ", more is better"
-        return Axis.of(f"{words(name)}{told}", self.unit(name), self.values(name))
+        direction = "" if self.objectives[name] == "min" else ", more is better"
+        return Axis.of(f"{words(name)}{direction}", self.unit(name), self.values(name))
 
     def listed(self) -> dict[str, int]:
         """Return the families in the order of their best designs, with their numbers."""
@@ -156,8 +156,8 @@ def front_svg(front: ParetoFront, chosen: Sequence[int] = (), linked: bool = Tru
     if drawn.why_not():
         return ""
     pairs = _pairs(drawn)
-    panels = [_panel(drawn, pair, k * HIGH, chosen, linked) for k, pair in enumerate(pairs)]
-    return _document("".join(panels), HIGH * len(pairs))
+    panels = [_panel(drawn, pair, k * HEIGHT, chosen, linked) for k, pair in enumerate(pairs)]
+    return _document("".join(panels), HEIGHT * len(pairs))
 
 
 def front_file(
@@ -190,7 +190,7 @@ def front_file(
     for line in textwrap.wrap(f"{printable(title)}: {_and([words(n) for n in shown])}", TITLE_LETTERS):
         parts.append(f'<text x="{left}" y="{y}" font-size="16" font-weight="600">{escape(line)}</text>')
         y += LINE_HIGH + 3
-    for line in textwrap.wrap(_told(drawn, shown), TEXT_LETTERS):
+    for line in textwrap.wrap(_caption(drawn, shown), TEXT_LETTERS):
         parts.append(f'<text x="{left}" y="{y}" fill="#5b6775">{escape(line)}</text>')
         y += LINE_HIGH
     for name, k in drawn.listed().items():
@@ -199,19 +199,19 @@ def front_file(
         y += LINE_HIGH
     y -= LINE_HIGH - 4
     chosen = [d.rank or 0 for d in designs]
-    parts += [_panel(drawn, pair, y + k * HIGH, chosen, False) for k, pair in enumerate(pairs)]
-    y += HIGH * len(pairs)
+    parts += [_panel(drawn, pair, y + k * HEIGHT, chosen, False) for k, pair in enumerate(pairs)]
+    y += HEIGHT * len(pairs)
     foot = textwrap.wrap(printable(proven), FOOT_LETTERS)
     for k, line in enumerate(foot):
         parts.append(f'<text x="{left}" y="{y + 8 + FOOT * k}" font-size="11.5" fill="#5b6775">{escape(line)}</text>')
     high = y + (FOOT * len(foot) + 4 if foot else 0)
-    paper = f'<rect x="0.5" y="0.5" width="{WIDE - 1}" height="{high - 1}" rx="8" fill="#ffffff" stroke="#d5dbe2"/>'
+    paper = f'<rect x="0.5" y="0.5" width="{WIDTH - 1}" height="{high - 1}" rx="8" fill="#ffffff" stroke="#d5dbe2"/>'
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + _document(paper + "".join(parts), high) + "\n"
 
 
 def _document(content: str, high: int) -> str:
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDE} {high}" width="{WIDE}" height="{high}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {high}" width="{WIDTH}" height="{high}" '
         f'font-family="{FONTS}" font-size="13" fill="#1b2430">{content}</svg>'
     )
 
@@ -220,18 +220,18 @@ def _pairs(drawn: Drawn) -> list[tuple[str, str]]:
     return list(combinations(drawn.objectives, 2))[:MOST_PANELS]
 
 
-def _told(drawn: Drawn, shown: Sequence[str]) -> str:
-    """Return in a line what is drawn, and what is not."""
+def _caption(drawn: Drawn, shown: Sequence[str]) -> str:
+    """Caption: what is drawn, and what is not."""
     of = "both" if len(drawn.objectives) == 2 else "all objectives"
-    told = [f"{len(drawn.designs)} designs, #1 nearest to the best of {of}"]
+    parts = [f"{len(drawn.designs)} designs, #1 nearest to the best of {of}"]
     if any("knee" in d.note for d in drawn.designs):
-        told.append("ring: knee")
+        parts.append("ring: knee")
     if len(drawn.objectives) == 2:
-        told.append("dashes: what no design passes")
+        parts.append("dashes: what no design passes")
     hidden = [words(n) for n in drawn.objectives if n not in shown]
     if hidden:
-        told.append(f"not drawn: {_and(hidden)}")
-    return "; ".join(told)
+        parts.append(f"not drawn: {_and(hidden)}")
+    return "; ".join(parts)
 
 
 def _and(names: Sequence[str]) -> str:
@@ -242,8 +242,8 @@ def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[i
     columns = [drawn.values(n) for n in pair]
     x_axis, y_axis = (drawn.axis(n) for n in pair)
     numbers = [page_text(tick) for tick in y_axis.ticks]
-    left = max(LEFT, BESIDE + LETTER * max(map(len, numbers)))
-    width, height, top = WIDE - left - RIGHT, HIGH - TOP - BOTTOM, above + TOP
+    left = max(LEFT, NAME_SPACE + LETTER * max(map(len, numbers)))
+    width, height, top = WIDTH - left - RIGHT, HEIGHT - TOP - BOTTOM, above + TOP
 
     def place(x: float, y: float) -> tuple[float, float]:
         return left + width * x_axis.share(x), top + height * (1 - y_axis.share(y))
@@ -270,12 +270,12 @@ def _panel(drawn: Drawn, pair: tuple[str, str], above: float, chosen: Sequence[i
         path = "L".join(f"{x:.1f} {y:.1f}" for x, y in stairs)
         parts.append(f'<path class="stairs" d="M{path}" fill="none" stroke="#8ba3bb" stroke-dasharray="5 4"/>')
     points = [
-        (design, *place(x, y), f"{_said(x_axis, x)}, {_said(y_axis, y)}")
+        (design, *place(x, y), f"{_value_text(x_axis, x)}, {_value_text(y_axis, y)}")
         for design, x, y in zip(drawn.designs, *columns, strict=True)
     ]
-    for k, (design, x, y, said) in reversed(list(enumerate(points))):  # the best ranks on top
+    for k, (design, x, y, hint) in reversed(list(enumerate(points))):  # the best ranks on top
         family = drawn.families[k] if drawn.families else ""
-        parts.append(_point(design, x, y, said, design.rank in chosen, linked, (family, drawn.listed().get(family, 0))))
+        parts.append(_point(design, x, y, hint, design.rank in chosen, linked, (family, drawn.listed().get(family, 0))))
     field = Box(left, top, left + width, top + height)
     parts += _ranks(drawn, [(x, y) for _, x, y, _ in points], stairs, field)
     return "".join(parts)
@@ -300,7 +300,7 @@ def _ranks(
     ]
 
 
-def _said(axis: Axis, value: float) -> str:
+def _value_text(axis: Axis, value: float) -> str:
     return f"{axis.name} {page_text(value)} {unit_text(axis.unit)}".strip()
 
 
@@ -313,18 +313,18 @@ def _text(x: float, y: float, text: str, anchor: str) -> str:
 
 
 def _point(
-    design: Design, x: float, y: float, said: str, full: bool, linked: bool, family: tuple[str, int] = ("", 0)
+    design: Design, x: float, y: float, values: str, full: bool, linked: bool, family: tuple[str, int] = ("", 0)
 ) -> str:
     name, k = family
     knee = "knee" in design.note
-    told = f"#{design.rank}" + (f", {printable(words(name))}" if name else "") + f": {said}" + " (knee)" * knee
+    hint = f"#{design.rank}" + (f", {printable(words(name))}" if name else "") + f": {values}" + " (knee)" * knee
     colour = FAMILY_COLOURS[k % len(FAMILY_COLOURS)] if name else ACCENT
     ring = (
         f'<circle class="knee" cx="{x:.1f}" cy="{y:.1f}" r="{KNEE:g}" fill="none" stroke="#b3541e" stroke-width="1.6"/>'
     )
     shape = FAMILY_SHAPES[k % len(FAMILY_SHAPES)] if name else "circle"
     dot = _shape(x, y, shape, colour if full else "#ffffff", colour, "dot" if full else "hollow")
-    drawn = f"<title>{escape(told)}</title>{ring if knee else ''}{dot}"
+    drawn = f"<title>{escape(hint)}</title>{ring if knee else ''}{dot}"
     if linked:
         return f'<a href="#design-{design.rank}">{drawn}</a>'
     return f"<g>{drawn}</g>"
@@ -345,10 +345,10 @@ def _shape(x: float, y: float, shape: str, fill: str, stroke: str, kind: str = "
 
 def front_in_words(front: ParetoFront) -> str:
     """Description of the drawing, for people who do not see it."""
-    told = []
+    ranges = []
     for name, sense in front.frame.objectives.items():
         unit = front.frame.units[name]
         values = [float(from_si(d.objectives[name], unit)) for d in front.designs]
         best, worst = (min(values), max(values)) if sense == "min" else (max(values), min(values))
-        told.append(f"{name} from {page_text(best)} to {page_text(worst)} {unit_text(unit)}".strip())
-    return f"{len(front.designs)} designs: {'; '.join(told)}"
+        ranges.append(f"{name} from {page_text(best)} to {page_text(worst)} {unit_text(unit)}".strip())
+    return f"{len(front.designs)} designs: {'; '.join(ranges)}"

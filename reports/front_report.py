@@ -36,7 +36,7 @@ from .sheet.blocks import (
     Strong,
     TableBlock,
     TableRow,
-    said,
+    inline,
 )
 from .sheet.design_sheet import (
     DRAWN,
@@ -50,7 +50,7 @@ from .sheet.design_sheet import (
 
 SCORE, OVER_RANGE = "score", "over the range"
 PAGE = 86.0  # letters beside each other in a table
-LEFT_OUT = 40  # rows that are told one by one
+LISTED_ROWS = 40  # rows that are listed one by one
 NEAR = 20  # near-equal designs that are listed
 ELASTICITIES = 8  # of a design, the largest first
 NOT_COVERED = (
@@ -102,10 +102,10 @@ def front_report(request: FrontReportRequest) -> Document:
 
 
 def first_design(request: FrontReportRequest) -> list[Block]:
-    """Return of a report of a front what it tells of its designs, the first in full, and of the task."""
-    told = _Report(replace(request, full=1))
-    several = told.ranked() if len(request.front.designs) > 1 else []
-    return [*several, *(block for design in told.full for block in told.design(design)), *told.task()]
+    """Blocks on the designs of a front, the first in full, and on the task."""
+    report = _Report(replace(request, full=1))
+    several = report.ranked() if len(request.front.designs) > 1 else []
+    return [*several, *(block for design in report.full for block in report.design(design)), *report.task()]
 
 
 class _Report:
@@ -123,7 +123,7 @@ class _Report:
         blocks += self.ranked() if self.front.designs else []
         for design in self.full:
             blocks += self.design(design)
-        blocks += [*self._runners_up(), *self.task(), *self._search(), *self._left_out(), *self._certificate()]
+        blocks += [*self._runners_up(), *self.task(), *self._search(), *self._excluded(), *self._certificate()]
         blocks += [*self._files(), *self._again()]
         return Document(
             kind="Design report",
@@ -150,12 +150,12 @@ class _Report:
     # -- what was found ------------------------------------------------------------------------
 
     def _nothing(self) -> list[Block]:
-        told = self.front.explanation
-        if not told:
+        explanation = self.front.explanation
+        if not explanation:
             return []
-        blocks: list[Block] = [Heading("Why", anchor="why"), Paragraph(told.headline)]
+        blocks: list[Block] = [Heading("Why", anchor="why"), Paragraph(explanation.headline)]
         rows = []
-        for miss in told.conflicts or ():
+        for miss in explanation.conflicts or ():
             unit = str(miss.unit or "-")
             sides = [
                 Amount(in_its_unit(float(side), unit, FULL_DIGITS)) if isinstance(side, float) else ""
@@ -167,12 +167,12 @@ class _Report:
             rows.append(TableRow((Code(str(miss.limit)), *sides, missed), mark="bad"))
         if rows:
             blocks.append(TableBlock.of("Limits that the nearest design misses", MISSED_COLUMNS, rows))
-        nearest = {**(told.nearest or {}), **(told.parts or {})}
+        nearest = {**(explanation.nearest or {}), **(explanation.parts or {})}
         if nearest:
             blocks.append(Paragraph("The nearest design: " + ", ".join(f"{k} {v}" for k, v in nearest.items()) + "."))
         blocks.append(
             Paragraph(
-                said(
+                inline(
                     "What would help, and which limits exclude each other, tells ",
                     Code("clutchsynth explain SPEC.yaml"),
                     ".",
@@ -188,7 +188,7 @@ class _Report:
             blocks.append(Figure(svg, f"The front. {front_in_words(self.front)}", _plot_caption(self.front)))
         if self.request.explorer:
             link = Link(self.request.explorer, self.request.explorer)
-            blocks.append(Paragraph(said("To filter, to compare and to see any design: ", link, ".")))
+            blocks.append(Paragraph(inline("To filter, to compare and to see any design: ", link, ".")))
         for number, names in enumerate(self._column_groups()):
             columns = (Column("rank", number=True, width=4), *(self._column(name) for name in names))
             caption = "All designs of the front, the best rank first" + (" (continued)" if number else "")
@@ -203,14 +203,14 @@ class _Report:
         rated = [OVER_RANGE] if any(d.robust for d in self.front.designs) else []
         names = [SCORE, *rated, *self.frame.objectives, *sizes, *first.choices, *first.parts]
         groups: list[list[str]] = [[]]
-        room = PAGE
+        remaining = PAGE
         for name in names:
             needed = self._column(name).width + 2
-            if needed > room and groups[-1]:
+            if needed > remaining and groups[-1]:
                 groups.append([])
-                room = PAGE
+                remaining = PAGE
             groups[-1].append(name)
-            room -= needed
+            remaining -= needed
         return groups
 
     def _column(self, name: str) -> Column:
@@ -250,7 +250,7 @@ class _Report:
             blocks.append(Paragraph(over_range_in_words(design)))
         if rank in self.request.sheets:
             blocks.append(
-                Paragraph(said("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
+                Paragraph(inline("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
             )
         if rank in self.request.drawings:
             blocks.append(Figure(self.request.drawings[rank], f"Design #{rank}. {DRAWN_ALT}", DRAWN))
@@ -268,12 +268,12 @@ class _Report:
 
     def _parts(self, design: Design) -> list[Cell]:
         """Rows that fill the slots, with table, source and confidence."""
-        told: list[Cell] = []
+        parts: list[Cell] = []
         for slot, row in design.parts.items():
             confidence = f"confidence: {row['confidence']}" if row.get("confidence") else ""
             source = "; ".join(str(x) for x in (f"table {row['table']}", row.get("source"), confidence) if x)
-            told.append(said(f"{slot.replace('_', ' ')}: ", Code(str(row)), f" ({source})"))
-        return told
+            parts.append(inline(f"{slot.replace('_', ' ')}: ", Code(str(row)), f" ({source})"))
+        return parts
 
     def _values(self, design: Design) -> tuple[tuple[str, tuple[TableRow, ...]], ...]:
         groups: list[tuple[str, tuple[TableRow, ...]]] = []
@@ -322,7 +322,7 @@ class _Report:
             rows.append(
                 TableRow(
                     (
-                        said(texts.get(name) or name, " ", Code(name)),
+                        inline(texts.get(name) or name, " ", Code(name)),
                         sides[0],
                         SIGN_OF[self.frame.limit_senses[name]],
                         sides[1],
@@ -336,11 +336,11 @@ class _Report:
         return rows
 
     def _prices(self, design: Design) -> list[Block]:
-        own = [row for row in self.request.prices if row.get("design") == design.rank]
-        if own:
-            told = [str(row["sentence"]) for row in own if row.get("status") != "no influence"]
-            return [Heading(f"Prices at #{design.rank}", level=2), Bullets(tuple(told[:12]))] if told else []
-        found = sorted(
+        of_design = [row for row in self.request.prices if row.get("design") == design.rank]
+        if of_design:
+            sentences = [str(row["sentence"]) for row in of_design if row.get("status") != "no influence"]
+            return [Heading(f"Prices at #{design.rank}", level=2), Bullets(tuple(sentences[:12]))] if sentences else []
+        steepest = sorted(
             (
                 (abs(slope), objective, name, slope)
                 for objective, slopes in design.elasticity.items()
@@ -349,11 +349,11 @@ class _Report:
             ),
             key=lambda entry: (-entry[0], entry[1], entry[2]),
         )
-        if not found:
+        if not steepest:
             return []
         rows = [
             TableRow((Code(name), Code(objective), f"{_signed(slope)} %"))
-            for _, objective, name, slope in found[:ELASTICITIES]
+            for _, objective, name, slope in steepest[:ELASTICITIES]
         ]
         return [
             Heading(f"What 1 % more changes at #{design.rank}", level=2),
@@ -378,7 +378,7 @@ class _Report:
                 )
         if not blocks and not self.front.designs:
             return []
-        hint = said(
+        hint = inline(
             "A design that is not listed is beaten: some design here is at least as good in every objective and better "
             "in one, up to the gap. Which other parts come near, and by how much they lose, tells ",
             Code("clutchsynth near-equals DIR --design 1"),
@@ -409,8 +409,8 @@ class _Report:
             TableRow((name, "", word, "stated" if name in self.frame.options else "default"))
             for name, word in self.calculation.options.items()
         )
-        told = (("Stated", rows(typed)), ("Options", options), ("Assumed: defaults of the family", rows(usual)))
-        groups = tuple(group for group in told if group[1])
+        sections = (("Stated", rows(typed)), ("Options", options), ("Assumed: defaults of the family", rows(usual)))
+        groups = tuple(group for group in sections if group[1])
         blocks: list[Block] = [Heading("The task", anchor="task")]
         blocks.append(TableBlock("Requirements", VALUE_COLUMNS, groups) if groups else Paragraph("No requirements."))
         if self.frame.not_asked:
@@ -419,7 +419,7 @@ class _Report:
 
     def _search(self) -> list[Block]:
         settings = self.front.settings
-        told: list[Cell] = [
+        lines: list[Cell] = [
             "Objectives: "
             + ", ".join(
                 f"{name} ({'small' if sense == 'min' else 'large'})" for name, sense in self.frame.objectives.items()
@@ -432,15 +432,15 @@ class _Report:
             ("robust", "Scatters"),
         ):
             if settings.get(key):
-                told.append(f"{words}: {_in_words(settings[key])}")
+                lines.append(f"{words}: {_in_words(settings[key])}")
         gap, sizes = gap_text(float(settings.get("gap") or 0)), "makeable" if settings.get("grid") else "continuous"
-        told.append(f"At most {settings.get('points')} designs, gap {gap}, {sizes} sizes, seed {settings.get('seed')}")
+        lines.append(f"At most {settings.get('points')} designs, gap {gap}, {sizes} sizes, seed {settings.get('seed')}")
         weights = settings.get("weights")
         if weights:
-            told.append(f"Weights of the ranking: {_in_words(weights)}")
-        return [Heading("What was asked of the search", anchor="search"), Bullets(tuple(told))]
+            lines.append(f"Weights of the ranking: {_in_words(weights)}")
+        return [Heading("What was asked of the search", anchor="search"), Bullets(tuple(lines))]
 
-    def _left_out(self) -> list[Block]:
+    def _excluded(self) -> list[Block]:
         statistics = self.front.statistics
         rows = list(statistics.get("rows_left_out") or ())
         others = list(statistics.get("combinations_left_out") or ())
@@ -448,18 +448,18 @@ class _Report:
             return []
         table = [
             TableRow(tuple(str(row.get(key, "")) for key in ("slot", "designation", "reason")))
-            for row in rows[:LEFT_OUT]
+            for row in rows[:LISTED_ROWS]
         ]
         blocks: list[Block] = [Heading("Rows left out, and why", anchor="left-out")]
         if table:
             blocks.append(TableBlock.of("Rows of tables that were not searched", OUT_COLUMNS, table))
-        if len(rows) > LEFT_OUT:
-            blocks.append(Paragraph(f"{len(rows) - LEFT_OUT} more are named in front.json."))
+        if len(rows) > LISTED_ROWS:
+            blocks.append(Paragraph(f"{len(rows) - LISTED_ROWS} more are named in front.json."))
         return blocks + ([Bullets(tuple(map(str, others)))] if others else [])
 
     def _certificate(self) -> list[Block]:
         c, statistics = self.front.certificate, self.front.statistics
-        told: list[Cell] = [*front_details(self.front), NOT_COVERED]
+        lines: list[Cell] = [*front_details(self.front), NOT_COVERED]
         numbers = [f"{c.combinations:,} combinations of parts and counts".replace(",", " ")]
         numbers += [
             f"{c.excluded_by_bound:,} excluded by bounds".replace(",", " "),
@@ -467,9 +467,9 @@ class _Report:
         ]
         if statistics.get("boxes"):
             numbers.append(f"{statistics['boxes']:,} boxes".replace(",", " "))
-        told.append("; ".join(numbers) + ".")
-        told.append(said("It can be checked by other code: ", Code("clutchsynth verify DIR"), "."))
-        return [Heading("The certificate", anchor="certificate"), Bullets(tuple(told))]
+        lines.append("; ".join(numbers) + ".")
+        lines.append(inline("It can be checked by other code: ", Code("clutchsynth verify DIR"), "."))
+        return [Heading("The certificate", anchor="certificate"), Bullets(tuple(lines))]
 
     def _files(self) -> list[Block]:
         if not self.request.curves:
@@ -482,22 +482,22 @@ class _Report:
     def _again(self) -> list[Block]:
         record = self.front.record or {}
         versions = record.get("versions", {})
-        told: list[Cell] = [said("Checksum of the result: ", Code(self.front.result_digest))]
-        told.append(said("Checksum of the calculation: ", Code(self.calculation.digest)))
+        lines: list[Cell] = [inline("Checksum of the result: ", Code(self.front.result_digest))]
+        lines.append(inline("Checksum of the calculation: ", Code(self.calculation.digest)))
         if versions:
-            told.append("Computed with " + ", ".join(f"{name} {version}" for name, version in versions.items()))
+            lines.append("Computed with " + ", ".join(f"{name} {version}" for name, version in versions.items()))
         digests = sorted(
             {f"{row['table']}: {row} {str(row['hash'])[:12]}" for d in self.front.designs for row in d.parts.values()}
         )
         if digests:
-            told.append("Rows of tables used, with the first digits of their hashes: " + "; ".join(digests[:60]))
+            lines.append("Rows of tables used, with the first digits of their hashes: " + "; ".join(digests[:60]))
         sources: list[Cell] = list(self.calculation.sources)
         return [
             Heading("Sources of the model", anchor="sources"),
             Bullets(tuple(sources)),
             Heading("To reproduce", anchor="again"),
-            Bullets(tuple(told)),
-            Paragraph(said("The question, as ", Code("clutchsynth run"), " reads it:")),
+            Bullets(tuple(lines)),
+            Paragraph(inline("The question, as ", Code("clutchsynth run"), " reads it:")),
             Listing(_spec_text(self.front)),
         ]
 

@@ -32,7 +32,7 @@ def label_spots(
     field: Box,
     lines: Sequence[Box] = (),
     gap: float = 1.0,
-    whole: bool = False,
+    integer: bool = False,
 ) -> list[Box | None]:
     """Positions of the names of points; None where there is no room.
 
@@ -48,42 +48,42 @@ def label_spots(
         What names cover only where there is no other room.
     gap : float
         Between a point and a name beside it.
-    whole : bool
+    integer : bool
         Whether places are whole numbers, as the cells of a terminal.
 
     Examples
     --------
     >>> field = Box(0, 0, 10, 3)
-    >>> label_spots([Box(2, 1, 3, 2), Box(4, 1, 5, 2)], [(2, 1), (2, 1)], field, whole=True)
+    >>> label_spots([Box(2, 1, 3, 2), Box(4, 1, 5, 2)], [(2, 1), (2, 1)], field, integer=True)
     [Box(left=4.0, top=0, right=6.0, bottom=1), Box(left=6.0, top=0, right=8.0, bottom=1)]
     """
-    found: list[Box | None] = []
-    taken = list(points)
+    spots: list[Box | None] = []
+    occupied = list(points)
     for point, size in zip(points, sizes, strict=True):
         free = (
             []
             if size is None
             else [
                 box
-                for box in _beside(point, size, gap, whole)
-                if field.holds(box) and not any(box.meets(other) for other in taken)
+                for box in _positions(point, size, gap, integer)
+                if field.holds(box) and not any(box.meets(other) for other in occupied)
             ]
         )
         clear = [box for box in free if not any(box.meets(line) for line in lines)]
         spot = next(iter([*clear, *free]), None)
-        found.append(spot)
+        spots.append(spot)
         if spot is not None:
-            taken.append(spot)
-    return found
+            occupied.append(spot)
+    return spots
 
 
-def _beside(point: Box, size: tuple[float, float], gap: float, whole: bool) -> Iterator[Box]:
+def _positions(point: Box, size: tuple[float, float], gap: float, integer: bool) -> Iterator[Box]:
     """Yield the places beside a point, those first that are read as its name at once."""
     width, height = size
     right, left = point.right + gap, point.left - gap - width
     above, level, below = point.top - height, (point.top + point.bottom - height) / 2, point.bottom
     middle = (point.left + point.right - width) / 2
-    if whole:
+    if integer:
         level, middle = level // 1, middle // 1
     for x, y in (
         (right, above),

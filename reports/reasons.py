@@ -53,8 +53,8 @@ def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
 
 def dear(design: Design, name: str) -> str:
     """Remark that being best in an objective costs a design much for little, where its note says so."""
-    _, found, more = next((n for n in design.note.split("; ") if f" {name}," in n), "").partition(f" {name}")
-    return more if found else ""
+    _, separator, more = next((n for n in design.note.split("; ") if f" {name}," in n), "").partition(f" {name}")
+    return more if separator else ""
 
 
 def _is_best(front: ParetoFront, design: Design, name: str, sense: str) -> bool:

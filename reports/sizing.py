@@ -60,11 +60,11 @@ def sizing_line(calculation: Calculation, design: Design) -> str:
     tree = _without_ones(tree, calculation, outcome.values)
     leaves, quantities = _Leaves(outcome), calculation.quantities
     inserted = _chain(Typesetter(quantities, leaves.number, numeric=True).lay(tree))
-    told = _chain(Typesetter(quantities, leaves.name, numeric=True).lay(tree))
+    chain = _chain(Typesetter(quantities, leaves.name, numeric=True).lay(tree))
     result = f"{in_unit(outcome.verdicts[rule.name].limit, rule.unit)} {unit_text(rule.unit)}".rstrip()
     if tree[0] == "q" or inserted == result:
-        return f"sized for {result} ({told})"
-    return f"sized for {inserted} = {result} ({told})"
+        return f"sized for {result} ({chain})"
+    return f"sized for {inserted} = {result} ({chain})"
 
 
 def _without_ones(tree: Expression, calculation: Calculation, values: Mapping[str, float]) -> Expression:

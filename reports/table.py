@@ -22,7 +22,7 @@ from .reasons import why
 from .sizing import sizing_line
 
 SHOWN = 10  # designs on one screen
-EXPLAINED = 3  # designs of which it is told why they are there, beside those that are best in something
+EXPLAINED = 3  # designs with a reason for their place, in addition to the best of each objective
 BETWEEN = 3  # blanks between two columns
 NARROWEST = 18  # of the column of what limits a design
 
@@ -98,13 +98,13 @@ def _print_wrapped(console: Console, text: str, indent: int) -> None:
 
 
 def _other_sizes(design: Design) -> str:
-    """Return the variables and counts of a design that no column tells."""
+    """Variables and counts of a design that have no column."""
     frame = design.frame
-    told = _quantities(frame.headline, frame.objectives)
+    shown = _quantities(frame.headline, frame.objectives)
     return ", ".join(
         f"{words(name)} {in_unit(design.values[name], frame.units[name])} {unit_text(frame.units[name])}".rstrip()
         for name, kind in frame.kinds.items()
-        if kind in ("variable", "count") and name not in told
+        if kind in ("variable", "count") and name not in shown
     )
 
 
@@ -178,44 +178,44 @@ def _side_by_side(shown: Sequence[Design], columns: Iterable[_Column], width: in
     """Return columns as tables no wider than a screen, each begun with the rank; last what limits each design."""
     ranks = _column("rank", "", [f"#{design.rank}" for design in shown])
     groups: list[list[_Column]] = [[ranks]]
-    room = width - ranks.width
+    remaining = width - ranks.width
     for column in columns:
-        if column.width + BETWEEN > room and len(groups[-1]) > 1:
+        if column.width + BETWEEN > remaining and len(groups[-1]) > 1:
             groups.append([ranks])
-            room = width - ranks.width
+            remaining = width - ranks.width
         groups[-1].append(column)
-        room -= column.width + BETWEEN
+        remaining -= column.width + BETWEEN
     limits = [", ".join(map(words, reached_limits(d))) or "no limit" for d in shown]
-    if room - BETWEEN < min(NARROWEST, max(map(len, limits))):
+    if remaining - BETWEEN < min(NARROWEST, max(map(len, limits))):
         groups.append([ranks])
-        room = width - ranks.width
-    cells = ["\n".join(wrapped(text, room - BETWEEN)) for text in limits]
+        remaining = width - ranks.width
+    cells = ["\n".join(wrapped(text, remaining - BETWEEN)) for text in limits]
     groups[-1].append(_column("limited by", "", cells))
     return [_grid(group) for group in groups]
 
 
-def print_common_front(found: FrontOfFamilies, console: Console, every: bool = False) -> None:
+def print_common_front(front: FrontOfFamilies, console: Console, every: bool = False) -> None:
     """Print the common front of several families by what one decides by, as far as all of them have it.
 
     Parameters
     ----------
-    found : FrontOfFamilies
+    front : FrontOfFamilies
         With designs.
     console, every
         As for :func:`print_front`.
     """
-    count = len(found.designs) if every else min(SHOWN, len(found.designs))
-    shown = list(found.designs[:count])
-    families = dict.fromkeys(found.families)
-    designs, kinds = _number(found.designs, "design", "designs"), _number(families, "family", "families")
-    first = f"; #1 comes nearest to the best {_listed(map(words, found.objectives))}" if len(found.designs) > 1 else ""
+    count = len(front.designs) if every else min(SHOWN, len(front.designs))
+    shown = list(front.designs[:count])
+    families = dict.fromkeys(front.families)
+    designs, kinds = _number(front.designs, "design", "designs"), _number(families, "family", "families")
+    first = f"; #1 comes nearest to the best {_listed(map(words, front.objectives))}" if len(front.designs) > 1 else ""
     _print_wrapped(console, f"{designs} of {kinds}{first}", 0)
     console.print()
-    one_each = [next(d for d, own in zip(found.designs, found.families, strict=True) if own == f) for f in families]
-    names = _quantities(_shared_headline(one_each), found.objectives)
-    columns = _number_columns(shown, names, len(found.objectives))
-    columns.insert(0, _column("family", "", list(found.families[:count])))
-    if any(d.robust for d in found.designs):
+    one_each = [next(d for d, name in zip(front.designs, front.families, strict=True) if name == f) for f in families]
+    names = _quantities(_shared_headline(one_each), front.objectives)
+    columns = _number_columns(shown, names, len(front.objectives))
+    columns.insert(0, _column("family", "", list(front.families[:count])))
+    if any(d.robust for d in front.designs):
         columns.append(_column("robust", "", [rating_row(d)[0] or "not rated" for d in shown]))
     for table in _side_by_side(shown, columns, console.width):
         console.print(table)
@@ -223,8 +223,8 @@ def print_common_front(found: FrontOfFamilies, console: Console, every: bool = F
     for design in shown:
         if design.note:
             _print_wrapped(console, f"#{design.rank}: {words(design.note)}", 0)
-    if count < len(found.designs):
-        console.print(f"{len(found.designs) - count} more with --all, and in designs.csv")
+    if count < len(front.designs):
+        console.print(f"{len(front.designs) - count} more with --all, and in designs.csv")
 
 
 def _number(things: Sized, one: str, more: str) -> str:
@@ -235,7 +235,7 @@ def _shared_headline(designs: Sequence[Design]) -> list[str]:
     """Objectives of some family that all of them have, measured alike."""
     units = [d.frame.units for d in designs]
     shown = dict.fromkeys(name for d in designs for name in d.frame.headline)
-    return [n for n in shown if all(n in own for own in units) and len({own[n] for own in units}) == 1]
+    return [n for n in shown if all(n in its for its in units) and len({its[n] for its in units}) == 1]
 
 
 def _reserve(design: Design) -> float | None:

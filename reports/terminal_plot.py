@@ -33,19 +33,19 @@ LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 @dataclass(frozen=True)
-class Signs:
+class Glyphs:
     """What a plot is drawn with."""
 
     fine: tuple[int, int]  # dots of a cell, across and down
     upright: str
     level: str
     corner: str
-    left_tick: str
+    value_tick: str
     low_tick: str
 
 
-BRAILLE_SIGNS = Signs((2, 4), "│", "─", "└", "┤", "┬")
-ASCII_SIGNS = Signs((1, 1), "|", "-", "+", "+", "+")
+BRAILLE_GLYPHS = Glyphs((2, 4), "│", "─", "└", "┤", "┬")
+ASCII_GLYPHS = Glyphs((1, 1), "|", "-", "+", "+", "+")
 
 
 def print_plot(
@@ -75,7 +75,7 @@ def print_plot(
     if drawn.why_not():
         lines = [Text(f"no plot: {drawn.why_not()}")]
     else:
-        lines = plot_lines(drawn, min(console.width, WIDEST), BRAILLE_SIGNS if braille else ASCII_SIGNS)
+        lines = plot_lines(drawn, min(console.width, WIDEST), BRAILLE_GLYPHS if braille else ASCII_GLYPHS)
     for line in lines:
         console.print(line, soft_wrap=True)
 
@@ -88,7 +88,7 @@ def _writes(console: Console, text: str) -> bool:
     return True
 
 
-def plot_lines(drawn: Drawn, width: int, signs: Signs) -> list[Text]:
+def plot_lines(drawn: Drawn, width: int, glyphs: Glyphs) -> list[Text]:
     """Return the lines of a plot, none of them wider than ``width``.
 
     Parameters
@@ -97,29 +97,29 @@ def plot_lines(drawn: Drawn, width: int, signs: Signs) -> list[Text]:
         At least two designs of at least two objectives.
     width : int
         Characters on a line.
-    signs : Signs
+    glyphs : Glyphs
         What it is drawn with.
     """
     first, second, *_ = drawn.objectives
     x_axis, y_axis = drawn.axis(first), drawn.axis(second)
-    told = [number_text(tick) for tick in y_axis.ticks]
-    margin = max(map(len, told)) + 1
+    numbers = [number_text(tick) for tick in y_axis.ticks]
+    margin = max(map(len, numbers)) + 1
     columns = width - margin - 1
     if columns < FEWEST:
         return [Text(line) for line in textwrap.wrap("no plot: it needs wider lines", width)]
-    canvas = _field(drawn, (x_axis, y_axis), Canvas(columns, _rows(y_axis), signs))
-    beside = _beside(y_axis, told, canvas.rows)
+    canvas = _field(drawn, (x_axis, y_axis), Canvas(columns, _rows(y_axis), glyphs))
+    by_row = _numbers_by_row(y_axis, numbers, canvas.rows)
     lines = [Text(_cut(y_axis.title(), width))]
     for row in range(canvas.rows):
-        number = beside.get(row, "")
+        number = by_row.get(row, "")
         line = Text(f"{number:>{margin - 1}} ")
-        line.append(signs.left_tick if number else signs.upright, FAINT)
+        line.append(glyphs.value_tick if number else glyphs.upright, FAINT)
         line.append_text(canvas.line(row))
         line.rstrip()
         lines.append(line)
     ticks, below = _below(x_axis, columns)
-    rule = "".join(signs.low_tick if column in ticks else signs.level for column in range(columns))
-    lines.append(Text(" " * margin).append(signs.corner + rule, FAINT))
+    rule = "".join(glyphs.low_tick if column in ticks else glyphs.level for column in range(columns))
+    lines.append(Text(" " * margin).append(glyphs.corner + rule, FAINT))
     lines.append(Text((" " * margin + below).rstrip()))
     title = _cut(x_axis.title(), width)
     lines.append(Text(" " * (width - cell_len(title)) + title))
@@ -135,11 +135,11 @@ def _cut(text: str, width: int) -> str:
 
 
 def _sentences(drawn: Drawn) -> list[str]:
-    told = [f"{LETTERS[k % 26]}: {words(name)}" for name, k in drawn.listed().items()]
+    sentences = [f"{LETTERS[k % 26]}: {words(name)}" for name, k in drawn.listed().items()]
     names = [words(name) for name in drawn.objectives]
     if len(names) > 2:
-        told.append(f"drawn are the first two of {len(names)} objectives, without {', '.join(names[2:])}")
-    return told
+        sentences.append(f"drawn are the first two of {len(names)} objectives, without {', '.join(names[2:])}")
+    return sentences
 
 
 # ---- the axes -------------------------------------------------------------------------------------------------------
@@ -152,12 +152,12 @@ def _rows(axis: Axis) -> int:
     return min(even, key=lambda rows: (abs(rows - ROWS), -rows), default=ROWS)
 
 
-def _beside(axis: Axis, told: Sequence[str], rows: int) -> dict[int, str]:
+def _numbers_by_row(axis: Axis, numbers: Sequence[str], rows: int) -> dict[int, str]:
     """Return the numbers left of the field by row, one for each row at most."""
-    found: dict[int, str] = {}
-    for tick, text in zip(axis.ticks, told, strict=True):
-        found.setdefault(round((1 - axis.share(tick)) * (rows - 1)), text)
-    return found
+    by_row: dict[int, str] = {}
+    for tick, text in zip(axis.ticks, numbers, strict=True):
+        by_row.setdefault(round((1 - axis.share(tick)) * (rows - 1)), text)
+    return by_row
 
 
 def _below(axis: Axis, columns: int) -> tuple[set[int], str]:
@@ -182,29 +182,29 @@ class Canvas:
 
     columns: int
     rows: int
-    signs: Signs
+    glyphs: Glyphs
     border: dict[tuple[int, int], int] = field(default_factory=dict)  # bits of each cell
     points: dict[tuple[int, int], int] = field(default_factory=dict)
     texts: dict[tuple[int, int], tuple[str, str]] = field(default_factory=dict)  # a character and its style
 
     def place(self, across: float, up: float) -> tuple[int, int]:
         """Return the dot for shares of the field, which goes from the middle of the outermost cells to the other."""
-        wide, high = self.signs.fine
-        x = (wide - 1) / 2 + across * (self.columns - 1) * wide
-        y = (high - 1) / 2 + (1 - up) * (self.rows - 1) * high
+        dots_x, dots_y = self.glyphs.fine
+        x = (dots_x - 1) / 2 + across * (self.columns - 1) * dots_x
+        y = (dots_y - 1) / 2 + (1 - up) * (self.rows - 1) * dots_y
         return math.floor(x + 0.5), math.floor(y + 0.5)
 
     def cell(self, x: int, y: int) -> tuple[int, int]:
         """Return column and row of a dot, within the field."""
-        wide, high = self.signs.fine
-        return min(max(x // wide, 0), self.columns - 1), min(max(y // high, 0), self.rows - 1)
+        dots_x, dots_y = self.glyphs.fine
+        return min(max(x // dots_x, 0), self.columns - 1), min(max(y // dots_y, 0), self.rows - 1)
 
     def dot(self, layer: dict[tuple[int, int], int], x: int, y: int) -> None:
         """Draw a dot; what lies outside is left."""
-        wide, high = self.signs.fine
-        if 0 <= x < self.columns * wide and 0 <= y < self.rows * high:
+        dots_x, dots_y = self.glyphs.fine
+        if 0 <= x < self.columns * dots_x and 0 <= y < self.rows * dots_y:
             cell = self.cell(x, y)
-            layer[cell] = layer.get(cell, 0) | BITS[y % high][x % wide]
+            layer[cell] = layer.get(cell, 0) | BITS[y % dots_y][x % dots_x]
 
     def line(self, row: int) -> Text:
         """Return a row of the field."""
@@ -222,18 +222,18 @@ class Canvas:
         return line
 
     def _sign(self, bits: int, plain: str) -> str:
-        return plain if self.signs.fine == (1, 1) else chr(BRAILLE + bits)
+        return plain if self.glyphs.fine == (1, 1) else chr(BRAILLE + bits)
 
 
 def _field(drawn: Drawn, axes: tuple[Axis, Axis], canvas: Canvas) -> Canvas:
-    signs = canvas.signs
+    glyphs = canvas.glyphs
     first, second, *_ = drawn.objectives
     pair = (first, second)
     corners = [canvas.place(axes[0].share(x), axes[1].share(y)) for x, y in drawn.staircase(pair)]
     for (x1, y1), (x2, y2) in pairwise(corners):
         for x in range(min(x1, x2), max(x1, x2) + 1):
             for y in range(min(y1, y2), max(y1, y2) + 1):
-                if (x + y) % 2 == 0 or max(signs.fine) == 1:
+                if (x + y) % 2 == 0 or max(glyphs.fine) == 1:
                     canvas.dot(canvas.border, x, y)
     dots = [
         canvas.place(axes[0].share(x), axes[1].share(y))
@@ -242,9 +242,9 @@ def _field(drawn: Drawn, axes: tuple[Axis, Axis], canvas: Canvas) -> Canvas:
     covered = [_point(canvas, drawn, k, dots[k]) for k in reversed(range(len(dots)))][::-1]  # the best ranks on top
     labels = [_label(drawn, design) for design in drawn.designs]
     lines = [Box(c, r, c + 1, r + 1) for c, r in canvas.border]
-    whole = Box(0, 0, canvas.columns, canvas.rows)
+    field = Box(0, 0, canvas.columns, canvas.rows)
     sizes = [(len(label), 1) if label else None for label in labels]
-    spots = label_spots(covered, sizes, whole, lines, 1, whole=True)
+    spots = label_spots(covered, sizes, field, lines, 1, integer=True)
     for label, spot in zip(labels, spots, strict=True):
         for k, letter in enumerate(label if spot is not None else ""):
             assert spot is not None
@@ -265,7 +265,7 @@ def _point(canvas: Canvas, drawn: Drawn, k: int, dot: tuple[int, int]) -> Box:
         letter = LETTERS[drawn.listed()[drawn.families[k]] % 26]
         canvas.texts[column, row] = (letter, POINT)
         return Box(column, row, column + 1, row + 1)
-    shape = ((0, 0),) if canvas.signs.fine == (1, 1) else DISC if len(drawn.designs) <= LABELLED else SMALL
+    shape = ((0, 0),) if canvas.glyphs.fine == (1, 1) else DISC if len(drawn.designs) <= LABELLED else SMALL
     for dx, dy in shape:
         canvas.dot(canvas.points, x + dx, y + dy)
     cells = [canvas.cell(x + dx, y + dy) for dx, dy in shape]

@@ -24,7 +24,7 @@ from .workbook_limits import write_limits
 from .workbook_summary import WIDTHS as SUMMARY_WIDTHS
 from .workbook_summary import Objective, write_summary
 
-ASKED = "--xlsx"
+OPTION = "--xlsx"
 NAME, SYMBOL, VALUE, UNIT, SI, SOLVED, CHANGE, TEXT, SOURCE, FORMULA = range(10)
 HEADS = ("quantity", "symbol", "value", "unit", "in SI", "as solved", "change", "meaning", "source", "formula, in SI")
 NUMBERS = (VALUE, SI, SOLVED, CHANGE)
@@ -82,9 +82,9 @@ class _Live:
         certificate: str,
     ) -> None:
         self.calculation, self.design, self.about, self.certificate = calculation, design, about, certificate
-        self.found = calculation.of_design(design)
+        self.outcome = calculation.of_design(design)
         self.quantities = list(calculation.quantities.values())
-        book = Book(ASKED, calculation.title)
+        book = Book(OPTION, calculation.title)
         self.book = book
         self.summary = book.sheet("Summary", SUMMARY_WIDTHS)
         self.sheet = book.sheet("Calculation", WIDTHS)
@@ -92,20 +92,20 @@ class _Live:
         self.parts = book.sheet("Parts", (30, 11, 28, 12, 15, 28, 10, 48, 34))
         self.catalogue = book.sheet("Catalogue", (34, 14, 44, *[18] * 24))
         helpers = book.sheet("Helpers", (18, 80))
-        helpers.own.hide()
+        helpers.worksheet.hide()
         self.cells = Cells(helpers)
         self.offered = {slot: RowsOffered(row, rows.get(slot, ())) for slot, row in design.parts.items()}
         names, holds = legal_names(calculation)
         self.names = names
         inputs = calculation.inputs(design)
-        self.formulas = Formulas(calculation, inputs, self.found.values, names, holds, self.cells, self.offered)
+        self.formulas = Formulas(calculation, inputs, self.outcome.values, names, holds, self.cells, self.offered)
 
     def bytes(self) -> bytes:
         """Write all sheets and return the file."""
         catalogue = self._catalogue()
         self._parts(catalogue)
         self._calculation()
-        limits = write_limits(self.limits, self.calculation, self.found, self.formulas)
+        limits = write_limits(self.limits, self.calculation, self.outcome, self.formulas)
         words = self.certificate or f"as recorded: {self.design.status.value.replace('_', ' ')}"
         sheets = (self.sheet, self.parts)
         write_summary(
@@ -122,7 +122,7 @@ class _Live:
 
     def _objective(self, name: str) -> Objective:
         q = self.calculation.quantities[name]
-        value = in_unit(self.found.values[name], q.unit)
+        value = in_unit(self.outcome.values[name], q.unit)
         return Objective(name, from_si_text(self.names[name], q.unit), value, q.unit, q.text)
 
     # -- what is computed ----------------------------------------------------------------------
@@ -130,26 +130,26 @@ class _Live:
     def _calculation(self) -> None:
         sheet, row = self.sheet, 0
         sheet.heads(row, HEADS, NUMBERS)
-        sheet.own.freeze_panes(1, 1)
-        sheet.own.repeat_rows(0)
+        sheet.worksheet.freeze_panes(1, 1)
+        sheet.worksheet.repeat_rows(0)
         for title, members in self._sections():
             row += 1
             sheet.texts(row, [title, *[""] * FORMULA], "section")
             for q in members:
                 row += 1
                 self._quantity(row, q)
-        sheet.own.print_area(0, 0, row, SOURCE)
+        sheet.worksheet.print_area(0, 0, row, SOURCE)
 
     def _sections(self) -> list[tuple[str, list[NamedQuantity]]]:
         """Return the quantities under the titles that they stand under; those of parts have a sheet of their own."""
-        found: dict[str, list[NamedQuantity]] = {}
+        sections: dict[str, list[NamedQuantity]] = {}
         for q in self.quantities:
             if q.kind == "requirement":
-                found.setdefault(f"Requirements: {q.group}" if q.group else "Requirements", []).append(q)
+                sections.setdefault(f"Requirements: {q.group}" if q.group else "Requirements", []).append(q)
         for kind, title in {**GROUPS, **FIXED}.items():
-            found[title] = [q for q in self.quantities if q.kind == kind]
-        found["Computed"] = [q for q in self.quantities if q.computed]
-        return [(title, members) for title, members in found.items() if members]
+            sections[title] = [q for q in self.quantities if q.kind == kind]
+        sections["Computed"] = [q for q in self.quantities if q.computed]
+        return [(title, members) for title, members in sections.items() if members]
 
     def _quantity(self, row: int, q: NamedQuantity) -> None:
         sheet = self.sheet
@@ -159,7 +159,7 @@ class _Live:
         elif q.kind == "choice":
             self._choice(row, q)
         elif q.kind in FIXED:
-            value = self.found.values[q.name]
+            value = self.outcome.values[q.name]
             if math.isnan(value):
                 sheet.formula(row, VALUE, "NA()", math.nan)
             else:
@@ -182,11 +182,11 @@ class _Live:
         """True if an input is a formula of others until something is typed in its place."""
         if q.kind != "requirement" or q.expression is None or q.name in self.design.frame.requirements:
             return False
-        own, recorded = self.formulas.value(q.expression), self.found.values[q.name]
-        return abs(own - recorded) <= 1e-9 * max(abs(own), abs(recorded))
+        computed, recorded = self.formulas.value(q.expression), self.outcome.values[q.name]
+        return abs(computed - recorded) <= 1e-9 * max(abs(computed), abs(recorded))
 
     def _input(self, row: int, q: NamedQuantity) -> None:
-        sheet, value = self.sheet, self.found.values[q.name]
+        sheet, value = self.sheet, self.outcome.values[q.name]
         shown = in_unit(value, q.unit)
         if self._follows(q):
             assert q.expression is not None
@@ -205,29 +205,29 @@ class _Live:
         least, most = (x if math.isinf(x) else in_unit(x, q.unit) for x in q.bounds or (-math.inf, math.inf))
         unit = "" if q.unit in ("", "-") else f" {q.unit}"
         rule: dict[str, Any] = {"validate": "decimal", "criteria": ">=", "value": -1e300}
-        told = "a number"
+        allowed = "a number"
         if math.isfinite(least) and math.isfinite(most):
             rule = {"validate": "decimal", "criteria": "between", "minimum": least, "maximum": most}
-            told = f"{_short(least)} to {_short(most)}{unit}"
+            allowed = f"{_short(least)} to {_short(most)}{unit}"
         elif math.isfinite(least):
-            rule["value"], told = least, f"at least {_short(least)}{unit}"
+            rule["value"], allowed = least, f"at least {_short(least)}{unit}"
         elif math.isfinite(most):
             rule |= {"criteria": "<=", "value": most}
-            told = f"at most {_short(most)}{unit}"
+            allowed = f"at most {_short(most)}{unit}"
         if q.kind == "count" and q.step is not None:
             rule = _steps(cell(row, VALUE), least, most, q.step)
-            told += f" in steps of {_short(q.step)}"
+            allowed += f" in steps of {_short(q.step)}"
         rule |= {
             "error_type": "warning" if q.kind == "variable" else "stop",
             "error_title": "outside of what is searched" if q.kind == "variable" else "not possible",
-            "error_message": f"{q.name}: {told}"[:255],
+            "error_message": f"{q.name}: {allowed}"[:255],
             "input_title": q.name[:32],
-            "input_message": told[:255],
+            "input_message": allowed[:255],
         }
-        self.sheet.own.data_validation(row, VALUE, row, VALUE, rule)
+        self.sheet.worksheet.data_validation(row, VALUE, row, VALUE, rule)
 
     def _choice(self, row: int, q: NamedQuantity) -> None:
-        sheet, number = self.sheet, self.found.values[q.name]
+        sheet, number = self.sheet, self.outcome.values[q.name]
         label = q.labels[int(number)]
         labels = self.cells.texts(q.labels)
         sheet.text(row, VALUE, label, "word")
@@ -235,10 +235,10 @@ class _Live:
         sheet.text(row, SOLVED, label, "result_text")
         sheet.formula(row, CHANGE, f'IF(EXACT({cell(row, VALUE)},{cell(row, SOLVED)}),"","changed")', "", "verdict")
         rule = {"validate": "list", "source": f"={labels}", "input_title": q.name[:32], "input_message": "choose one"}
-        sheet.own.data_validation(row, VALUE, row, VALUE, rule)
+        sheet.worksheet.data_validation(row, VALUE, row, VALUE, rule)
 
     def _computed(self, row: int, q: NamedQuantity) -> None:
-        sheet, value = self.sheet, self.found.values[q.name]
+        sheet, value = self.sheet, self.outcome.values[q.name]
         assert q.expression is not None
         text = self.formulas.text(q.expression)
         sheet.formula(row, SI, self.formulas.guarded(text, q.needs), value, "si")
@@ -259,7 +259,7 @@ class _Live:
         """Write the rows that slots offer; return, by slot, the cells of each column."""
         sheet, row, places = self.catalogue, 0, dict[str, dict[str, str]]()
         for slot, offered in self.offered.items():
-            table = str(offered.own.get("table", ""))
+            table = str(offered.chosen.get("table", ""))
             columns = self._columns(slot, offered)
             sheet.texts(row, [f"{slot}: table {table}" if table else slot, *[""] * (len(columns) - 1)], "section")
             texts = sum(isinstance(cells[0], str) for cells in columns.values())
@@ -267,8 +267,8 @@ class _Live:
             for k, (title, cells) in enumerate(columns.items()):
                 for number, content in enumerate(cells):
                     if isinstance(content, str):
-                        own = "name" if number == offered.place and not k else "text"
-                        sheet.text(row + 2 + number, k, content, "line" if title == "source" else own)
+                        style = "name" if number == offered.place and not k else "text"
+                        sheet.text(row + 2 + number, k, content, "line" if title == "source" else style)
                     else:
                         sheet.number(row + 2 + number, k, content)
             last = row + 1 + len(offered.keys)
@@ -290,8 +290,8 @@ class _Live:
     def _parts(self, catalogue: Mapping[str, Mapping[str, str]]) -> None:
         sheet, row = self.parts, 0
         sheet.heads(0, HEADS[:FORMULA], NUMBERS)
-        sheet.own.freeze_panes(1, 1)
-        sheet.own.repeat_rows(0)
+        sheet.worksheet.freeze_panes(1, 1)
+        sheet.worksheet.repeat_rows(0)
         for slot, offered in self.offered.items():
             row += 1
             sheet.texts(row, [slot, *[""] * SOURCE], "section")
@@ -301,7 +301,7 @@ class _Live:
                 row += 1
                 sheet.text(row, NAME, title, "name")
                 text = f'INDEX({catalogue[slot][title]},{chosen})&""'
-                sheet.formula(row, TEXT, text, str(offered.own.get(title) or ""), "text")
+                sheet.formula(row, TEXT, text, str(offered.chosen.get(title) or ""), "text")
             for q in self._of_slot(slot):
                 row += 1
                 self._column(row, q, catalogue[slot], chosen)
@@ -317,24 +317,24 @@ class _Live:
         count = len(offered.keys)
         sheet.text(row, TEXT, "the only row that is known here" if count == 1 else f"choose one of {count} rows")
         rule = {"validate": "list", "source": f"={keys}", "input_title": slot[:32], "input_message": "choose a row"}
-        sheet.own.data_validation(row, VALUE, row, VALUE, rule)
+        sheet.worksheet.data_validation(row, VALUE, row, VALUE, rule)
         sought = f"MATCH({offered.sought(sheet.place(row, VALUE))},{keys},0)"
         return self.cells.number(sought, float(offered.place + 1), f"{slot}: place of the chosen row")
 
     def _column(self, row: int, q: NamedQuantity, columns: Mapping[str, str], chosen: str) -> None:
         """Write what the chosen row says in a column."""
-        sheet, value = self.parts, self.found.values[q.name]
+        sheet, value = self.parts, self.outcome.values[q.name]
         self._words(sheet, row, q, q.column)
-        found = f"INDEX({columns[_title(q)]},{chosen})"
+        formula = f"INDEX({columns[_title(q)]},{chosen})"
         if q.is_text:
-            own = str(self.design.parts[q.slot].get(q.column) or "")
-            sheet.formula(row, VALUE, f'INDEX({columns[q.column]},{chosen})&""', own, "result_text")
-            sheet.formula(row, SI, found, value, "si", digits=False)
-            sheet.text(row, SOLVED, own, "result_text")
+            chosen_text = str(self.design.parts[q.slot].get(q.column) or "")
+            sheet.formula(row, VALUE, f'INDEX({columns[q.column]},{chosen})&""', chosen_text, "result_text")
+            sheet.formula(row, SI, formula, value, "si", digits=False)
+            sheet.text(row, SOLVED, chosen_text, "result_text")
         else:
             shown = in_unit(value, q.unit)
             gaps = any(math.isnan(x) for x in self.offered[q.slot].values(q))
-            sheet.formula(row, VALUE, f'IF({found}="",NA(),{found})' if gaps else found, shown)
+            sheet.formula(row, VALUE, f'IF({formula}="",NA(),{formula})' if gaps else formula, shown)
             sheet.formula(row, SI, to_si_text(cell(row, VALUE), q.unit), value, "si")
             sheet.number(row, SOLVED, shown, "solved")
         self.book.define(self.names[q.name], sheet.place(row, SI))

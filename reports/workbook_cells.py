@@ -73,19 +73,19 @@ class RowsOffered:
 
     Parameters
     ----------
-    own : mapping
+    chosen : mapping
         The row of the design.
     rows : list of mapping
         All that are offered; the own one is put in front where it is not among them.
     """
 
-    def __init__(self, own: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> None:
+    def __init__(self, chosen: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> None:
         named = [str(row["designation"]) for row in rows]
-        missing = str(own["designation"]) not in named
-        self.own = own
-        self.rows = [own, *rows] if missing else list(rows)
-        self.place = 0 if missing else named.index(str(own["designation"]))
-        self.keys = tuple(_told_apart(str(row["designation"]) for row in self.rows))
+        missing = str(chosen["designation"]) not in named
+        self.chosen = chosen
+        self.rows = [chosen, *rows] if missing else list(rows)
+        self.place = 0 if missing else named.index(str(chosen["designation"]))
+        self.keys = tuple(_distinct_keys(str(row["designation"]) for row in self.rows))
 
     def values(self, q: NamedQuantity) -> list[float]:
         """Value of a quantity from the rows, in SI; not-a-number where none has one."""
@@ -100,16 +100,16 @@ class RowsOffered:
         return text
 
 
-def _told_apart(texts: Iterator[str]) -> Iterator[str]:
-    """Yield keys that are told apart without regard to capital letters, which lists do not see."""
-    taken = set[str]()
+def _distinct_keys(texts: Iterator[str]) -> Iterator[str]:
+    """Yield keys that differ without regard to capital letters, which lists do not see."""
+    used = set[str]()
     for text in texts:
         key = short = cell_text(text)[:LONGEST_KEY]
         number = 1
-        while key.lower() in taken:
+        while key.lower() in used:
             number += 1
             key = f"{short} ({number})"
-        taken.add(key.lower())
+        used.add(key.lower())
         yield key
 
 
@@ -201,30 +201,30 @@ class Formulas:
         return helper
 
     def _behind(self, x: LimitRule) -> set[str]:
-        """Return all quantities that a limit is told by."""
-        found, left = set[str](), [*names_in(x.value), *names_in(x.limit)]
-        while left:
-            q = self._quantities[left.pop()]
-            if q.name not in found:
-                found.add(q.name)
-                left += names_in(q.expression) if q.computed and q.expression is not None else ()
-        return found
+        """Quantities that a limit is computed from."""
+        names, waiting = set[str](), [*names_in(x.value), *names_in(x.limit)]
+        while waiting:
+            q = self._quantities[waiting.pop()]
+            if q.name not in names:
+                names.add(q.name)
+                waiting += names_in(q.expression) if q.computed and q.expression is not None else ()
+        return names
 
     def _seen_by_no_guard(self, calculation: Calculation, x: LimitRule) -> bool:
         """True if a limit must be judged by quantities that may not exist."""
-        own = set(x.needs)
-        if not all(own.issuperset(self._quantities[name].needs) for name in self._behind(x)):
+        guards = set(x.needs)
+        if not all(guards.issuperset(self._quantities[name].needs) for name in self._behind(x)):
             return True
-        # A guard that is told by less than what it is asked by.
-        asked_by = [q.needs for q in calculation.quantities.values()] + [y.needs for y in calculation.limits]
-        return x.guard and any(x.name in needs and not own.issubset(needs) for needs in asked_by)
+        # A guard that needs fewer guards than one of its readers.
+        readers = [q.needs for q in calculation.quantities.values()] + [y.needs for y in calculation.limits]
+        return x.guard and any(x.name in needs and not guards.issubset(needs) for needs in readers)
 
     def _computed_again(self, calculation: Calculation) -> dict[str, str]:
         """Return names with which no guard is asked."""
-        wanted = {name for x in calculation.limits if x.name in self._whatever_guards_say for name in self._behind(x)}
+        needed = {name for x in calculation.limits if x.name in self._whatever_guards_say for name in self._behind(x)}
         names = dict(self.names)
         for q in calculation.quantities.values():
-            if q.name in wanted and q.needs:
+            if q.name in needed and q.needs:
                 assert q.expression is not None
                 text = write(q.expression, names, self._helper(dict(names), self._raw), self._doubtful)
                 names[q.name] = self._cells.number(text, self._raw[q.name], f"{q.name}, whatever guards say")

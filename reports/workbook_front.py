@@ -15,7 +15,7 @@ from .excel_sheets import BAD, Book, Sheet
 from .reasons import SIGN_OF
 from .workbook_cells import in_unit
 
-ASKED = "--xlsx"
+OPTION = "--xlsx"
 UTILISATION = "utilisation: "  # heads these columns of the table of a front; they stand on the sheet of limits
 STATES = {
     Status.OPTIMAL: "proven within the gap asked for",
@@ -48,7 +48,7 @@ def front_workbook(front: ParetoFront, calculation: Calculation | None = None) -
     InputError
         The extra ``excel`` is not there.
     """
-    book = Book(ASKED, front.frame.title)
+    book = Book(OPTION, front.frame.title)
     quantities = {} if calculation is None else dict(calculation.quantities)
     _designs(book, front)
     _requirements(book, front, quantities)
@@ -95,21 +95,21 @@ def _state(front: ParetoFront) -> str:
 
 def _designs(book: Book, front: ParetoFront) -> None:
     columns, rows = front.table()
-    own = [k for k, head in enumerate(columns) if not head.startswith(UTILISATION)]
-    heads, lines = [columns[k] for k in own], [[row[k] for k in own] for row in rows]
-    sheet = book.sheet("designs", _widths(heads, lines), locked=False, wide=True)
+    kept = [k for k, head in enumerate(columns) if not head.startswith(UTILISATION)]
+    heads, lines = [columns[k] for k in kept], [[row[k] for k in kept] for row in rows]
+    sheet = book.sheet("designs", _widths(heads, lines), locked=False, over_pages=True)
     sheet.text(0, 0, front.frame.title, "title_line")
     sheet.text(1, 0, _state(front), "state_line")
-    sheet.own.set_row(0, 24)
+    sheet.worksheet.set_row(0, 24)
     last = _table(sheet, 3, heads, lines)
-    sheet.own.freeze_panes(4, 1)
-    sheet.own.repeat_rows(3)
+    sheet.worksheet.freeze_panes(4, 1)
+    sheet.worksheet.repeat_rows(3)
     if lines:
-        sheet.own.autofilter(3, 0, last - 1, len(heads) - 1)
+        sheet.worksheet.autofilter(3, 0, last - 1, len(heads) - 1)
     elif front.explanation is not None:
-        told = front.explanation
-        sheet.text(5, 0, told.headline, "line")
-        for row, conflict in enumerate(told.conflicts or (), start=6):
+        explanation = front.explanation
+        sheet.text(5, 0, explanation.headline, "line")
+        for row, conflict in enumerate(explanation.conflicts or (), start=6):
             sheet.text(row, 0, str(conflict.get("sentence", "")), "line")
 
 
@@ -127,12 +127,12 @@ def _requirements(book: Book, front: ParetoFront, quantities: Mapping[str, Named
         shown = cell_value(value, unit or "-")
         rows.append([name, shown, unit or ("" if frame.requirements.get(name) is None else "SI"), typed, *words])
     below = _table(sheet, 0, ("requirement", "value", "unit", "stated", "group", "meaning", "source"), rows)
-    sheet.own.freeze_panes(1, 1)
+    sheet.worksheet.freeze_panes(1, 1)
     below = _pairs(sheet, below + 1, "not asked for", [(name, "") for name in frame.not_asked])
     below = _pairs(sheet, below, "option", frame.options.items())
     below = _pairs(sheet, below, "objective", frame.objectives.items())
-    told = [(k, _words(v)) for k, v in front.settings.items() if k in ("parts", "limits", "fix", "robust") and v]
-    _pairs(sheet, below, "restriction", told)
+    restricted = [(k, _words(v)) for k, v in front.settings.items() if k in ("parts", "limits", "fix", "robust") and v]
+    _pairs(sheet, below, "restriction", restricted)
 
 
 def _pairs(sheet: Sheet, row: int, title: str, pairs: Iterable[tuple[str, Any]]) -> int:
@@ -173,7 +173,7 @@ def _parts(book: Book, front: ParetoFront, quantities: Mapping[str, NamedQuantit
         for name, part in rows.items():
             line: list[Any] = [name, ", ".join(f"#{d.rank}" for d in filled[name])]
             line += [str(part.get(key) or "") for key in ("confidence", "source", "table")]
-            lines.append([*line, *(_said(part.get(key), unit) for key, unit in units.items())])
+            lines.append([*line, *(_cell_value(part.get(key), unit) for key, unit in units.items())])
         sheet.texts(row, [slot, *[""] * (len(heads) - 1)], "section")
         row = _table(sheet, row + 1, heads, lines) + 1
 
@@ -186,7 +186,7 @@ def _units_of(slot: str, rows: Iterable[Any], quantities: Mapping[str, NamedQuan
     return used or {key: "SI" for key in columns}
 
 
-def _said(value: Any, unit: str) -> Any:
+def _cell_value(value: Any, unit: str) -> Any:
     if not _is_number(value):
         return value
     return float(value) if unit == "SI" else in_unit(float(value), unit)
@@ -199,7 +199,7 @@ def _limits(book: Book, front: ParetoFront) -> None:
     sides = [header(f"{name} {SIGN_OF[frame.limit_senses[name]]}", frame.limit_units[name]) for name in names]
     heads = ["rank", *names, "", *(f"{word}: {side}" for side in sides for word in ("found", "allowed"))]
     rows = [_used(front, design, names) for design in front.designs]
-    sheet = book.sheet("limits", _widths(heads, rows), locked=False, wide=True)
+    sheet = book.sheet("limits", _widths(heads, rows), locked=False, over_pages=True)
     sheet.text(0, 0, "share of each limit that is used; to the right both sides in their unit", "line")
     sheet.heads(2, heads, range(len(heads)))
     for row, line in enumerate(rows, start=3):
@@ -209,8 +209,8 @@ def _limits(book: Book, front: ParetoFront) -> None:
                 sheet.number(row, column, float(value), "percent" if inner else "number", digits=not inner)
             elif value is not None:
                 sheet.text(row, column, str(value), "result_text")
-    sheet.own.freeze_panes(3, 1)
-    sheet.own.repeat_rows(2)
+    sheet.worksheet.freeze_panes(3, 1)
+    sheet.worksheet.repeat_rows(2)
     if rows and names:
         _coloured(sheet, [k for k, n in enumerate(names, 1) if frame.limit_senses[n] != "equal"], 3, 2 + len(rows))
 
@@ -231,9 +231,9 @@ def _coloured(sheet: Sheet, columns: Sequence[int], first: int, last: int) -> No
     form = sheet.book.added(bg_color=BAD, font_color="#FFFFFF", bold=True)
     for column in columns:
         above = {"type": "cell", "criteria": ">", "value": 1 + 2e-6, "format": form, "stop_if_true": True}
-        sheet.own.conditional_format(first, column, last, column, above)
+        sheet.worksheet.conditional_format(first, column, last, column, above)
         endless = {"type": "cell", "criteria": "==", "value": '"∞"', "format": form}
-        sheet.own.conditional_format(first, column, last, column, endless)
+        sheet.worksheet.conditional_format(first, column, last, column, endless)
         sheet.scale(column, first, last)
 
 
@@ -268,4 +268,4 @@ def _sources(book: Book, front: ParetoFront, calculation: Calculation | None) ->
     rows = [[q.name, kinds.get(q.kind, q.kind), q.unit, q.text, q.source] for q in calculation.quantities.values()]
     rows += [[x.name, "limit", x.unit, x.text, x.source] for x in calculation.limits]
     last = _table(sheet, row, ("name", "kind", "unit", "meaning", "source"), rows)
-    sheet.own.autofilter(row, 0, last - 1, 4)
+    sheet.worksheet.autofilter(row, 0, last - 1, 4)

@@ -15,12 +15,12 @@ from .excel_sheets import BAD, GOOD, GREY, MARKED, Sheet, cell
 from .reasons import SIGN_OF
 from .workbook_cells import Formulas, in_unit
 
-LIMIT, FOUND, SIGN, ALLOWED, UNIT, USED, VERDICT, SOLVED, TEXT, SOURCE = range(10)
-FOUND_SI, ALLOWED_SI, MISSED, VOID, OWN, HELD, BEHIND, COUNTS = range(10, 18)
+LIMIT, COMPUTED, SIGN, ALLOWED, UNIT, USED, VERDICT, SOLVED, TEXT, SOURCE = range(10)
+COMPUTED_SI, ALLOWED_SI, MISSED, VOID, JUDGED, HELD, BEHIND, COUNTS = range(10, 18)
 HEADS = ("limit", "found", "", "allowed", "unit", "used", "verdict", "as solved", "meaning", "source")
 INNER_HEADS = ("found, SI", "allowed, SI", "missed by", "void", "holds", "counts as held", "behind", "may govern")
 WIDTHS = (32, 14, 4, 14, 11, 10, 26, 10, 48, 36, 14, 14, 14, 9, 9, 9, 24, 12)
-HOLDS, VIOLATED, NOT_GIVEN, NOT_TOLD = "holds", "VIOLATED", "not checked: not given", "not told: behind "
+HOLDS, VIOLATED, UNCHECKED, UNDECIDED = "holds", "VIOLATED", "not checked: not given", "not told: behind "
 ENDLESS, NOTHING = "∞", "–"
 BEYOND = "beyond what can be told as a share"
 
@@ -49,14 +49,14 @@ class LimitCells:
     governing: str
 
 
-def write_limits(sheet: Sheet, calculation: Calculation, found: CalculatedDesign, formulas: Formulas) -> LimitCells:
+def write_limits(sheet: Sheet, calculation: Calculation, outcome: CalculatedDesign, formulas: Formulas) -> LimitCells:
     """Write the limits and remarks of a calculation.
 
     Parameters
     ----------
     sheet : Sheet
     calculation : Calculation
-    found : CalculatedDesign
+    outcome : CalculatedDesign
         What the design comes to.
     formulas : Formulas
 
@@ -64,32 +64,32 @@ def write_limits(sheet: Sheet, calculation: Calculation, found: CalculatedDesign
     -------
     LimitCells
     """
-    right = (FOUND, ALLOWED, USED, SOLVED, FOUND_SI, ALLOWED_SI, MISSED)
+    right = (COMPUTED, ALLOWED, USED, SOLVED, COMPUTED_SI, ALLOWED_SI, MISSED)
     sheet.heads(0, [*HEADS, *INNER_HEADS], right, (SIGN, VERDICT))
-    sheet.own.freeze_panes(1, 1)
-    sheet.own.repeat_rows(0)
+    sheet.worksheet.freeze_panes(1, 1)
+    sheet.worksheet.repeat_rows(0)
     rows = {x.name: row for row, x in enumerate(calculation.limits, start=1)}
-    held_alone = {x.name: bool(holds(_missed(x, found.verdicts[x.name]), x.guard)) for x in calculation.limits}
+    judged = {x.name: bool(holds(_missed(x, outcome.verdicts[x.name]), x.guard)) for x in calculation.limits}
     for x in calculation.limits:
         row = rows[x.name]
-        _sides(sheet, row, x, found.verdicts[x.name], formulas)
-        _judged(sheet, row, x, found.verdicts[x.name], held_alone[x.name], rows, formulas)
+        _sides(sheet, row, x, outcome.verdicts[x.name], formulas)
+        _judged(sheet, row, x, outcome.verdicts[x.name], judged[x.name], rows, formulas)
         if x.guard:
-            sheet.book.define(formulas.holds[x.name], sheet.place(row, OWN))
+            sheet.book.define(formulas.holds[x.name], sheet.place(row, JUDGED))
     last = len(rows)
     _coloured(sheet, calculation.limits, last)
     applying = [_applies(formulas.value(x.condition)) for x in calculation.remarks]
     remarks = _remarks(sheet, last + 2, calculation, formulas, applying)
-    sheet.own.print_area(0, 0, last + 2 + len(calculation.remarks), SOURCE)
-    sheet.own.set_column(FOUND_SI, COUNTS, 13, None, {"level": 1})
+    sheet.worksheet.print_area(0, 0, last + 2 + len(calculation.remarks), SOURCE)
+    sheet.worksheet.set_column(COMPUTED_SI, COUNTS, 13, None, {"level": 1})
     names, counts, verdicts = (sheet.area(1, column, max(last, 1)) for column in (LIMIT, COUNTS, VERDICT))
-    violated = sum(not verdict.holds for verdict in found.verdicts.values())
-    return LimitCells(names, counts, verdicts, remarks, last, violated, sum(applying), _governing(calculation, found))
+    violated = sum(not verdict.holds for verdict in outcome.verdicts.values())
+    return LimitCells(names, counts, verdicts, remarks, last, violated, sum(applying), _governing(calculation, outcome))
 
 
-def _governing(calculation: Calculation, found: CalculatedDesign) -> str:
-    """Return the first limit of those that are used most, as the summary tells it."""
-    used = {x.name: (found.verdicts[x.name].used, x.sense) for x in calculation.limits}
+def _governing(calculation: Calculation, outcome: CalculatedDesign) -> str:
+    """First limit of those that are used most, as the summary shows it."""
+    used = {x.name: (outcome.verdicts[x.name].used, x.sense) for x in calculation.limits}
     shares = {k: v for k, (v, sense) in used.items() if v is not None and (sense != "equal" or math.isinf(v))}
     if not shares:
         return NOTHING
@@ -110,7 +110,7 @@ def _sides(sheet: Sheet, row: int, x: LimitRule, verdict: LimitVerdict, formulas
     untold = verdict.void or bool(verdict.failed)
     texts = formulas.sides(x)
     for text, value, inner, outer in zip(
-        texts, (verdict.value, verdict.limit), (FOUND_SI, ALLOWED_SI), (FOUND, ALLOWED), strict=True
+        texts, (verdict.value, verdict.limit), (COMPUTED_SI, ALLOWED_SI), (COMPUTED, ALLOWED), strict=True
     ):
         sheet.formula(row, inner, text, value, "si")
         here = cell(row, inner)
@@ -137,63 +137,63 @@ def _judged(
     row: int,
     x: LimitRule,
     verdict: LimitVerdict,
-    held_alone: bool,
+    judged: bool,
     rows: Mapping[str, int],
     formulas: Formulas,
 ) -> None:
     """Write what is missed, and what follows from it, as the engine judges."""
-    found, allowed = cell(row, FOUND_SI), cell(row, ALLOWED_SI)
-    missed, void, own, behind, used = (cell(row, k) for k in (MISSED, VOID, OWN, BEHIND, USED))
-    size = f"MAX(ABS({found}),ABS({allowed}),{number_text(x.scale)})"
+    computed, allowed = cell(row, COMPUTED_SI), cell(row, ALLOWED_SI)
+    missed, void, judged_cell, behind, used = (cell(row, k) for k in (MISSED, VOID, JUDGED, BEHIND, USED))
+    size = f"MAX(ABS({computed}),ABS({allowed}),{number_text(x.scale)})"
     difference = {
-        "at_most": f"({found}-{allowed})",
-        "at_least": f"({allowed}-{found})",
-        "equal": f"ABS({found}-{allowed})",
+        "at_most": f"({computed}-{allowed})",
+        "at_least": f"({allowed}-{computed})",
+        "equal": f"ABS({computed}-{allowed})",
     }[x.sense]
     sheet.formula(row, MISSED, f"{difference}/{size}", _missed(x, verdict), "si")
     names = [formulas.names[name] for name in x.optional]
     unknown = [f"ISERROR({name})" for name in names]
     sheet.formula(row, VOID, _any(unknown), verdict.void, "si")
     enough = f"{missed}<0" if x.guard else f"{missed}<={number_text(TOLERANCE)}"
-    sheet.formula(row, OWN, f"IFERROR({enough},FALSE)", held_alone, "si")
-    sheet.formula(row, HELD, f'OR({own},{void},{behind}<>"")', verdict.holds, "si")
+    sheet.formula(row, JUDGED, f"IFERROR({enough},FALSE)", judged, "si")
+    sheet.formula(row, HELD, f'OR({judged_cell},{void},{behind}<>"")', verdict.holds, "si")
     # The first guard that fails is named. One that stands before counts as held where others tell why it fails.
     text = '""'
     for guard in reversed(x.needs):
-        column = HELD if rows[guard] < row else OWN
+        column = HELD if rows[guard] < row else JUDGED
         text = f"IF({cell(rows[guard], column, fixed=True)},{text},{cell(rows[guard], LIMIT, fixed=True)})"
     sheet.formula(row, BEHIND, text, verdict.failed[0] if verdict.failed else "", "si")
-    share = _share(x.sense, found, allowed)
+    share = _share(x.sense, computed, allowed)
     nothing = f'OR({void},{behind}<>"",ISERROR({missed}))'
     shown = NOTHING if verdict.used is None else ENDLESS if math.isinf(verdict.used) else verdict.used
     sheet.formula(row, USED, f'IF({nothing},"{NOTHING}",{share})', shown, "percent", digits=False)
     # An equation that holds is always used in full, which says nothing.
     equation = x.sense == "equal"
-    own_share = f'IF({used}="{ENDLESS}",{used},"{NOTHING}")' if equation else used
+    counted_share = f'IF({used}="{ENDLESS}",{used},"{NOTHING}")' if equation else used
     counts = NOTHING if equation and shown != ENDLESS else shown
-    sheet.formula(row, COUNTS, own_share, counts, "si", digits=False)
-    words = f'IF({void},"{NOT_GIVEN}",IF({behind}<>"","{NOT_TOLD}"&{behind},IF({own},"{HOLDS}","{VIOLATED}")))'
-    told = NOT_TOLD + verdict.failed[0] if verdict.failed else HOLDS if verdict.holds else VIOLATED
-    sheet.formula(row, VERDICT, words, NOT_GIVEN if verdict.void else told, "verdict")
+    sheet.formula(row, COUNTS, counted_share, counts, "si", digits=False)
+    words = f'IF({void},"{UNCHECKED}",IF({behind}<>"","{UNDECIDED}"&{behind},IF({judged_cell},"{HOLDS}","{VIOLATED}")))'
+    verdict_text = UNDECIDED + verdict.failed[0] if verdict.failed else HOLDS if verdict.holds else VIOLATED
+    sheet.formula(row, VERDICT, words, UNCHECKED if verdict.void else verdict_text, "verdict")
 
 
 def _any(conditions: Sequence[str]) -> str:
     return "FALSE" if not conditions else conditions[0] if len(conditions) == 1 else f"OR({','.join(conditions)})"
 
 
-def _share(sense: str, found: str, allowed: str) -> str:
+def _share(sense: str, computed: str, allowed: str) -> str:
     """Return the share of a limit that is used, as :func:`synth.order.feasibility.utilisation` has it."""
     if sense == "equal":
-        least, most = f"MIN(ABS({found}),ABS({allowed}))", f"MAX(ABS({found}),ABS({allowed}))"
-        same = f"AND(SIGN({found})=SIGN({allowed}),{least}>0)"
-        return f'IF({found}={allowed},1,IF({same},{most}/{least},"{ENDLESS}"))'
-    over, under = (allowed, found) if sense == "at_least" else (found, allowed)
+        least, most = f"MIN(ABS({computed}),ABS({allowed}))", f"MAX(ABS({computed}),ABS({allowed}))"
+        same = f"AND(SIGN({computed})=SIGN({allowed}),{least}>0)"
+        return f'IF({computed}={allowed},1,IF({same},{most}/{least},"{ENDLESS}"))'
+    over, under = (allowed, computed) if sense == "at_least" else (computed, allowed)
     return f'IF(AND({over}>0,{under}>0),{over}/{under},IF({over}<={under},0,"{ENDLESS}"))'
 
 
 def _coloured(sheet: Sheet, limits: Sequence[LimitRule], last: int) -> None:
     """Colour shares by their size, those of equations apart, and verdicts."""
-    own, book = sheet.own, sheet.book
+    worksheet, book = sheet.worksheet, sheet.book
     scaled = [cell(row, USED) for row, x in enumerate(limits, start=1) if x.sense != "equal"]
     if scaled:
         first = next(row for row, x in enumerate(limits, start=1) if x.sense != "equal")
@@ -205,7 +205,7 @@ def _coloured(sheet: Sheet, limits: Sequence[LimitRule], last: int) -> None:
             ("not ", {"font_color": GREY, "italic": True}),
         ):
             rule = {"type": "text", "criteria": "begins with", "value": word, "format": book.added(**form)}
-            own.conditional_format(1, VERDICT, last, VERDICT, rule)
+            worksheet.conditional_format(1, VERDICT, last, VERDICT, rule)
 
 
 def _remarks(sheet: Sheet, row: int, calculation: Calculation, formulas: Formulas, applying: Sequence[bool]) -> str:
@@ -224,5 +224,5 @@ def _remarks(sheet: Sheet, row: int, calculation: Calculation, formulas: Formula
     form = sheet.book.added(bg_color=MARKED, bold=True)
     last = row + len(calculation.remarks)
     rule = {"type": "cell", "criteria": "==", "value": '"applies"', "format": form}
-    sheet.own.conditional_format(row + 1, VERDICT, last, VERDICT, rule)
+    sheet.worksheet.conditional_format(row + 1, VERDICT, last, VERDICT, rule)
     return sheet.area(row + 1, VERDICT, last)

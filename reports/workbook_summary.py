@@ -66,10 +66,10 @@ def write_summary(
         Formula for how many inputs are not as they were solved.
     """
     sheet.text(0, LABEL, calculation.title, "title")
-    sheet.own.set_row(0, 26)
-    sheet.own.set_row(1, 22)
+    sheet.worksheet.set_row(0, 26)
+    sheet.worksheet.set_row(1, 22)
     _state(sheet, limits)
-    row = _told(sheet, certificate, limits, changed)
+    row = _status(sheet, certificate, limits, changed)
     row = _pairs(sheet, row + 1, "", about)
     row = _objectives(sheet, row + 1, objectives)
     rank = {} if design.rank is None else {"rank": str(design.rank)}
@@ -88,29 +88,29 @@ def _state(sheet: Sheet, limits: LimitCells) -> None:
     for start, colour in (("NOT", BAD), ("FEASIBLE", GOOD)):
         form = sheet.book.added(font_color=colour)
         rule = {"type": "text", "criteria": "begins with", "value": start, "format": form}
-        sheet.own.conditional_format(1, LABEL, 1, LABEL, rule)
+        sheet.worksheet.conditional_format(1, LABEL, 1, LABEL, rule)
 
 
-def _told(sheet: Sheet, certificate: tuple[str, str], limits: LimitCells, changed: str) -> int:
+def _status(sheet: Sheet, certificate: tuple[str, str], limits: LimitCells, changed: str) -> int:
     """Write what was changed, what is proven, and which limit governs; return the next row."""
     words, place = certificate
     row = 3
     sheet.text(row, LABEL, "Inputs", "name")
     here = cell(row, VALUE)
     text = f'IF({changed}=0,"{AS_SOLVED}",{changed}&" changed since it was solved")'
-    sheet.wide(row, VALUE, TEXT, "")
+    sheet.merge(row, VALUE, TEXT, "")
     sheet.formula(row, VALUE, text, AS_SOLVED, "text")
     form = sheet.book.added(font_color=BAD, bold=True)
     rule = {"type": "text", "criteria": "containing", "value": "changed", "format": form}
-    sheet.own.conditional_format(row, VALUE, row, VALUE, rule)
+    sheet.worksheet.conditional_format(row, VALUE, row, VALUE, rule)
     row += 1
     sheet.text(row, LABEL, "Certificate", "name")
-    sheet.wide(row, VALUE, TEXT, words)
+    sheet.merge(row, VALUE, TEXT, words)
     sheet.formula(row, VALUE, f'IF({here}="{AS_SOLVED}",{place},"{NO_CERTIFICATE}")', words, "text")
     row += 1
     if limits.count:
         sheet.text(row, LABEL, "Governing limit", "name")
-        sheet.wide(row, VALUE, TEXT, "")
+        sheet.merge(row, VALUE, TEXT, "")
         most = f'MATCH("{ENDLESS}",{limits.used},0)'
         by_share = f"MATCH(MAX({limits.used}),{limits.used},0)"
         place = f"IFERROR({most},{by_share})"
@@ -120,7 +120,7 @@ def _told(sheet: Sheet, certificate: tuple[str, str], limits: LimitCells, change
         row += 1
     if limits.remarks:
         sheet.text(row, LABEL, "Remarks", "name")
-        sheet.wide(row, VALUE, TEXT, "")
+        sheet.merge(row, VALUE, TEXT, "")
         count, there = f'COUNTIF({limits.remarks},"applies")', " of those on the sheet Limits"
         text = f'IF({count}=0,"none",{count})&"{there}"'
         sheet.formula(row, VALUE, text, f"{limits.applying or 'none'}{there}", "text")
@@ -135,7 +135,7 @@ def _pairs(sheet: Sheet, row: int, title: str, pairs: Mapping[str, str]) -> int:
         row += 1
     for name, text in pairs.items():
         sheet.text(row, LABEL, name.replace("_", " "), "name")
-        sheet.wide(row, VALUE, TEXT, text)
+        sheet.merge(row, VALUE, TEXT, text)
         sheet.text(row, VALUE, text)
         row += 1
     return row
@@ -160,6 +160,6 @@ def _lines(sheet: Sheet, row: int, title: str, lines: Sequence[str]) -> int:
     sheet.texts(row, [title, *[""] * TEXT], "section")
     for line in lines:
         row += 1
-        sheet.wide(row, LABEL, TEXT, line)
+        sheet.merge(row, LABEL, TEXT, line)
         sheet.text(row, LABEL, line)
     return row + 1

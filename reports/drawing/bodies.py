@@ -20,10 +20,10 @@ from synth.results.report_request import About
 
 from ..extras import needed
 
-NO_DATE = "1970-01-01T00:00:00"  # the same drawing gives the same file; dates are told by --about
+NO_DATE = "1970-01-01T00:00:00"  # the same drawing gives the same file; dates come from --about
 SAG = 0.1  # mm between a surface and its triangles in glTF
 TURN = 0.2  # rad between neighbouring triangles
-# Colours of parts in turn, in glTF: steel, and what is told apart from it.
+# Colours of parts in turn, in glTF: steel, and tones that differ from it.
 COLOURS = (
     (0.62, 0.66, 0.70),
     (0.45, 0.55, 0.68),
@@ -40,16 +40,16 @@ def round_areas(drawing: Drawing) -> dict[int, list[Area]]:
 
     What a section shows uncut beside the axis (balls, rollers, screws) is round about axes of its own.
     """
-    found: dict[int, list[Area]] = {}
+    areas: dict[int, list[Area]] = {}
     for view in drawing.views:
         for area in view.areas if view.revolved else ():
             on_axis = any(vertex[1] == 0 for vertex in area.outline)
             if area.depth is None and (area.cut or on_axis):
-                found.setdefault(area.item, []).append(area)
-    return found
+                areas.setdefault(area.item, []).append(area)
+    return areas
 
 
-def left_out(drawing: Drawing) -> list[Item]:
+def not_bodies(drawing: Drawing) -> list[Item]:
     """Return the parts of a drawing that are no bodies of it."""
     there = round_areas(drawing)
     return [item for item in drawing.items if item.number not in there]
@@ -82,8 +82,8 @@ def step_of(drawing: Drawing, title: str, program: str, about: About | None = No
         text = file.read_bytes()
     numbers = count(1)
 
-    def numbered(found: re.Match[bytes]) -> bytes:
-        return b"NEXT_ASSEMBLY_USAGE_OCCURRENCE('%d'%s;" % (next(numbers), re.sub(rb"\s*\n\s*", b"", found[1]))
+    def numbered(match: re.Match[bytes]) -> bytes:
+        return b"NEXT_ASSEMBLY_USAGE_OCCURRENCE('%d'%s;" % (next(numbers), re.sub(rb"\s*\n\s*", b"", match[1]))
 
     return USED.sub(numbered, text)
 
@@ -93,8 +93,8 @@ def glb_of(drawing: Drawing, title: str, program: str, about: About | None = Non
     cad = _cad()
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "drawing.glb"
-        told = assembly(drawing, title, coloured=True)
-        cad.export_gltf(told, file, binary=True, linear_deflection=SAG, angular_deflection=TURN)
+        solid = assembly(drawing, title, coloured=True)
+        cad.export_gltf(solid, file, binary=True, linear_deflection=SAG, angular_deflection=TURN)
         return file.read_bytes()
 
 

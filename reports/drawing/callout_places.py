@@ -21,7 +21,7 @@ DOT = 0.6  # at the end of the line in a part
 
 @dataclass(frozen=True)
 class _Called:
-    """What is told of a point: its words and, on paper, the point."""
+    """A callout of a point: its words and, on paper, the point."""
 
     of: Balloon | Detail | Radius
     point: XY
@@ -35,14 +35,14 @@ class _Called:
 
 
 def callouts(
-    told: Sequence[Balloon | Detail | Radius], taken: Box2, scale: float, origin: XY
+    marks: Sequence[Balloon | Detail | Radius], occupied: Box2, scale: float, origin: XY
 ) -> tuple[list[Callout], list[PlacedMeasure]]:
-    """Return part numbers and letters, and radii, outside of the box that is taken already.
+    """Return part numbers and letters, and radii, outside of an occupied box.
 
     Parameters
     ----------
-    told : list of Balloon, Detail, Radius
-    taken : box
+    marks : list of Balloon, Detail, Radius
+    occupied : box
         Of the view with its dimensions, on paper.
     scale, origin : float, point
         Of the view.
@@ -50,8 +50,8 @@ def callouts(
     placed: list[Callout] = []
     measures: list[PlacedMeasure] = []
     for edge in EDGES:
-        called = [_called(x, scale, origin) for x in told if x.side == edge]
-        for one, place in zip(called, _row(called, edge, taken), strict=True):
+        called = [_called(x, scale, origin) for x in marks if x.side == edge]
+        for one, place in zip(called, _row(called, edge, occupied), strict=True):
             if isinstance(one.of, Radius):
                 text, strokes = _lettered(one, edge, place, arrow=True)
                 measures.append(PlacedMeasure(one.of, text, strokes, place))
@@ -80,42 +80,42 @@ def _called(of: Balloon | Detail | Radius, scale: float, origin: XY) -> _Called:
     return _Called(of, (origin[0] + scale * point[0], origin[1] + scale * point[1]), words, height)
 
 
-def _row(called: Sequence[_Called], edge: Edge, taken: Box2) -> list[XY]:
+def _row(called: Sequence[_Called], edge: Edge, occupied: Box2) -> list[XY]:
     """Return the places of a row, each as near to its point as there is room, without crossing lines."""
     if not called:
         return []
     axis = 1 if edge in ("left", "right") else 0
     reach = max(one.reach for one in called)
     across = {
-        "left": taken[0] - AWAY - reach,
-        "right": taken[2] + AWAY + reach,
-        "bottom": taken[1] - AWAY - BALLOON,
-        "top": taken[3] + AWAY + BALLOON,
+        "left": occupied[0] - AWAY - reach,
+        "right": occupied[2] + AWAY + reach,
+        "bottom": occupied[1] - AWAY - BALLOON,
+        "top": occupied[3] + AWAY + BALLOON,
     }[edge]
     step = STEP if axis == 1 else max(STEP, 2 * reach + 2)
     order = sorted(range(len(called)), key=lambda k: (called[k].point[axis], called[k].point[1 - axis], k))
-    places = _apart([called[k].point[axis] for k in order], step, taken[axis], taken[axis + 2])
-    found: list[XY] = [(0.0, 0.0)] * len(called)
+    places = _apart([called[k].point[axis] for k in order], step, occupied[axis], occupied[axis + 2])
+    positions: list[XY] = [(0.0, 0.0)] * len(called)
     for k, along in zip(order, places, strict=True):
-        found[k] = (across, along) if axis == 1 else (along, across)
+        positions[k] = (across, along) if axis == 1 else (along, across)
     for _ in range(len(called) ** 2):
         crossing = [
             (i, j)
             for i in range(len(called))
             for j in range(i)
-            if _cross(called[i].point, found[i], called[j].point, found[j])
+            if _cross(called[i].point, positions[i], called[j].point, positions[j])
         ]
         if not crossing:
             break
         i, j = crossing[0]
-        found[i], found[j] = found[j], found[i]
-    return found
+        positions[i], positions[j] = positions[j], positions[i]
+    return positions
 
 
-def _apart(wanted: Sequence[float], step: float, low: float, high: float) -> list[float]:
+def _apart(preferred: Sequence[float], step: float, low: float, high: float) -> list[float]:
     """Return ascending places at least a step apart, near those that are wanted and between two ends if they fit."""
     places: list[float] = []
-    for place in wanted:
+    for place in preferred:
         places.append(max(place, places[-1] + step) if places else place)
     over = places[-1] - max(high, low + step * (len(places) - 1))
     if over > 0:

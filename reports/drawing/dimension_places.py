@@ -30,15 +30,15 @@ class _Place:
     text_low: float
     text_high: float
     outside: bool
-    beside: bool
+    text_beyond: bool
 
     def clear_of(self, other: _Place) -> bool:
-        room = 0.0 if not (self.outside or self.beside or other.outside or other.beside) else 1.0
-        return self.high + room <= other.low + 1e-6 or other.high + room <= self.low + 1e-6
+        gap = 0.0 if not (self.outside or self.text_beyond or other.outside or other.text_beyond) else 1.0
+        return self.high + gap <= other.low + 1e-6 or other.high + gap <= self.low + 1e-6
 
 
 @dataclass(frozen=True)
-class _Taken:
+class _Used:
     tier: int
     place: _Place
     ends: tuple[float, float]
@@ -55,19 +55,19 @@ def label(dimension: Dimension | Slant | Radius | Angle) -> str:
 
 def tiers(dimensions: Sequence[Dimension], window: Box2, scale: float, origin: XY) -> list[PlacedMeasure]:
     """Return dimensions beside a view, each side in its tiers."""
-    found = []
+    measures = []
     for edge in EDGES:
         of_edge = sorted((d for d in dimensions if d.side == edge), key=lambda d: d.measure)
         all_ends = [_ends(d, scale, origin) for d in of_edge]
-        taken: list[_Taken] = []
+        used: list[_Used] = []
         for k, (dimension, ends) in enumerate(zip(of_edge, all_ends, strict=True)):
             others = [
                 x for j, pair in enumerate(all_ends) if j != k for x in pair if min(abs(x - e) for e in ends) > 1e-6
             ]
-            at = _free(taken, ends, width(label(dimension), TEXT), others)
-            taken.append(at)
-            found.append(_drawn(dimension, at, window, scale, origin))
-    return found
+            at = _free(used, ends, width(label(dimension), TEXT), others)
+            used.append(at)
+            measures.append(_drawn(dimension, at, window, scale, origin))
+    return measures
 
 
 def _ends(dimension: Dimension, scale: float, origin: XY) -> tuple[float, float]:
@@ -76,17 +76,17 @@ def _ends(dimension: Dimension, scale: float, origin: XY) -> tuple[float, float]
     return min(a, b), max(a, b)
 
 
-def _free(taken: Sequence[_Taken], ends: tuple[float, float], wide: float, others: Sequence[float]) -> _Taken:
+def _free(used: Sequence[_Used], ends: tuple[float, float], length: float, others: Sequence[float]) -> _Used:
     """Return the lowest tier where a dimension has room, and how it is written there."""
-    ways = list(_ways(ends, wide, others))
-    for tier in range(len(taken) + 1):
+    ways = list(_ways(ends, length, others))
+    for tier in range(len(used) + 1):
         for place in ways:
-            if all(_fit(_Taken(tier, place, ends), other) for other in taken):
-                return _Taken(tier, place, ends)
+            if all(_fit(_Used(tier, place, ends), other) for other in used):
+                return _Used(tier, place, ends)
     raise AssertionError("a tier above all others is free")
 
 
-def _fit(new: _Taken, old: _Taken) -> bool:
+def _fit(new: _Used, old: _Used) -> bool:
     if new.tier == old.tier:
         return new.place.clear_of(old.place)
     low, high = (new, old) if new.tier < old.tier else (old, new)
@@ -95,31 +95,31 @@ def _fit(new: _Taken, old: _Taken) -> bool:
     return all(not low.place.text_low - nearly < end < low.place.text_high + nearly for end in high.ends)
 
 
-def _ways(ends: tuple[float, float], wide: float, others: Sequence[float]) -> Iterable[_Place]:
+def _ways(ends: tuple[float, float], length: float, others: Sequence[float]) -> Iterable[_Place]:
     """Return the ways to write a text between two ends or beside them, best first.
 
     No end of another dimension lies in a text, so that no extension line goes through it whatever their tiers are.
     """
     low, high = ends
-    room = high - low
-    outside = room < 2 * ARROW + 2
+    span = high - low
+    outside = span < 2 * ARROW + 2
     tail = TAIL if outside else 0.0
-    middle, half = (low + high) / 2, wide / 2
-    if wide + 2 * CLEAR <= room:
-        reach = (room - wide) / 2 - CLEAR
+    middle, half = (low + high) / 2, length / 2
+    if length + 2 * CLEAR <= span:
+        reach = (span - length) / 2 - CLEAR
         steps = [0.0, *(sign * reach * k / 8 for k in range(1, 9) for sign in (1, -1))]
         for at in (middle + step for step in steps):
             if not _hit(at - half, at + half, others):
                 yield _Place(low - tail, high + tail, at - half, at + half, outside, False)
     first = high + 1.5
-    while hit := _hit(first, first + wide, others):
+    while hit := _hit(first, first + length, others):
         first = max(hit) + CLEAR + 0.01
     last = low - 1.5
-    while hit := _hit(last - wide, last, others):
+    while hit := _hit(last - length, last, others):
         last = min(hit) - CLEAR - 0.01
     beyond = [
-        _Place(low - tail, max(high + tail, first + wide + 0.5), first, first + wide, outside, True),
-        _Place(min(low - tail, last - wide - 0.5), high + tail, last - wide, last, outside, True),
+        _Place(low - tail, max(high + tail, first + length + 0.5), first, first + length, outside, True),
+        _Place(min(low - tail, last - length - 0.5), high + tail, last - length, last, outside, True),
     ]
     yield from sorted(beyond, key=lambda place: place.high - place.low)
 
@@ -129,7 +129,7 @@ def _hit(low: float, high: float, ends: Sequence[float]) -> list[float]:
     return [end for end in ends if low - CLEAR < end < high + CLEAR]
 
 
-def _drawn(dimension: Dimension, at: _Taken, window: Box2, scale: float, origin: XY) -> PlacedMeasure:
+def _drawn(dimension: Dimension, at: _Used, window: Box2, scale: float, origin: XY) -> PlacedMeasure:
     edge = dimension.side
     axis = 0 if dimension.along == "x" else 1
     border = {"left": window[0], "bottom": window[1], "right": window[2], "top": window[3]}[edge]
@@ -151,7 +151,7 @@ def _drawn(dimension: Dimension, at: _Taken, window: Box2, scale: float, origin:
         strokes.append(Stroke((point(first, line), point(last, line))))
     else:
         strokes.append(Stroke((point(first, line), point(last, line)), arrows=(True, True)))
-        if place.beside:
+        if place.text_beyond:
             beyond = place.high if place.high > last else place.low
             strokes.append(Stroke((point(last if place.high > last else first, line), point(beyond, line))))
     middle = (place.text_low + place.text_high) / 2
@@ -168,11 +168,11 @@ def slanted(dimension: Slant, scale: float, origin: XY) -> PlacedMeasure:
     nx, ny = -uy, ux
     sign = math.copysign(1.0, dimension.apart)
 
-    def beside(point: XY, apart: float) -> XY:
+    def offset(point: XY, apart: float) -> XY:
         return point[0] + nx * apart, point[1] + ny * apart
 
-    first, last = beside(p, dimension.apart), beside(q, dimension.apart)
-    lines = [Stroke((beside(x, sign * GAP), beside(x, dimension.apart + sign * BEYOND))) for x in (p, q)]
+    first, last = offset(p, dimension.apart), offset(q, dimension.apart)
+    lines = [Stroke((offset(x, sign * GAP), offset(x, dimension.apart + sign * BEYOND))) for x in (p, q)]
     turn = math.degrees(math.atan2(uy, ux))
     turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
     words, outside = label(dimension), long < 2 * ARROW + 2
@@ -205,8 +205,8 @@ def angular(dimension: Angle, scale: float, origin: XY) -> PlacedMeasure:
     bows = [Bow(vertex, radius, start, end, inwards)]
     middle = (start + end) / 2
     words = label(dimension)
-    wide = width(words, TEXT)
-    away = radius + 1.5 + abs(math.cos(middle)) * wide / 2 + abs(math.sin(middle)) * TEXT / 2
+    length = width(words, TEXT)
+    away = radius + 1.5 + abs(math.cos(middle)) * length / 2 + abs(math.sin(middle)) * TEXT / 2
     # Where arrows come from outside the text stands at the end of the first of them.
     centre = _polar(vertex, radius, start - (TAIL + TEXT) / radius) if inwards else _polar(vertex, away, middle)
     text = Text((centre[0], centre[1] - TEXT / 2), words, TEXT, "middle")

@@ -131,12 +131,12 @@ class _Dxf:
 
     def _layout(self) -> None:
         """Show all of the model on paper."""
-        (wide, high), paper = self.sheet.size, self.doc.paperspace()
+        (width, height), paper = self.sheet.size, self.doc.paperspace()
         paper.page_setup(size=self.sheet.size, margins=(0, 0, 0, 0), units="mm")
         self.doc.layouts.rename(paper.name, "Sheet")
-        centre = (wide / 2, high / 2)
+        centre = (width / 2, height / 2)
         paper.add_viewport(
-            center=centre, size=self.sheet.size, view_center_point=self._at(centre), view_height=high * self.larger,
+            center=centre, size=self.sheet.size, view_center_point=self._at(centre), view_height=height * self.larger,
             dxfattribs={"layer": "VIEWPORT"},
         )  # fmt: skip
 
@@ -240,9 +240,9 @@ class _Dxf:
 
         if isinstance(measured, Dimension):
             axis, turn = (0, 0) if measured.along == "x" else (1, 90)
-            aside = abs(middle[axis] - base[axis]) > 0.01
+            moved = abs(middle[axis] - base[axis]) > 0.01
             made = self.model.add_linear_dim(
-                self._at(base), at(measured.a), at(measured.b), location=text if aside else None, angle=turn,
+                self._at(base), at(measured.a), at(measured.b), location=text if moved else None, angle=turn,
                 text=words, dimstyle=style, override=override, dxfattribs=attributes,
             )  # fmt: skip
         elif isinstance(measured, Slant):
@@ -284,15 +284,15 @@ class _Dxf:
             self._text(placed.heading)
 
     def _stroke(self, stroke: Stroke, layer: str = "") -> None:
-        named = layer or ("FRAME" if stroke.wide == 0.7 else stroke.kind.name)
+        named = layer or ("FRAME" if stroke.line_width == 0.7 else stroke.kind.name)
         points = [self._at(p) for p in stroke.points]
         self.model.add_lwpolyline(points, close=stroke.closed, dxfattribs={"layer": named})
         arrow = ARROW * self.larger
-        for tip, back, wanted in (
+        for tip, back, has_arrow in (
             (points[0], points[1], stroke.arrows[0]),
             (points[-1], points[-2], stroke.arrows[1]),
         ):
-            if wanted:
+            if has_arrow:
                 long = math.dist(tip, back)
                 ux, uy = (tip[0] - back[0]) / long * arrow, (tip[1] - back[1]) / long * arrow
                 base = (tip[0] - ux, tip[1] - uy)
@@ -329,8 +329,8 @@ class _Window:
         return self._pieces(self._cut.clip_polygon(self._vector.list(corners)))
 
     @staticmethod
-    def _pieces(found: Iterable[Sequence[Any]]) -> list[list[XY]]:
-        return [[(p.x, p.y) for p in piece] for piece in found if len(piece) > 1]
+    def _pieces(paths: Iterable[Sequence[Any]]) -> list[list[XY]]:
+        return [[(p.x, p.y) for p in piece] for piece in paths if len(piece) > 1]
 
 
 def _along(shape: Circle | Arc) -> list[XY]:

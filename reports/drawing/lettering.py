@@ -28,7 +28,7 @@ WIDTHS = {
     "…": 1000,
 }
 ELSE = 700  # other alphabets
-WIDE = 1000  # ideographs
+IDEOGRAPH = 1000  # ideographs
 
 
 def size_of(height: float) -> float:
@@ -42,7 +42,7 @@ def width(text: str, height: float) -> float:
     >>> round(width("Ø204", 3.5), 1)
     11.9
     """
-    units = sum(WIDTHS.get(c, WIDE if ord(c) >= 0x2E80 else ELSE) for c in text)
+    units = sum(WIDTHS.get(c, IDEOGRAPH if ord(c) >= 0x2E80 else ELSE) for c in text)
     return units / 1000 * size_of(height)
 
 
@@ -75,16 +75,16 @@ def wrapped(text: str, most: float, height: float) -> list[str]:
     """
     lines = [""]
     for word in one_line(text).split():
-        rest = word
-        while rest:
-            wider = f"{lines[-1]} {rest}".strip()
+        remaining = word
+        while remaining:
+            wider = f"{lines[-1]} {remaining}".strip()
             if width(wider, height) <= most:
-                lines[-1], rest = wider, ""
+                lines[-1], remaining = wider, ""
             elif lines[-1]:
                 lines.append("")
             else:
-                fits = next(k for k in range(len(rest), 0, -1) if k == 1 or width(rest[:k], height) <= most)
-                lines[-1], rest = rest[:fits], rest[fits:]
-                if rest:
+                fits = next(k for k in range(len(remaining), 0, -1) if k == 1 or width(remaining[:k], height) <= most)
+                lines[-1], remaining = remaining[:fits], remaining[fits:]
+                if remaining:
                     lines.append("")
     return lines

@@ -17,7 +17,7 @@ ARROW = 3.0  # length of an arrow; a third as wide
 class Text:
     """A text at its place; ``anchor`` start, middle or end of the base line, ``turn`` in degrees.
 
-    ``whole`` is what was meant where it had to be cut.
+    ``full_text`` is the text before it was cut to fit.
     """
 
     at: XY
@@ -26,7 +26,7 @@ class Text:
     anchor: str = "start"
     turn: float = 0.0
     bold: bool = False
-    whole: str = ""
+    full_text: str = ""
 
     @property
     def corners(self) -> list[XY]:
@@ -41,9 +41,9 @@ class Text:
         left, right = self._ends(width(self.text, self.height))
         return self._turned(left, 0.0), self._turned(right, 0.0)
 
-    def _ends(self, wide: float) -> tuple[float, float]:
-        left = {"start": 0.0, "middle": -wide / 2, "end": -wide}[self.anchor]
-        return left, left + wide
+    def _ends(self, length: float) -> tuple[float, float]:
+        left = {"start": 0.0, "middle": -length / 2, "end": -length}[self.anchor]
+        return left, left + length
 
     def _turned(self, along: float, above: float) -> XY:
         c, s = math.cos(math.radians(self.turn)), math.sin(math.radians(self.turn))
@@ -57,7 +57,7 @@ class Stroke:
     points: tuple[XY, ...]
     kind: LineKind = LineKind.THIN
     arrows: tuple[bool, bool] = (False, False)
-    wide: float | None = None
+    line_width: float | None = None
     closed: bool = False
 
 
@@ -163,13 +163,13 @@ class PaperSheet:
 
     def all_texts(self) -> list[tuple[str, Text]]:
         """Return all texts with the place that they belong to."""
-        found = [("sheet", text) for text in self.texts]
+        texts = [("sheet", text) for text in self.texts]
         for k, placed in enumerate(self.views):
             place = placed.view.name + (f" {placed.detail.letter}" if placed.detail else "")
-            found += [(f"{k} {place}", m.text) for m in placed.measures]
-            found += [(f"{k} {place}", c.text) for c in placed.callouts]
-            found += [(f"{k} {place}", placed.heading)] if placed.heading else []
-        return found
+            texts += [(f"{k} {place}", m.text) for m in placed.measures]
+            texts += [(f"{k} {place}", c.text) for c in placed.callouts]
+            texts += [(f"{k} {place}", placed.heading)] if placed.heading else []
+        return texts
 
 
 def scale_label(scale: float) -> str:

@@ -11,7 +11,7 @@ from synth.results.report_request import About
 from .lettering import LABEL, SMALL, TEXT, fitted, wrapped
 from .paper import Ring, Stroke, Text, scale_label
 
-WIDE = 180.0  # of title block and parts list (ISO 7200)
+BLOCK_WIDTH = 180.0  # of title block and parts list (ISO 7200)
 BLOCK = 36.0  # height of the title block
 ROW = 5.0  # of the parts list
 NOTE = 3.9  # from line to line of notes
@@ -55,7 +55,7 @@ def list_height(items: Sequence[Item]) -> float:
 
 def parts_list(items: Sequence[Item], right: float, bottom: float) -> Written:
     """Return the parts list above the title block: item 1 at the bottom, as lists that grow upwards have it."""
-    left = right - WIDE
+    left = right - BLOCK_WIDTH
     strokes, texts = [], []
     top = bottom + list_height(items)
     rows: list[tuple[str, ...]] = [tuple(title for title, _, _ in COLUMNS)]
@@ -64,17 +64,17 @@ def parts_list(items: Sequence[Item], right: float, bottom: float) -> Written:
         base = bottom + ROW * k
         strokes.append(Stroke(((left, base + ROW), (right, base + ROW)), LineKind.THIN))
         x = left
-        for (_, wide, number), cell in zip(COLUMNS, cells, strict=True):
+        for (_, column_width, number), cell in zip(COLUMNS, cells, strict=True):
             if cell:
-                words, height = fitted(cell, wide - 2, LABEL if k == 0 else SMALL, LEAST)
-                at = (x + wide / 2 if number else x + 1.2, base + (ROW - height) / 2)
-                whole = cell if words != cell else ""
-                texts.append(Text(at, words, height, "middle" if number else "start", bold=k == 0, whole=whole))
-            x += wide
+                words, height = fitted(cell, column_width - 2, LABEL if k == 0 else SMALL, LEAST)
+                at = (x + column_width / 2 if number else x + 1.2, base + (ROW - height) / 2)
+                full_text = cell if words != cell else ""
+                texts.append(Text(at, words, height, "middle" if number else "start", bold=k == 0, full_text=full_text))
+            x += column_width
     x = left
-    for _, wide, _ in (*COLUMNS, ("", 0.0, False)):
+    for _, column_width, _ in (*COLUMNS, ("", 0.0, False)):
         strokes.append(Stroke(((x, bottom), (x, top)), LineKind.THIN))
-        x += wide
+        x += column_width
     strokes.append(Stroke(((left, top), (right, top)), LineKind.OUTLINE))
     return Written(tuple(strokes), tuple(texts))
 
@@ -83,7 +83,7 @@ def title_block(
     drawing: Drawing, title: str, program: str, about: About, scale: float, name: str, right: float, bottom: float
 ) -> Written:
     """Return the title block with the fields of ISO 7200; what is not told stays empty."""
-    left = right - WIDE
+    left = right - BLOCK_WIDTH
     fields = [  # x, y from the top, width, height, label, words
         (0, 0, 60, 12, "Legal owner", about.company),
         (60, 0, 80, 12, "Title", about.title or title),
@@ -100,14 +100,14 @@ def title_block(
         (160, 24, 20, 12, "Projection", ""),
     ]
     strokes, texts = [], []
-    for x, y, wide, high, what, words in fields:
+    for x, y, field_width, high, what, words in fields:
         x0, y1 = left + x, bottom + BLOCK - y
-        x1, y0 = x0 + wide, y1 - high
+        x1, y0 = x0 + field_width, y1 - high
         strokes.append(Stroke(((x0, y0), (x1, y0), (x1, y1), (x0, y1)), LineKind.THIN, closed=True))
         texts.append(Text((x0 + 1, y1 - 1 - LABEL), what, LABEL))
         if words:
-            told, height = fitted(words, wide - 3, TEXT, LEAST)
-            texts.append(Text((x0 + 1.5, y0 + 2.8), told, height, whole=words if told != words else ""))
+            shown, height = fitted(words, field_width - 3, TEXT, LEAST)
+            texts.append(Text((x0 + 1.5, y0 + 2.8), shown, height, full_text=words if shown != words else ""))
     outer = ((left, bottom), (right, bottom), (right, bottom + BLOCK), (left, bottom + BLOCK))
     strokes.append(Stroke(outer, LineKind.OUTLINE, closed=True))
     symbol = _first_angle(left + 170, bottom + 4.6)
@@ -118,27 +118,27 @@ def _first_angle(x: float, y: float) -> Written:
     """Return the symbol of first angle projection: a truncated cone, and to its right what is seen from the left."""
     cone = ((x - 7, y - 1.4), (x - 7, y + 1.4), (x - 1, y + 2.8), (x - 1, y - 2.8))
     strokes = (
-        Stroke(cone, LineKind.OUTLINE, closed=True, wide=0.35),
-        Stroke(((x - 8, y), (x + 8, y)), LineKind.CENTRE, wide=0.18),
-        Stroke(((x + 4, y - 3.4), (x + 4, y + 3.4)), LineKind.CENTRE, wide=0.18),
+        Stroke(cone, LineKind.OUTLINE, closed=True, line_width=0.35),
+        Stroke(((x - 8, y), (x + 8, y)), LineKind.CENTRE, line_width=0.18),
+        Stroke(((x + 4, y - 3.4), (x + 4, y + 3.4)), LineKind.CENTRE, line_width=0.18),
     )
     return Written(strokes, (), (Ring((x + 4, y), 2.8), Ring((x + 4, y), 1.4)))
 
 
-def note_lines(drawing: Drawing, wide: float) -> list[NoteLine]:
+def note_lines(drawing: Drawing, available: float) -> list[NoteLine]:
     """Return the notes of a sheet in lines that fit."""
     lines = [NoteLine(NOT_DRAWN, bold=True)]
     for text in drawing.omitted:
-        lines += _note(text, wide)
+        lines += _note(text, available)
     lines.append(NoteLine("Remarks:", bold=True))
     for text in (f"{SIZES}.", *drawing.remarks):
-        lines += _note(text, wide)
+        lines += _note(text, available)
     return lines
 
 
-def _note(text: str, wide: float) -> list[NoteLine]:
-    found = wrapped(f"– {text}", wide - INDENT, SMALL)
-    return [NoteLine(words, INDENT if k else 1.0) for k, words in enumerate(found)]
+def _note(text: str, available: float) -> list[NoteLine]:
+    lines = enumerate(wrapped(f"– {text}", available - INDENT, SMALL))
+    return [NoteLine(words, INDENT if k else 1.0) for k, words in lines]
 
 
 def notes(lines: Sequence[NoteLine], left: float, bottom: float) -> Written:

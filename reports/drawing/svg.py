@@ -16,7 +16,7 @@ from .lettering import size_of, width
 from .paper import ARROW, Bow, PaperSheet, PlacedMeasure, PlacedView, Ring, Stroke, Text, scale_label
 from .view_places import CENTRE_OVER
 
-WIDE, NARROW = 0.5, 0.25  # mm (ISO 128-2)
+BROAD, NARROW = 0.5, 0.25  # mm (ISO 128-2)
 NARROW_PART = 3.0  # parts thinner than that on paper have lighter outlines
 DASHES = {LineKind.HIDDEN: "3 1", LineKind.CENTRE: "8 1 .5 1", LineKind.PHANTOM: "8 1 .5 1 .5 1"}
 FONT = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
@@ -46,14 +46,14 @@ class _Svg:
         self.out: list[str] = []
 
     def lines(self) -> list[str]:
-        wide, high = self.sheet.size
-        told = f"{self.sheet.title}, scale {scale_label(self.sheet.scale)}, sheet {self.sheet.name}"
+        sheet_width, sheet_height = self.sheet.size
+        title = f"{self.sheet.title}, scale {scale_label(self.sheet.scale)}, sheet {self.sheet.name}"
         self.out = [
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide:g}mm" height="{high:g}mm" '
-            f'viewBox="0 0 {wide:g} {high:g}" font-family="{FONT}" role="img">',
-            f"<title>{escape(one_line(told))}</title>",
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{sheet_width:g}mm" height="{sheet_height:g}mm" '
+            f'viewBox="0 0 {sheet_width:g} {sheet_height:g}" font-family="{FONT}" role="img">',
+            f"<title>{escape(one_line(title))}</title>",
             self._definitions(),
-            f'<rect width="{wide:g}" height="{high:g}" fill="#fff"/>',
+            f'<rect width="{sheet_width:g}" height="{sheet_height:g}" fill="#fff"/>',
             f'<g fill="none" stroke="#000" stroke-width="{NARROW:g}">',
         ]
         for placed in self.sheet.views:
@@ -69,20 +69,20 @@ class _Svg:
     def _definitions(self) -> str:
         """Return the hatchings."""
         spaced = {Filling.RIGHT: (45, 1.6), Filling.LEFT: (-45, 1.6)}
-        found = [
+        patterns = [
             f'<pattern id="{self.prefix}-{kind}" width="{gap}" height="{gap}" patternUnits="userSpaceOnUse" '
             f'patternTransform="rotate({turn})"><path d="M0 0V{gap}" stroke="#000" stroke-width=".35"/></pattern>'
             for kind, (turn, gap) in spaced.items()
         ]
-        found.append(
+        patterns.append(
             f'<pattern id="{self.prefix}-{Filling.CROSS}" width="1.1" height="1.1" patternUnits="userSpaceOnUse" '
             'patternTransform="rotate(45)"><path d="M0 0H1.1M0 0V1.1" stroke="#000" stroke-width=".25"/></pattern>'
         )
-        found.append(
+        patterns.append(
             f'<pattern id="{self.prefix}-{Filling.DOTS}" width="1.2" height="1.2" patternUnits="userSpaceOnUse" '
             'patternTransform="rotate(30)"><circle cx=".4" cy=".4" r=".18" fill="#000"/></pattern>'
         )
-        return f"<defs>{''.join(found)}</defs>"
+        return f"<defs>{''.join(patterns)}</defs>"
 
     def _view(self, placed: PlacedView) -> None:
         name = placed.view.name + (f", detail {placed.detail.letter}" if placed.detail else "")
@@ -133,7 +133,7 @@ class _Svg:
         thin = thickness(area) * placed.scale
         solid = {Filling.BLACK: "#000", Filling.GREY: GREY, Filling.WHITE: "#fff"}
         fill = solid.get(kind, f"url(#{self.prefix}-{kind})")
-        pen = 0.05 if kind in (Filling.BLACK, Filling.GREY) else 0.3 if thin < NARROW_PART else WIDE
+        pen = 0.05 if kind in (Filling.BLACK, Filling.GREY) else 0.3 if thin < NARROW_PART else BROAD
         colour = GREY if kind is Filling.GREY else "#000"
         path = " ".join(self._outline(placed, outline) for outline in (area.outline, *area.holes))
         back = f'<path d="{path}" fill="#fff" fill-rule="evenodd" stroke="none"/>' if kind not in solid else ""
@@ -188,7 +188,7 @@ class _Svg:
     def _stroke(self, stroke: Stroke) -> None:
         points = " ".join(f"{x:.2f},{y:.2f}" for x, y in map(self._at, stroke.points))
         tag = "polygon" if stroke.closed else "polyline"
-        self.out.append(f'<{tag} points="{points}"{_pen(stroke.kind, stroke.wide)}/>')
+        self.out.append(f'<{tag} points="{points}"{_pen(stroke.kind, stroke.line_width)}/>')
         first, last = stroke.arrows
         ends = stroke.points
         if first:
@@ -212,15 +212,15 @@ class _Svg:
     def _text(self, text: Text, *, over_hatching: bool = False) -> None:
         x, y = self._at(text.at)
         turn = f' transform="rotate({-text.turn:g} {x:.2f} {y:.2f})"' if text.turn else ""
-        wide = width(text.text, text.height)
+        length = width(text.text, text.height)
         bold = ' font-weight="bold"' if text.bold else ""
-        whole = f"<title>{escape(one_line(text.whole))}</title>" if text.whole else ""
+        tooltip = f"<title>{escape(one_line(text.full_text))}</title>" if text.full_text else ""
         anchor = f' text-anchor="{text.anchor}"' if text.anchor != "start" else ""
         edge = 'stroke="#fff" stroke-width="1.2" paint-order="stroke"' if over_hatching else 'stroke="none"'
         self.out.append(
             f'<text x="{x:.2f}" y="{y:.2f}" font-size="{size_of(text.height):.2f}"{anchor}{turn}{bold} '
-            f'textLength="{wide:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" {edge}>'
-            f"{escape(text.text)}{whole}</text>"
+            f'textLength="{length:.2f}" lengthAdjust="spacingAndGlyphs" fill="#000" {edge}>'
+            f"{escape(text.text)}{tooltip}</text>"
         )
 
     def _at(self, point: XY) -> XY:
@@ -238,8 +238,8 @@ def _towards(a: XY, b: XY) -> XY:
     return (b[0] - a[0]) / long, (b[1] - a[1]) / long
 
 
-def _pen(kind: LineKind, wide: float | None = None) -> str:
+def _pen(kind: LineKind, line_width: float | None = None) -> str:
     """Attributes that differ from those of a narrow continuous line."""
     dash = f' stroke-dasharray="{DASHES[kind]}"' if kind in DASHES else ""
-    thick = wide or (WIDE if kind is LineKind.OUTLINE else NARROW)
+    thick = line_width or (BROAD if kind is LineKind.OUTLINE else NARROW)
     return (f' stroke-width="{thick:g}"' if thick != NARROW else "") + dash

@@ -16,16 +16,16 @@ CENTRE_OVER = 4.0  # mm that centre lines reach beyond their ends
 HEADING = 5.0  # height of letters over details
 NAME = 3.5  # and over views
 APART = 1.2  # mm between edges behind a section
-ALONE = 3.0  # mm: edges that stand nearer to each other are drawn with a narrow line
+WELL_APART = 3.0  # mm: edges that stand nearer to each other are drawn with a narrow line
 
 
 def placed_view(view: View, scale: float, origin: XY, *, named: bool) -> PlacedView:
     """Return a view at a place and scale, under its name where there are several."""
     shapes = (*_behind(view, scale), *view.drawn)
     bounds = tuple(_around(detail.window, scale, origin) for detail in view.details)
-    told = [*view.balloons, *view.details, *(d for d in view.dimensions if isinstance(d, Radius))]
+    tags = [*view.balloons, *view.details, *(d for d in view.dimensions if isinstance(d, Radius))]
     window = _on_paper(view.box, scale, origin)
-    measures, called, region = _marked(view.dimensions, told, window, scale, origin)
+    measures, called, region = _marked(view.dimensions, tags, window, scale, origin)
     words = one_line(f"{view.name} ({scale_label(scale)})" if view.own_scale else view.name)
     heading = Text((_middle(window), region[3] + 3), words, NAME, "middle") if named else None
     return PlacedView(
@@ -45,21 +45,21 @@ def placed_view(view: View, scale: float, origin: XY, *, named: bool) -> PlacedV
 
 def _behind(view: View, scale: float) -> list[Line]:
     """Return the edges behind a section, but for those that would run together on paper."""
-    found: list[Line] = []
+    lines: list[Line] = []
     edges = view.behind
     for k, (x, radius) in enumerate(edges):
         near = [abs(x - other) * scale for other, _ in (*edges[max(0, k - 1) : k], *edges[k + 1 : k + 2])]
-        if not found or k == len(edges) - 1 or scale * (x - found[-1].a[0]) >= APART:
-            kind = LineKind.THIN if min(near, default=ALONE) < ALONE else LineKind.OUTLINE
-            found.append(Line((x, -radius), (x, radius), kind))
-    return found
+        if not lines or k == len(edges) - 1 or scale * (x - lines[-1].a[0]) >= APART:
+            kind = LineKind.THIN if min(near, default=WELL_APART) < WELL_APART else LineKind.OUTLINE
+            lines.append(Line((x, -radius), (x, radius), kind))
+    return lines
 
 
 def placed_detail(view: View, detail: Detail, scale: float, origin: XY) -> PlacedView:
     """Return a detail of a view at a place and scale."""
     window = _on_paper(detail.window, scale, origin)
-    told = [*detail.balloons, *(d for d in detail.dimensions if isinstance(d, Radius))]
-    measures, called, region = _marked(detail.dimensions, told, window, scale, origin)
+    tags = [*detail.balloons, *(d for d in detail.dimensions if isinstance(d, Radius))]
+    measures, called, region = _marked(detail.dimensions, tags, window, scale, origin)
     words = f"{detail.letter} ({scale_label(scale)})"
     heading = Text((_middle(window), region[3] + 4), words, HEADING, "middle")
     return PlacedView(
@@ -77,14 +77,14 @@ def placed_detail(view: View, detail: Detail, scale: float, origin: XY) -> Place
 
 
 def _marked(
-    dimensions: Iterable[Dimension | Slant | Angle | Radius], told: list[object], window: Box2, scale: float, origin: XY
+    dimensions: Iterable[Dimension | Slant | Angle | Radius], tags: list[object], window: Box2, scale: float, origin: XY
 ) -> tuple[list[PlacedMeasure], list[Callout], Box2]:
-    beside = [d for d in dimensions if isinstance(d, Dimension)]
-    measures = tiers(beside, window, scale, origin)
+    linear = [d for d in dimensions if isinstance(d, Dimension)]
+    measures = tiers(linear, window, scale, origin)
     measures += [slanted(d, scale, origin) for d in dimensions if isinstance(d, Slant)]
     measures += [angular(d, scale, origin) for d in dimensions if isinstance(d, Angle)]
     region = _region(window, measures, [])
-    called, radii = callouts(told, region, scale, origin)  # type: ignore[arg-type]
+    called, radii = callouts(tags, region, scale, origin)  # type: ignore[arg-type]
     measures += radii
     return measures, called, _region(window, measures, called)
 

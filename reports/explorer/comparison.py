@@ -1,4 +1,4 @@
-"""What the explorer shows of several families that were asked the same: their common front, as one record."""
+"""Explorer record of several families for one requirement sheet: their common front."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ from .record import EXPLORER_FORMAT, WORDS, RecordOf, label, number
 TITLE = "Comparison of families"
 
 
-def comparison_record(asked: ComparisonRequest) -> dict[str, Any]:
+def comparison_record(request: ComparisonRequest) -> dict[str, Any]:
     """Explorer record of a comparison, as JSON holds it."""
-    content, fronts, told = asked.content, asked.fronts, _Compared(asked)
+    content, fronts, compared = request.content, request.fronts, _Compared(request)
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(next(iter(fronts.values()), None)),
-        "title": told.about.title or TITLE,
+        "title": compared.about.title or TITLE,
         "family": TITLE,
-        "facts": [list(fact) for fact in told.about.facts()],
+        "facts": [list(fact) for fact in compared.about.facts()],
         "objectives": dict(content["objectives"]),
-        "asked": told.asked(),
-        "assumed": told.assumed(),
-        "certificate": told.certificate(),
-        "nothing": None if content["designs"] else told.nothing(),
-        "families": told.families(),
-        "quantities": list(told.quantities.values()),
-        "limits": list(told.limits.values()),
-        "parts": {key: part for one in told.records.values() for key, part in one.parts().items()},
+        "asked": compared.inputs(),
+        "assumed": compared.assumed(),
+        "certificate": compared.certificate(),
+        "nothing": None if content["designs"] else compared.nothing(),
+        "families": compared.families(),
+        "quantities": list(compared.quantities.values()),
+        "limits": list(compared.limits.values()),
+        "parts": {key: part for one in compared.records.values() for key, part in one.parts().items()},
         "spec": {},
-        "designs": [told.design(x) for x in content["designs"]],
+        "designs": [compared.design(x) for x in content["designs"]],
     }
 
 
 class _Compared:
-    def __init__(self, asked: ComparisonRequest) -> None:
-        self.content, self.fronts, self.about = asked.content, asked.fronts, asked.how.about
-        self.links, self.drawings = asked.links, asked.drawings
-        self.records = {name: RecordOf(self.fronts[name], x, self.about) for name, x in asked.calculations.items()}
+    def __init__(self, request: ComparisonRequest) -> None:
+        self.content, self.fronts, self.about = request.content, request.fronts, request.how.about
+        self.links, self.drawings = request.links, request.drawings
+        self.records = {name: RecordOf(self.fronts[name], x, self.about) for name, x in request.calculations.items()}
         self.titles = self._titles()
         self.quantities: dict[str, dict[str, Any]] = {}
         self.units: dict[str, str] = {}
@@ -55,9 +55,9 @@ class _Compared:
 
     def _titles(self) -> dict[str, str]:
         """Titles of the families, longer where two have the same."""
-        told = {str(x["family"]): str(x["title"]) for x in self.content["families"]}
-        often = list(told.values())
-        return {name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in told.items()}
+        named = {str(x["family"]): str(x["title"]) for x in self.content["families"]}
+        often = list(named.values())
+        return {name: title if often.count(title) == 1 else f"{title} ({label(name)})" for name, title in named.items()}
 
     def _gather(self, family: str) -> None:
         """Take up the quantities and limits of a family; what is measured otherwise than elsewhere stands apart."""
@@ -73,53 +73,53 @@ class _Compared:
             self.limits.setdefault((limit["name"], limit["unit"], limit["sign"]), limit)
 
     def _key(self, family: str, name: str) -> str:
-        own = self.records[family].frame.units[name]
-        same = name in self.content["objectives"] or self.units.get(name, own) == own
+        unit = self.records[family].frame.units[name]
+        same = name in self.content["objectives"] or self.units.get(name, unit) == unit
         return name if same else f"{name}:{family}"
 
-    # -- what was asked ------------------------------------------------------------------------
+    # -- the question --------------------------------------------------------------------------
 
-    def asked(self) -> list[dict[str, Any]]:
+    def inputs(self) -> list[dict[str, Any]]:
         """Question to all, and to single families."""
-        return self._merged({f: [*r.asked(stated=True), *r.restrictions()] for f, r in self.records.items()})
+        return self._merged({f: [*r.inputs(explicit=True), *r.restrictions()] for f, r in self.records.items()})
 
     def assumed(self) -> list[dict[str, Any]]:
         """Values at their defaults."""
-        return self._merged({family: record.asked(stated=False) for family, record in self.records.items()})
+        return self._merged({family: record.inputs(explicit=False) for family, record in self.records.items()})
 
     def _merged(self, rows: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[dict[str, Any]]:
         """Return rows once that are the same in all families that have them, the others with their family."""
         values: dict[str, list[Any]] = {}
-        for own in rows.values():
-            for row in own:
+        for entries in rows.values():
+            for row in entries:
                 values.setdefault(row["label"], []).append({**row, "text": ""})
-        found: dict[str, dict[str, Any]] = {}
-        for family, own in rows.items():
-            for row in own:
+        merged: dict[str, dict[str, Any]] = {}
+        for family, entries in rows.items():
+            for row in entries:
                 alike = all(other == values[row["label"]][0] for other in values[row["label"]])
                 name = row["label"] if alike else f"{row['label']} ({self.titles[family]})"
-                found.setdefault(name, {**row, "label": name})
-        return list(found.values())
+                merged.setdefault(name, {**row, "label": name})
+        return list(merged.values())
 
     # -- how far it is proven ------------------------------------------------------------------
 
     def certificate(self) -> dict[str, Any]:
         content = self.content
         c = Certificate(**content["certificate"])
-        proven, some = c.kind == "global", bool(content["designs"])
+        proven, any_design = c.kind == "global", bool(content["designs"])
         word = WORDS.get(c.kind, "Not proven")
-        if not some:
+        if not any_design:
             word = "Not feasible, proven" if proven else "No design found, not proven"
         elif content["interrupted"]:
             word = "Stopped"
         amounts = c.amounts()
-        told = str(content["sentence"])
-        sentence = (told.partition(": ")[2] or told).replace(amounts, "") + "."
+        statement = str(content["sentence"])
+        sentence = (statement.partition(": ")[2] or statement).replace(amounts, "") + "."
         details = [f"Stopped: {content['interrupted']}."] if content["interrupted"] else []
         if amounts:
             details.append(as_sentence(amounts.strip(" ()")))
         return {
-            "level": "bad" if not some else "good" if proven and not content["interrupted"] else "open",
+            "level": "bad" if not any_design else "good" if proven and not content["interrupted"] else "open",
             "word": word,
             "sentence": sentence[:1].upper() + sentence[1:],
             "head": word,
@@ -165,34 +165,34 @@ class _Compared:
 
     # -- designs -------------------------------------------------------------------------------
 
-    def design(self, told: Mapping[str, Any]) -> dict[str, Any]:
+    def design(self, entry: Mapping[str, Any]) -> dict[str, Any]:
         """Return one design, with its rank among those of all families."""
-        family, title = told["family"], self.titles[told["family"]]
-        record, own = self.records[family], self._own(told)
-        drawing = self.drawings.get(told["rank"])
-        pictures = {own.rank or 0: record.picture(drawing)} if drawing is not None else {}
-        found = record.design(own, (), {}, pictures)
-        used = dict(zip(self._limits_of(family), found["used"], strict=True))
-        sides = dict(zip(self._limits_of(family), found["sides"], strict=True))
+        family, title = entry["family"], self.titles[entry["family"]]
+        record, listed = self.records[family], self._design_of(entry)
+        drawing = self.drawings.get(entry["rank"])
+        pictures = {listed.rank or 0: record.picture(drawing)} if drawing is not None else {}
+        result = record.design(listed, (), {}, pictures)
+        used = dict(zip(self._limits_of(family), result["used"], strict=True))
+        sides = dict(zip(self._limits_of(family), result["sides"], strict=True))
         names = {self._key(family, name): name for name in [*self.content["objectives"], *record.names]}
         proven = self.content["certificate"]["kind"] == "global"
-        return found | {
-            "rank": told["rank"],
-            "score": told["score"],
-            "status": found["status"] if proven else "feasible",
+        return result | {
+            "rank": entry["rank"],
+            "score": entry["score"],
+            "status": result["status"] if proven else "feasible",
             "gap": self.content["certificate"]["gap"] if proven else None,
-            "note": str(told["note"] or ""),
-            "why": f"{title}: design {own.rank} of the front of this family alone.",
+            "note": str(entry["note"] or ""),
+            "why": f"{title}: design {listed.rank} of the front of this family alone.",
             "family": family,
-            "v": [number(own.values.get(names.get(key, ""), math.nan), unit) for key, unit in self.units.items()],
+            "v": [number(listed.values.get(names.get(key, ""), math.nan), unit) for key, unit in self.units.items()],
             "used": [used.get(key) for key in self.limits],
             "sides": [sides.get(key, [None, None]) for key in self.limits],
         }
 
-    def _own(self, told: Mapping[str, Any]) -> Design:
-        return next(d for d in self.fronts[told["family"]].designs if d.rank == told["own_rank"])
+    def _design_of(self, entry: Mapping[str, Any]) -> Design:
+        return next(d for d in self.fronts[entry["family"]].designs if d.rank == entry["own_rank"])
 
     def _limits_of(self, family: str) -> list[tuple[str, str, str]]:
         record = self.records[family]
-        told = [record.limit(name) for name in record.frame.limit_units]
-        return [(limit["name"], limit["unit"], limit["sign"]) for limit in told]
+        limits = [record.limit(name) for name in record.frame.limit_units]
+        return [(limit["name"], limit["unit"], limit["sign"]) for limit in limits]

@@ -24,8 +24,8 @@ LEAST_HEIGHT, MOST_HEIGHT = 300, 4000  # of a frame, in pixels
 @cache
 def explorer_files() -> dict[str, str]:
     """Return the modules and style sheets by name, as a service hands them out; ``explorer.js`` has ``mount``."""
-    found = {path.name: path.read_text(encoding="utf-8") for path in files(MODULES).iterdir() if _handed_out(path.name)}
-    return dict(sorted((found | ui_files()).items()))
+    texts = {path.name: path.read_text(encoding="utf-8") for path in files(MODULES).iterdir() if _handed_out(path.name)}
+    return dict(sorted((texts | ui_files()).items()))
 
 
 def _handed_out(name: str) -> bool:
@@ -87,7 +87,7 @@ LINE_ENDS = {0x2028: "\\u2028", 0x2029: "\\u2029"}
 @cache
 def one_script() -> str:
     """Return all modules as one: each in a function of its own, in order of what they import."""
-    told: list[str] = []
+    wrapped: list[str] = []
     done: set[str] = set()
 
     def add(name: str) -> None:
@@ -97,13 +97,13 @@ def one_script() -> str:
         text = explorer_files()[name]
         for _, other in IMPORT.findall(text):
             add(other)
-        names = [found[1] for found in EXPORT.findall(text)]
-        body = IMPORT.sub(lambda found: f"const {{{found[1]}}} = {_variable(found[2])};\n", text)
+        names = [match[1] for match in EXPORT.findall(text)]
+        body = IMPORT.sub(lambda match: f"const {{{match[1]}}} = {_variable(match[2])};\n", text)
         body = EXPORT.sub(r"\1 \2", body)
-        told.append(f"const {_variable(name)} = (() => {{\n{body}return {{ {', '.join(names)} }};\n}})();\n")
+        wrapped.append(f"const {_variable(name)} = (() => {{\n{body}return {{ {', '.join(names)} }};\n}})();\n")
 
     add(FIRST)
-    return "".join(told)
+    return "".join(wrapped)
 
 
 def _variable(name: str) -> str:

@@ -24,45 +24,45 @@ EXPLORER_FORMAT = 1
 DIGITS = 7  # significant, of numbers in the record; five are shown
 SLOPES = 8  # requirements and limits of a design that tell what 1 % more changes, the largest first
 LEAST_SLOPE = 1e-3
-HOW_RATED = ("mode", "samples", "seed", "confidence")  # in what is asked of robust designs: not what scatters
+HOW_RATED = ("mode", "samples", "seed", "confidence")  # entries of a robust block that are not scatter
 WORDS = {"global": "Proven", "exhaustive": "Every combination solved", "heuristic": "Not proven"}
 
 
-def explorer_record(asked: ReportRequest, files: Mapping[int, Mapping[str, str]] | None = None) -> dict[str, Any]:
+def explorer_record(request: ReportRequest, files: Mapping[int, Mapping[str, str]] | None = None) -> dict[str, Any]:
     """Explorer record of a front, as JSON holds it.
 
     Parameters
     ----------
-    asked : ReportRequest
+    request : ReportRequest
         Of a front; drawings are shown as pictures, in which nothing runs.
     files : mapping
         Rank -> label -> file beside the page.
     """
-    front = asked.front
+    front, files = request.front, files or {}
     assert front is not None
-    told = RecordOf(front, asked.calculation, asked.how.about)
-    pictures = {rank: told.picture(drawing) for rank, drawing in asked.drawings.items()}
+    record = RecordOf(front, request.calculation, request.how.about)
+    pictures = {rank: record.picture(drawing) for rank, drawing in request.drawings.items()}
     return {
         "format": EXPLORER_FORMAT,
         "program": program_name(front),
-        "title": told.about.title or front.frame.title,
+        "title": record.about.title or front.frame.title,
         "family": front.frame.title,
-        "facts": [list(fact) for fact in told.about.facts()],
+        "facts": [list(fact) for fact in record.about.facts()],
         "objectives": dict(front.frame.objectives),
-        "asked": told.asked(stated=True) + told.restrictions(),
-        "assumed": told.asked(stated=False),
-        "certificate": told.certificate(),
-        "nothing": told.nothing(),
-        "quantities": [told.quantity(name) for name in told.names],
-        "limits": [told.limit(name) for name in front.frame.limit_units],
-        "parts": told.parts(),
-        "spec": told.spec(),
-        "designs": [told.design(d, asked.prices, (files or {}).get(d.rank or 0, {}), pictures) for d in front.designs],
+        "asked": record.inputs(explicit=True) + record.restrictions(),
+        "assumed": record.inputs(explicit=False),
+        "certificate": record.certificate(),
+        "nothing": record.nothing(),
+        "quantities": [record.quantity(name) for name in record.names],
+        "limits": [record.limit(name) for name in front.frame.limit_units],
+        "parts": record.parts(),
+        "spec": record.spec(),
+        "designs": [record.design(d, request.prices, files.get(d.rank or 0, {}), pictures) for d in front.designs],
     }
 
 
 class RecordOf:
-    """What is told of one front: each method returns a part of the record."""
+    """The record of one front: each method returns a part of it."""
 
     def __init__(self, front: ParetoFront, calculation: Calculation, about: About) -> None:
         self.front, self.calculation, self.about = front, calculation, about
@@ -77,8 +77,8 @@ class RecordOf:
         """Entry of a quantity beside its values."""
         q = self.calculation.quantities.get(name)
         unit = self.frame.units[name]
-        told = {"name": name, "label": label(name), "unit": told_unit(unit), "kind": self.frame.kinds.get(name, "")}
-        return told | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
+        entry = {"name": name, "label": label(name), "unit": page_unit(unit), "kind": self.frame.kinds.get(name, "")}
+        return entry | {"text": _of(q, "text"), "symbol": _of(q, "symbol"), "source": _of(q, "source")}
 
     def limit(self, name: str) -> dict[str, Any]:
         """Entry of a limit beside its sides."""
@@ -86,31 +86,31 @@ class RecordOf:
         return {
             "name": name,
             "label": _compared(label(name)),
-            "unit": told_unit(self.frame.limit_units[name]),
+            "unit": page_unit(self.frame.limit_units[name]),
             "sign": SIGN_OF[self.frame.limit_senses[name]],
             "text": rule.text if rule is not None else "",
             "source": rule.source if rule is not None else "",
         }
 
-    # -- what was asked ------------------------------------------------------------------------
+    # -- the question --------------------------------------------------------------------------
 
-    def asked(self, stated: bool) -> list[dict[str, Any]]:
-        """Return the requirements that were stated, or those that stand at their defaults."""
+    def inputs(self, explicit: bool) -> list[dict[str, Any]]:
+        """Explicit requirements, or those at their defaults."""
         quantities = [q for q in self.calculation.quantities.values() if q.kind == "requirement"]
         rows = [
             {
                 "label": label(q.name),
                 "text": q.text,
                 "value": number(self.frame.requirement_values[q.name], q.unit),
-                "unit": told_unit(q.unit),
+                "unit": page_unit(q.unit),
             }
             for q in quantities
-            if q.name in self.frame.requirement_values and (q.name in self.frame.requirements) == stated
+            if q.name in self.frame.requirement_values and (q.name in self.frame.requirements) == explicit
         ]
         options = [
             {"label": label(name), "text": "", "words": word}
             for name, word in self.calculation.options.items()
-            if (name in self.frame.options) == stated
+            if (name in self.frame.options) == explicit
         ]
         return rows + options
 
@@ -118,8 +118,8 @@ class RecordOf:
         """Question beside its requirements: own limits, fixed sizes, parts held to, scatter."""
         rows = []
         for key, words in (("limits", ""), ("fix", "fixed at "), ("parts", "only "), ("robust", "scatters ")):
-            told = self.front.settings.get(key)
-            for name, value in told.items() if isinstance(told, Mapping) else ():
+            block = self.front.settings.get(key)
+            for name, value in block.items() if isinstance(block, Mapping) else ():
                 if key != "robust" or name not in HOW_RATED:
                     rows.append({"label": label(str(name)), "text": "", "words": words + _in_words(value)})
         return rows
@@ -128,8 +128,7 @@ class RecordOf:
         """Common part of all DESIGN.yaml of the front."""
         if not self.front.designs:
             return {}
-        told = self.front.designs[0].to_spec()
-        return {key: value for key, value in told.items() if key not in ("values", "parts")}
+        return {key: x for key, x in self.front.designs[0].to_spec().items() if key not in ("values", "parts")}
 
     # -- how far it is proven ------------------------------------------------------------------
 
@@ -173,23 +172,23 @@ class RecordOf:
 
     def _not_part(self) -> list[str]:
         """Parts of the question that the certificate does not cover."""
-        told = [NOT_COVERED]
+        notes = [NOT_COVERED]
         marked = sorted({f"{row} ({row['table']})" for row in self._rows() if row.get("confidence") != "verified"})
         if marked:
-            told.append("Rows of tables used here that are not marked verified: " + ", ".join(marked) + ".")
+            notes.append("Rows of tables used here that are not marked verified: " + ", ".join(marked) + ".")
         unchecked = sorted({text for d in self.front.designs for text in d.not_checked})
-        told += [f"Not checked: {text}" for text in unchecked[:6]]
+        notes += [f"Not checked: {text}" for text in unchecked[:6]]
         if self.frame.not_asked:
-            told.append("Not asked: " + ", ".join(map(label, self.frame.not_asked)) + ".")
-        return told
+            notes.append("Not asked: " + ", ".join(map(label, self.frame.not_asked)) + ".")
+        return notes
 
     def nothing(self) -> dict[str, Any] | None:
         """Reason why there is no design; None where there is one."""
-        told = self.front.explanation
-        if self.front.designs or not told:
+        explanation = self.front.explanation
+        if self.front.designs or not explanation:
             return None
         conflicts = []
-        for miss in told.conflicts or ():
+        for miss in explanation.conflicts or ():
             unit = str(miss.unit or "-")
             sides = [number(x, unit) if isinstance(x, float) else None for x in (miss.value, miss.limit_value)]
             by = ""
@@ -198,11 +197,11 @@ class RecordOf:
             name = str(miss.limit)
             sign = SIGN_OF.get(self.frame.limit_senses.get(name, ""), "")
             conflicts.append(
-                {"label": _compared(label(name)), "sides": sides, "unit": told_unit(unit), "sign": sign, "by": by}
+                {"label": _compared(label(name)), "sides": sides, "unit": page_unit(unit), "sign": sign, "by": by}
             )
-        nearest = {**(told.nearest or {}), **(told.parts or {})}
+        nearest = {**(explanation.nearest or {}), **(explanation.parts or {})}
         return {
-            "message": told.headline,
+            "message": explanation.headline,
             "conflicts": conflicts,
             "nearest": [[label(name), str(value)] for name, value in nearest.items()],
         }
@@ -231,7 +230,7 @@ class RecordOf:
         """Return one design."""
         limits = list(self.frame.limit_units)
         reason = why(self.front, d)
-        told: dict[str, Any] = {
+        entry: dict[str, Any] = {
             "rank": d.rank,
             "score": _rounded(d.score),
             "status": d.status.value,
@@ -258,7 +257,7 @@ class RecordOf:
             "files": [list(pair) for pair in files.items()],
             "drawing": drawings.get(d.rank or 0, ""),
         }
-        return told | {key: value for key, value in more.items() if value}
+        return entry | {key: value for key, value in more.items() if value}
 
     def picture(self, drawing: Drawing) -> str:
         """Return a drawing as SVG."""
@@ -293,7 +292,7 @@ def label(name: str) -> str:
     return name.replace("_", " ")
 
 
-def told_unit(unit: str) -> str:
+def page_unit(unit: str) -> str:
     """Return a unit as pages write it: ``N·m`` for ``N*m``."""
     return unit_text(unit).replace(" ", "·")
 

@@ -108,7 +108,7 @@ class Cases:
 Layout: TypeAlias = Letter | Amount | Word | Sign | Row | Fraction | Power | Root | Fence | Call | Cases
 Leaf: TypeAlias = Callable[[NamedQuantity], Layout]
 
-PLUS, MINUS, TIMES, BESIDE = Sign("+"), Sign("−"), Sign("·"), Sign("\u2009")
+PLUS, MINUS, TIMES, SPACE = Sign("+"), Sign("−"), Sign("·"), Sign("\u2009")
 COMPARED = {"<": "<", "<=": "≤", "==": "=", "!=": "≠", "and": "and", "or": "or"}
 SUM, TERM, FACTOR, BASE = range(4)  # how strongly what stands around a formula holds it together
 
@@ -128,7 +128,7 @@ def textbook(tree: Expression) -> Expression:
     if tree[0] == "neg" and tree[1][0] == "+":
         return _turned(tree[1])
     if tree[0] == "neg" and tree[1][0] == "*":
-        return _sign_taken_in(tree)
+        return _sign_in_factor(tree)
     if tree[0] != "f":
         return tree
     name, inner, outer = function_of(tree[1]).plain or (tree[1], 0.0, 0.0)
@@ -157,7 +157,7 @@ def _turned(total: Expression) -> Expression:
     return ["+", [terms[first], *terms[:first], *terms[first + 1 :]]]
 
 
-def _sign_taken_in(tree: Expression) -> Expression:
+def _sign_in_factor(tree: Expression) -> Expression:
     """Return minus a product with the sign in a factor that is better read so: -(e^x - 1)/S is (1 - e^x)/S."""
     over = tree[1][1]
     for k, factor in enumerate(over):
@@ -172,8 +172,8 @@ def _exponential(x: Expression) -> Expression:
     factors, under = (inner[1], inner[2]) if inner[0] == "*" else ([inner], [])
     for k, factor in enumerate(factors):
         if factor[0] == "f" and factor[1] == "ln":
-            rest = [*factors[:k], *factors[k + 1 :]]
-            power: Expression = ["*", rest or [["n", 1.0]], under] if under or len(rest) != 1 else rest[0]
+            others = [*factors[:k], *factors[k + 1 :]]
+            power: Expression = ["*", others or [["n", 1.0]], under] if under or len(others) != 1 else others[0]
             return ["^", factor[2][0], ["neg", power] if sign else power]
     return ["f", "exp", [x]]
 
@@ -221,13 +221,13 @@ class Typesetter:
         return laid[kind](tree, around)
 
     def _quantity(self, name: str, around: int) -> Layout:
-        found = self.leaf(self.quantities[name])
-        if isinstance(found, Amount):
-            number = found.shown.number
-            negative, unit = bool(number.sign), bool(found.shown.unit) or bool(number.power)
+        leaf = self.leaf(self.quantities[name])
+        if isinstance(leaf, Amount):
+            number = leaf.shown.number
+            negative, unit = bool(number.sign), bool(leaf.shown.unit) or bool(number.power)
             if (negative and around > SUM) or (unit and around >= BASE):
-                return Fence(found)
-        return found
+                return Fence(leaf)
+        return leaf
 
     def _number(self, number: float, around: int, unit: str = "") -> Layout:
         size: Layout = self._size(abs(number), around, unit)
@@ -239,28 +239,28 @@ class Typesetter:
     def _size(self, number: float, around: int, unit: str = "") -> Layout:
         square = round(number**2) if 1 < number < 10 else 0
         if square and abs(number**2 - square) <= EXACT * square and not number.is_integer():
-            return Root(_whole(square))
-        fold = constant_in(number, self.constants.values()) or _told_fraction(number)
+            return Root(_integer(square))
+        fold = constant_in(number, self.constants.values()) or _readable_fraction(number)
         if fold is None:
             return Amount(_in_unit(number, unit))
-        top: list[Layout] = [] if fold.over == 1 and (fold.pi > 0 or fold.power > 0) else [_whole(fold.over)]
-        bottom: list[Layout] = [] if fold.under == 1 else [_whole(fold.under)]
+        top: list[Layout] = [] if fold.over == 1 and (fold.pi > 0 or fold.power > 0) else [_integer(fold.over)]
+        bottom: list[Layout] = [] if fold.under == 1 else [_integer(fold.under)]
         if fold.pi:
             (top if fold.pi > 0 else bottom).append(_raised(Letter("pi"), abs(fold.pi)))
         if fold.constant:
             (top if fold.power > 0 else bottom).append(self.leaf(self.constants[fold.constant]))
-        over = self._beside(top or [_whole(1)])
+        over = self._juxtaposed(top or [_integer(1)])
         if not bottom:
             return over
-        found = Fraction(over, self._beside(bottom))
-        return Fence(found) if around >= BASE else found
+        fraction = Fraction(over, self._juxtaposed(bottom))
+        return Fence(fraction) if around >= BASE else fraction
 
-    def _beside(self, items: Sequence[Layout]) -> Layout:
+    def _juxtaposed(self, items: Sequence[Layout]) -> Layout:
         if len(items) == 1:
             return items[0]
         row: list[Layout] = []
         for item in items:
-            row += [TIMES if self.numeric or isinstance(item, Amount) else BESIDE, item] if row else [item]
+            row += [TIMES if self.numeric or isinstance(item, Amount) else SPACE, item] if row else [item]
         return Row(tuple(row))
 
     def _common_unit(self, trees: Sequence[Expression]) -> str:
@@ -283,24 +283,24 @@ class Typesetter:
                 row += [*sign, self._number(abs(term[1]), TERM, unit)]
             else:
                 row += [PLUS, self.lay(term, TERM)] if row else [self.lay(term, SUM)]
-        found = Row(tuple(row))
-        return Fence(found) if around > SUM else found
+        laid = Row(tuple(row))
+        return Fence(laid) if around > SUM else laid
 
     def _negated(self, tree: Expression, around: int) -> Layout:
-        found = Row((MINUS, self.lay(tree[1], TERM)))
-        return Fence(found) if around > SUM else found
+        laid = Row((MINUS, self.lay(tree[1], TERM)))
+        return Fence(laid) if around > SUM else laid
 
     def _product(self, tree: Expression, around: int) -> Layout:
-        over = self._factors(tree[1], alone=bool(tree[2]))
-        found: Layout = over
+        over = self._factors(tree[1], in_fraction=bool(tree[2]))
+        laid: Layout = over
         if tree[2]:
-            found = Fraction(over, self._factors(tree[2], alone=True))
-        return Fence(found) if around >= BASE else found
+            laid = Fraction(over, self._factors(tree[2], in_fraction=True))
+        return Fence(laid) if around >= BASE else laid
 
-    def _factors(self, factors: Sequence[Expression], alone: bool) -> Layout:
-        if alone and len(factors) == 1:
+    def _factors(self, factors: Sequence[Expression], in_fraction: bool) -> Layout:
+        if in_fraction and len(factors) == 1:
             return self.lay(factors[0])
-        return self._beside([self.lay(factor, FACTOR) for factor in factors])
+        return self._juxtaposed([self.lay(factor, FACTOR) for factor in factors])
 
     def _power(self, tree: Expression, around: int) -> Layout:
         base, exponent = tree[1], tree[2]
@@ -341,8 +341,8 @@ class Typesetter:
     def _compared(self, kind: str, a: Expression, b: Expression) -> Layout:
         word = self._word(a, b) or self._word(b, a)
         if word is not None:
-            own = a if a[0] == "q" else b
-            return Row((self.lay(own), Sign(COMPARED[kind]), Word(word)))
+            quantity = a if a[0] == "q" else b
+            return Row((self.lay(quantity), Sign(COMPARED[kind]), Word(word)))
         joins = kind in ("and", "or")
         sides = [
             Fence(self.lay(x)) if joins and x[0] in ("and", "or") and x[0] != kind else self.lay(x) for x in (a, b)
@@ -356,8 +356,8 @@ class Typesetter:
         return self.quantities[quantity[1]].word(number[1])
 
 
-def _told_fraction(number: float) -> Fold | None:
-    """Return a number as a fraction, or with a power of pi, where that tells more than its digits."""
+def _readable_fraction(number: float) -> Fold | None:
+    """Number as a fraction, or with a power of pi, where that is more readable than its digits."""
     fold = fraction_of(number) if math.isfinite(number) and number > 0 else None
     if fold is None or (fold.pi == 0 and (fold.under == 1 or _is_short(number))) or fold.over > MOST_OVER:
         return None
@@ -374,12 +374,12 @@ def _in_unit(number: float, unit: str) -> ShownQuantity:
     return in_its_unit(number, unit, FULL_DIGITS)
 
 
-def _whole(number: int) -> Layout:
+def _integer(number: int) -> Layout:
     return Amount(ShownQuantity(shown(number)))
 
 
 def _raised(base: Layout, power: int) -> Layout:
-    return base if power == 1 else Power(base, _whole(power))
+    return base if power == 1 else Power(base, _integer(power))
 
 
 # ---- leaves ----------------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from synth.text.numbers import shown
 
 from ..numbers import ShownQuantity, printed
-from .layout import BESIDE, TIMES, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
+from .layout import SPACE, TIMES, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
 WIDEST = 74.0  # digits side by side that a line of a page holds
@@ -23,7 +23,7 @@ def width(layout: Layout) -> float:
     if isinstance(layout, Word):
         return len(layout.text) * 0.95
     if isinstance(layout, Sign):
-        return 0.4 if layout == BESIDE else 1.9
+        return 0.4 if layout == SPACE else 1.9
     if isinstance(layout, Row):
         return sum(map(width, layout.items))
     if isinstance(layout, Fraction):
@@ -49,10 +49,10 @@ def broken(layout: Layout, widest: float = WIDEST) -> list[Layout]:
     if width(layout) <= widest:
         return [layout]
     row = layout if isinstance(layout, Row) else Row((layout,))
-    for signs in (("+", "−"), ("·", BESIDE.text)):
-        pieces = _pieces(row, signs)
+    for joints in (("+", "−"), ("·", SPACE.text)):
+        pieces = _pieces(row, joints)
         if len(pieces) > 1:
-            lines = [line for packed in _packed(pieces, widest) for line in _again(packed, signs, widest)]
+            lines = [line for packed in _packed(pieces, widest) for line in _again(packed, joints, widest)]
             return [part for line in lines for part in _inside(line, widest)]
     return _inside(layout, widest)
 
@@ -78,11 +78,11 @@ def _inside(line: Layout, widest: float) -> list[Layout]:
     return [line]
 
 
-def _pieces(row: Row, signs: tuple[str, ...], places: tuple[int, int] = (1, 1_000)) -> list[list[Layout]]:
+def _pieces(row: Row, joints: tuple[str, ...], places: tuple[int, int] = (1, 1_000)) -> list[list[Layout]]:
     """Pieces of a row before and behind some signs, of those between two places."""
     pieces: list[list[Layout]] = [[]]
     for position, item in enumerate(row.items):
-        if places[0] <= position < places[1] and isinstance(item, Sign) and item.text in signs:
+        if places[0] <= position < places[1] and isinstance(item, Sign) and item.text in joints:
             pieces.append([])
         pieces[-1].append(item)
     return pieces
@@ -98,9 +98,9 @@ def _packed(pieces: list[list[Layout]], widest: float) -> list[Layout]:
     return [Row(tuple(line)) for line in lines]
 
 
-def _again(line: Layout, signs: tuple[str, ...], widest: float) -> list[Layout]:
+def _again(line: Layout, joints: tuple[str, ...], widest: float) -> list[Layout]:
     """Break a term that is too wide alone before its factors."""
-    if signs[0] == "+" and width(line) > widest and isinstance(line, Row):
-        pieces = _pieces(line, ("·", BESIDE.text))
+    if joints[0] == "+" and width(line) > widest and isinstance(line, Row):
+        pieces = _pieces(line, ("·", SPACE.text))
         return _packed(pieces, widest) if len(pieces) > 1 else [line]
     return [line]

@@ -7,7 +7,7 @@ from html import escape
 from synth.text.numbers import THIN, grouped
 from synth.units import unit_text
 
-from .layout import BESIDE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
+from .layout import SPACE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
 
@@ -26,7 +26,7 @@ def mathml(layout: Layout) -> str:
     if isinstance(layout, Word):
         return f"<mtext>{escape(layout.text)}</mtext>"
     if isinstance(layout, Sign):
-        return '<mspace width="0.17em"/>' if layout == BESIDE else f"<mo>{escape(layout.text)}</mo>"
+        return '<mspace width="0.17em"/>' if layout == SPACE else f"<mo>{escape(layout.text)}</mo>"
     if isinstance(layout, Row):
         return f"<mrow>{''.join(map(_item, layout.items))}</mrow>"
     if isinstance(layout, Fraction):
@@ -36,8 +36,8 @@ def mathml(layout: Layout) -> str:
     if isinstance(layout, Root):
         return f"<msqrt>{mathml(layout.inner)}</msqrt>"
     if isinstance(layout, Fence):
-        left, right = ("|", "|") if layout.bars else ("(", ")")
-        return f'<mrow><mo fence="true">{left}</mo>{mathml(layout.inner)}<mo fence="true">{right}</mo></mrow>'
+        opening, closing = ("|", "|") if layout.bars else ("(", ")")
+        return f'<mrow><mo fence="true">{opening}</mo>{mathml(layout.inner)}<mo fence="true">{closing}</mo></mrow>'
     if isinstance(layout, Call):
         return _call(layout)
     assert isinstance(layout, Cases)
@@ -79,18 +79,18 @@ def _subscript(text: str) -> str:
 def _amount(layout: Amount) -> str:
     number, unit = layout.shown.number, unit_text(layout.shown.unit)
     negative, digits = bool(number.sign), grouped(number.digits, THIN)
-    found = f"<mo>−</mo><mn>{escape(digits)}</mn>" if negative else f"<mn>{escape(digits)}</mn>"
-    many = negative
+    markup = f"<mo>−</mo><mn>{escape(digits)}</mn>" if negative else f"<mn>{escape(digits)}</mn>"
+    several = negative
     if number.power:
         power = f"<mo>−</mo><mn>{-number.power}</mn>" if number.power < 0 else f"<mn>{number.power}</mn>"
-        found += f"<mo>·</mo><msup><mn>10</mn><mrow>{power}</mrow></msup>"
-        many = True
+        markup += f"<mo>·</mo><msup><mn>10</mn><mrow>{power}</mrow></msup>"
+        several = True
     if unit:
-        wide = "0.45em" if unit[0].isdigit() else "0.17em"  # 36 1/min, not 361/min
-        space = "" if unit == "°" else f'<mspace width="{wide}"/>'
-        found += f"{space}<mtext>{escape(unit)}</mtext>"
-        many = True
-    return f"<mrow>{found}</mrow>" if many else found
+        space_width = "0.45em" if unit[0].isdigit() else "0.17em"  # 36 1/min, not 361/min
+        space = "" if unit == "°" else f'<mspace width="{space_width}"/>'
+        markup += f"{space}<mtext>{escape(unit)}</mtext>"
+        several = True
+    return f"<mrow>{markup}</mrow>" if several else markup
 
 
 def _call(layout: Call) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .layout import BESIDE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
+from .layout import SPACE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 
-SIGNS = {"−": "-", "·": "*", "≤": "<=", "≥": ">=", "≠": "!="}
+ASCII_SIGN_OF = {"−": "-", "·": "*", "≤": "<=", "≥": ">=", "≠": "!="}
 
 
 def plain(layout: Layout) -> str:
@@ -22,7 +22,7 @@ def plain(layout: Layout) -> str:
     if isinstance(layout, Word):
         return layout.text
     if isinstance(layout, Sign):
-        return "*" if layout == BESIDE else SIGNS.get(layout.text, layout.text)
+        return "*" if layout == SPACE else ASCII_SIGN_OF.get(layout.text, layout.text)
     if isinstance(layout, Row):
         return _row(layout)
     if isinstance(layout, Fraction):
@@ -50,7 +50,7 @@ def _row(layout: Row) -> str:
 
 def _factor(item: Layout, row: Row) -> str:
     """Return a part of a row: a fraction among factors is bracketed, as text has no bar."""
-    factors = any(isinstance(x, Sign) and x.text in ("·", BESIDE.text) for x in row.items)
+    factors = any(isinstance(x, Sign) and x.text in ("·", SPACE.text) for x in row.items)
     return f"({plain(item)})" if factors and isinstance(item, (Fraction, Cases)) else plain(item)
 
 

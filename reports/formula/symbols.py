@@ -41,7 +41,7 @@ GREEK = {
     "Psi": "Ψ",
     "Omega": "Ω",
 }
-WHOLE = {"dm": ("d", ("m",))}  # written without the underscore of the grammar
+IRREGULAR = {"dm": ("d", ("m",))}  # written without the underscore of the grammar
 
 
 @dataclass(frozen=True)
@@ -69,14 +69,14 @@ def symbol_parts(symbol: str) -> SymbolParts:
     >>> symbol_parts("mu_guide"), symbol_parts("F0").subscripts, symbol_parts("dT_pk").difference
     (SymbolParts(difference=False, base='μ', subscripts=('guide',)), ('0',), True)
     """
-    if symbol in WHOLE:
-        base, subscripts = WHOLE[symbol]
+    if symbol in IRREGULAR:
+        base, subscripts = IRREGULAR[symbol]
         return SymbolParts(False, base, subscripts)
-    base, *rest = symbol.split("_")
+    base, *pieces = symbol.split("_")
     numbered = re.fullmatch(r"([a-zA-Z]+?)(\d+)", base)
     if numbered:
-        base, rest = numbered[1], [numbered[2], *rest]
+        base, pieces = numbered[1], [numbered[2], *pieces]
     difference = bool(re.fullmatch(r"d(?:[A-Z][a-z]*|r)", base))
     if difference:
         base = base[1:]
-    return SymbolParts(difference, GREEK.get(base, base), tuple(GREEK.get(x, x) for x in rest if x))
+    return SymbolParts(difference, GREEK.get(base, base), tuple(GREEK.get(x, x) for x in pieces if x))

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from synth.text.numbers import THIN, grouped
 from synth.units import unit_text
 
-from .layout import BESIDE, MINUS, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
+from .layout import MINUS, SPACE, Amount, Call, Cases, Fence, Fraction, Layout, Letter, Power, Root, Row, Sign, Word
 from .symbols import symbol_parts
 
-SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
+TYPST_SIGN_OF = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
 
 
 # Characters that no font has or that turn the direction of writing, and halves of characters.
@@ -39,7 +39,7 @@ def string(text: str) -> str:
     >>> string("a\x07b")
     '"a[U+0007]b"'
     """
-    seen = UNSEEN.sub(lambda found: written_out(found[0]), text)
+    seen = UNSEEN.sub(lambda match: written_out(match[0]), text)
     escaped = seen.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "").replace("\t", " ")
     return f'"{escaped}"'
 
@@ -55,7 +55,7 @@ def typst_math(layout: Layout) -> str:
     if isinstance(layout, Word):
         return f" {string(f' {layout.text} ' if layout.text in ('and', 'or', 'not') else layout.text)} "
     if isinstance(layout, Sign):
-        return " thin " if layout == BESIDE else f" {SIGNS[layout.text]} "
+        return " thin " if layout == SPACE else f" {TYPST_SIGN_OF[layout.text]} "
     if isinstance(layout, Row):
         return _row(layout.items)
     if isinstance(layout, Fraction):
@@ -114,12 +114,12 @@ def _letter(symbol: str) -> str:
 
 def _amount(layout: Amount) -> str:
     number, unit = layout.shown.number, unit_text(layout.shown.unit)
-    found = f"upright({string(grouped(number.digits, THIN))})"
+    markup = f"upright({string(grouped(number.digits, THIN))})"
     if number.sign:
-        found = f"- {found}"
+        markup = f"- {markup}"
     if number.power:
-        found += f" dot.op attach(10, t: {number.power})"
+        markup += f" dot.op attach(10, t: {number.power})"
     if unit:
         space = "" if unit == "°" else " thick thin " if unit[0].isdigit() else " thin "  # 36 1/min, not 361/min
-        found += f"{space}upright({string(unit)})"
-    return f" {found} "
+        markup += f"{space}upright({string(unit)})"
+    return f" {markup} "

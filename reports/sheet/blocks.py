@@ -37,12 +37,12 @@ Inline: TypeAlias = str | Layout | Code | Strong | Link
 Cell: TypeAlias = Inline | tuple[Inline, ...]
 
 
-def said(*parts: Cell) -> tuple[Inline, ...]:
+def inline(*parts: Cell) -> tuple[Inline, ...]:
     """Return words, symbols and numbers beside each other."""
-    found: list[Inline] = []
+    pieces: list[Inline] = []
     for part in parts:
-        found += part if isinstance(part, tuple) else [part]
-    return tuple(found)
+        pieces += part if isinstance(part, tuple) else [part]
+    return tuple(pieces)
 
 
 @dataclass(frozen=True)

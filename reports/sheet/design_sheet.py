@@ -32,7 +32,7 @@ from .blocks import (
     Strong,
     TableBlock,
     TableRow,
-    said,
+    inline,
 )
 from .steps import Steps
 
@@ -125,8 +125,8 @@ class _Sheet:
         typed = [q for q in self._of_kind("requirement") if q.name in frame.requirements]
         usual = [q for q in self._of_kind("requirement") if q.name not in frame.requirements]
         blocks: list[Block] = [Heading("Input", anchor="input")]
-        stated = [self._input_row(q) for q in typed]
-        blocks.append(TableBlock.of("Stated", INPUT_COLUMNS, stated) if stated else Paragraph("Nothing was stated."))
+        lines = [self._input_row(q) for q in typed]
+        blocks.append(TableBlock.of("Stated", INPUT_COLUMNS, lines) if lines else Paragraph("Nothing was stated."))
         options = [
             TableRow((Code(name), word, "stated" if name in frame.options else "default"))
             for name, word in self.calculation.options.items()
@@ -138,9 +138,9 @@ class _Sheet:
                 )
             )
         groups = _grouped(usual)
-        told = tuple((label, tuple(self._input_row(q) for q in members)) for label, members in groups)
+        defaults = tuple((label, tuple(self._input_row(q) for q in members)) for label, members in groups)
         if usual:
-            blocks.append(TableBlock("Assumed: defaults of the family", INPUT_COLUMNS, told))
+            blocks.append(TableBlock("Assumed: defaults of the family", INPUT_COLUMNS, defaults))
         if frame.not_asked:
             blocks.append(Paragraph(f"Not asked: {', '.join(frame.not_asked)}.", small=True))
         return blocks
@@ -149,7 +149,7 @@ class _Sheet:
         follows: Cell = q.source
         if q.expression is not None:
             laid = self.steps.symbols.lay(textbook(q.expression))
-            follows = said(f"{q.source}; " if q.source else "", "follows: ", laid)
+            follows = inline(f"{q.source}; " if q.source else "", "follows: ", laid)
         return TableRow((q.text or q.name, Letter(q.symbol), Amount(in_step(self._value(q), q.unit)), follows))
 
     def _value(self, q: NamedQuantity) -> float:
@@ -173,10 +173,10 @@ class _Sheet:
             rows = []
             for q in columns:
                 word, value = q.word(self._value(q)), self._value(q)
-                told: Cell = word or "another text" if q.is_text else Amount(in_step(value, q.unit))
+                shown: Cell = word or "another text" if q.is_text else Amount(in_step(value, q.unit))
                 if math.isnan(value):
-                    told = "no value"
-                rows.append(TableRow((q.text or q.name, Letter(q.symbol), told)))
+                    shown = "no value"
+                rows.append(TableRow((q.text or q.name, Letter(q.symbol), shown)))
             confidence = str(row.get("confidence") or "")
             source = "; ".join(str(x) for x in (row.get("source"), confidence and f"confidence: {confidence}") if x)
             label = f"{slot}: {row} ({row['table']}" + (f"; {source})" if source else ")")
@@ -215,24 +215,24 @@ class _Sheet:
         if broken:
             return f"Violated: {', '.join(broken)}."
         tight = [x.name for x in ranked if binds(self.outcome.verdicts[x.name].used, x.sense)]
-        told = f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
+        reach = f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
         worst = self.design.robust.worst_limit if self.design.robust else ""
-        return f"At the nominal point: {told} Over the range that scatters the worst is {worst}." if worst else told
+        return f"At the nominal point: {reach} Over the range that scatters the worst is {worst}." if worst else reach
 
     def _limit_row(self, x: LimitRule, verdict: LimitVerdict) -> TableRow:
         condition = self.steps.limit_condition(x.value, x.limit, x.sense)
-        name = said(x.text or x.name, " ", Code(x.name))
+        name = inline(x.text or x.name, " ", Code(x.name))
         if verdict.void:
             lacking = [name for name in x.optional if math.isnan(self.outcome.values[name])]
             return TableRow((name, condition, "", "", f"not checked: no {', '.join(lacking)}"))
         if verdict.failed:
-            told = f"not checked: {', '.join(verdict.failed)} fails"
-            return TableRow((name, condition, "", "", told))
+            failure = f"not checked: {', '.join(verdict.failed)} fails"
+            return TableRow((name, condition, "", "", failure))
         numbers = self.steps.limit_numbers(verdict, x.sense, x.unit)
         used = "" if verdict.used is None else used_share(verdict.used)
         words: Cell = "holds" if verdict.holds else Strong("VIOLATED")
         if x.source and "unsourced" in x.source:
-            words = said(words, " (rule of practice)")
+            words = inline(words, " (rule of practice)")
         mark = "bad" if not verdict.holds else "tight" if binds(verdict.used, x.sense) else ""
         return TableRow((name, condition, numbers, used, words), mark=mark, used=verdict.used)
 
@@ -243,18 +243,18 @@ class _Sheet:
             return self._at_corners()
         units = rating.units or {}
         rows = []
-        for name, told in rating.limits.items():
+        for name, rated in rating.limits.items():
             unit = self.design.frame.limit_units.get(name, "-")
             sides = " / ".join(
                 "–" if side is None or not isinstance(side, float) else printed(in_step(side, unit))
-                for side in (told.value, told.limit)
+                for side in (rated.value, rated.limit)
             )
-            at = told.at if isinstance(told.at, Mapping) else {}
+            at = rated.at if isinstance(rated.at, Mapping) else {}
             place = ", ".join(f"{key} {printed(in_step(value, units.get(key, '-')))}" for key, value in at.items())
-            used = used_share(told.utilisation) if isinstance(told.utilisation, float) else ""
-            words: Cell = "holds" if told.holds else Strong("VIOLATED") if told.holds is False else NOT_SHOWN
-            mark = "bad" if told.holds is False else ""
-            rows.append(TableRow((Code(name), place, sides, used, words, str(told.proof or "")), mark=mark))
+            used = used_share(rated.utilisation) if isinstance(rated.utilisation, float) else ""
+            words: Cell = "holds" if rated.holds else Strong("VIOLATED") if rated.holds is False else NOT_SHOWN
+            mark = "bad" if rated.holds is False else ""
+            rows.append(TableRow((Code(name), place, sides, used, words, str(rated.proof or "")), mark=mark))
         return [
             Heading("Limits over the range that scatters", level=2, anchor="range"),
             TableBlock.of("Each limit at its worst point", RANGE_COLUMNS, rows),
@@ -262,9 +262,9 @@ class _Sheet:
 
     def _at_corners(self) -> list[Block]:
         """Return the limits that were posed because something scatters, of a design that was not rated."""
-        own = {x.name for x in self.calculation.limits}
+        declared = {x.name for x in self.calculation.limits}
         rows = []
-        for name in (n for n in self.design.limits if n not in own):
+        for name in (n for n in self.design.limits if n not in declared):
             value, limit = self.design.limits[name]
             used, unit = self.design.utilisation.get(name), self.design.frame.limit_units.get(name, "-")
             bad = name in self.design.violated
@@ -281,17 +281,17 @@ class _Sheet:
     # -- words ---------------------------------------------------------------------------------
 
     def _remarks(self) -> list[Block]:
-        told: list[Cell] = [*self.design.advice, *self.design.not_checked]
+        notes: list[Cell] = [*self.design.advice, *self.design.not_checked]
         if self.design.note:
-            told.append(f"On the front: {self.design.note}.")
+            notes.append(f"On the front: {self.design.note}.")
         if self.design.alternatives:
-            told.append(f"The same objectives with: {'; '.join(self.design.alternatives)}.")
+            notes.append(f"The same objectives with: {'; '.join(self.design.alternatives)}.")
         for slot, row in self.design.parts.items():
             if str(row.get("confidence")) in CONFIDENCE_NOTED:
-                told.append(f"{slot} {row}: figures of this row are {row['confidence']}; confirm them with the maker.")
-        if not told:
+                notes.append(f"{slot} {row}: figures of this row are {row['confidence']}; confirm them with the maker.")
+        if not notes:
             return []
-        return [Heading("Remarks", anchor="remarks"), Bullets(tuple(told))]
+        return [Heading("Remarks", anchor="remarks"), Bullets(tuple(notes))]
 
     def _symbols(self) -> list[Block]:
         rows = [
@@ -319,13 +319,13 @@ class _Sheet:
             )
         if self.steps.in_si and self.request.length != "summary":
             symbols = list(dict.fromkeys(self.steps.in_si))
-            told: list[Cell] = ["In SI alone: "]
+            line: list[Cell] = ["In SI alone: "]
             for k, symbol in enumerate(symbols):
-                told += [", ", Letter(symbol)] if k else [Letter(symbol)]
-            notes.append(said(*told))
-        digests: list[Cell] = [said("Checksum of the calculation: ", Code(self.calculation.digest))]
+                line += [", ", Letter(symbol)] if k else [Letter(symbol)]
+            notes.append(inline(*line))
+        digests: list[Cell] = [inline("Checksum of the calculation: ", Code(self.calculation.digest))]
         if self.front is not None:
-            digests.append(said("Checksum of the result: ", Code(self.front.result_digest)))
+            digests.append(inline("Checksum of the result: ", Code(self.front.result_digest)))
         return [
             Heading("Notes", anchor="notes"),
             Bullets((*notes, *digests)),
@@ -390,12 +390,12 @@ def front_state(front: ParetoFront, feasible: str = "") -> tuple[str, str]:
 
 def front_details(front: ParetoFront) -> list[str]:
     """Return the certificate in words, why a search was stopped, and how the designs stand what scatters."""
-    told = [as_sentence(front.certificate.sentence())]
+    sentences = [as_sentence(front.certificate.sentence())]
     if front.interrupted:
-        told.append(f"Stopped: {front.interrupted}.")
+        sentences.append(f"Stopped: {front.interrupted}.")
     if any(d.robust for d in front.designs):
-        told.append(as_sentence(robust_sentence(front.designs)))
-    return told
+        sentences.append(as_sentence(robust_sentence(front.designs)))
+    return sentences
 
 
 def as_sentence(text: str) -> str:
@@ -407,13 +407,13 @@ def over_range_in_words(design: Design) -> str:
     """Robustness of a design."""
     rating = design.robust
     holds = "holds (proven)" if rating.holds else "DOES NOT HOLD" if rating.holds is False else "is NOT SHOWN to hold"
-    told = f"Over the range that scatters it {holds}"
+    sentence = f"Over the range that scatters it {holds}"
     if isinstance(rating.share_good, float) and not rating.holds:
         ends = [yield_text(x) for x in (rating.yield_low, rating.yield_high) if isinstance(x, float)]
-        told += f"; yield {yield_text(rating.share_good)} ({' to '.join(ends)}, from {rating.samples} samples)"
+        sentence += f"; yield {yield_text(rating.share_good)} ({' to '.join(ends)}, from {rating.samples} samples)"
     if rating.worst_limit:
-        told += f"; the worst limit is {rating.worst_limit}"
-    return told + "."
+        sentence += f"; the worst limit is {rating.worst_limit}"
+    return sentence + "."
 
 
 INPUT_COLUMNS = (

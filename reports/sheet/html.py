@@ -40,7 +40,7 @@ from .blocks import (
 
 SHORT = 14  # rows of a table that stays on one page
 AT_A_TIME = 200  # of many rows, as rows.js shows them as well
-WIDE = 2.0  # width of a column of many rows from which its texts take one line, however long: rows stay low
+ONE_LINE = 2.0  # width of a column of many rows from which its texts take one line, however long: rows stay low
 
 
 @cache
@@ -135,8 +135,8 @@ def block_html(block: Block) -> str:
     if isinstance(block, Paragraph):
         return f"<p{_marked('small' if block.small else '')}>{cell_html(block.text)}</p>"
     if isinstance(block, State):
-        told = "".join(f"<p>{escape(text)}</p>" for text in block.details)
-        return f'<div class="state {block.level}" role="status"><p class="head">{escape(block.head)}</p>{told}</div>'
+        details = "".join(f"<p>{escape(text)}</p>" for text in block.details)
+        return f'<div class="state {block.level}" role="status"><p class="head">{escape(block.head)}</p>{details}</div>'
     if isinstance(block, TableBlock):
         return _table(block)
     if isinstance(block, RowsBlock):
@@ -157,8 +157,8 @@ def _table(block: TableBlock) -> str:
     bodies = []
     for label, rows in block.groups:
         head = f'<tr><th scope="colgroup" colspan="{len(block.columns)}">{escape(label)}</th></tr>' if label else ""
-        told = "".join(_row(row, block.columns) for row in rows)
-        bodies.append(f"<tbody{_marked('group' if label else '')}>{head}{told}</tbody>")
+        body = "".join(_row(row, block.columns) for row in rows)
+        bodies.append(f"<tbody{_marked('group' if label else '')}>{head}{body}</tbody>")
     total = sum(c.width for c in block.columns)
     kind = "scroll short" if sum(len(rows) for _, rows in block.groups) <= SHORT else "scroll"
     widths = "".join(f'<col style="width:{100 * c.width / total:.3g}%">' for c in block.columns)
@@ -171,16 +171,16 @@ def _table(block: TableBlock) -> str:
 
 def _rows(block: RowsBlock) -> str:
     """Return many rows: the first of them as they are without a script, and all as data for it."""
-    whole = [bool(block.rows) and all(isinstance(row[k], int) for row in block.rows) for k in range(len(block.columns))]
+    ints = [bool(block.rows) and all(isinstance(row[k], int) for row in block.rows) for k in range(len(block.columns))]
     rows = [[_number_in_json(cell) for cell in row] for row in block.rows]
-    told = {"whole": whole, "rows": rows, "kind": block.kind, "most": AT_A_TIME}
-    data = json.dumps(told, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    kinds = ["n" if c.number else "long" if c.width >= WIDE else "" for c in block.columns]
+    content = {"whole": ints, "rows": rows, "kind": block.kind, "most": AT_A_TIME}
+    data = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    kinds = ["n" if c.number else "long" if c.width >= ONE_LINE else "" for c in block.columns]
     heads = "".join(
         f'<th scope="col"{_marked(kind)}>{escape(c.title)}</th>' for c, kind in zip(block.columns, kinds, strict=True)
     )
     body = "".join(
-        f"<tr>{''.join(f'<td{_marked(k)}>{_many(cell)}</td>' for k, cell in zip(kinds, row, strict=True))}</tr>"
+        f"<tr>{''.join(f'<td{_marked(k)}>{_cell_text(cell)}</td>' for k, cell in zip(kinds, row, strict=True))}</tr>"
         for row in islice(block.rows, AT_A_TIME)
     )
     more = len(block.rows) - AT_A_TIME
@@ -199,7 +199,7 @@ def _rows(block: RowsBlock) -> str:
     )
 
 
-def _many(cell: str | float | None) -> str:
+def _cell_text(cell: str | float | None) -> str:
     known = _number_in_json(cell)
     return escape(known) if isinstance(known, str) else str(known) if isinstance(known, int) else page_text(known)
 

@@ -32,7 +32,7 @@ def pdf(document: Document, fonts: Sequence[Path] = ()) -> bytes:
 
 
 def pdf_with_notes(document: Document, fonts: Sequence[Path] = ()) -> tuple[bytes, tuple[str, ...]]:
-    """Return a document as PDF, and what whoever asked for it must be told.
+    """Document as PDF, and notes on characters without a glyph.
 
     The same document gives the same bytes. Nothing is read but the document and the fonts.
 
@@ -50,7 +50,7 @@ def pdf_with_notes(document: Document, fonts: Sequence[Path] = ()) -> tuple[byte
     typst = needed(*EXTRAS["pdf"])
     lacking: dict[str, None] = {}
     with tempfile.TemporaryDirectory() as root:
-        known = _fonts(typst, fonts, Path(root)) if fonts else _own_fonts()
+        known = _fonts(typst, fonts, Path(root)) if fonts else _bundled_fonts()
         logo = _logo_file(document.logo, Path(root))
         source = typst_source(document, logo)
         for _ in range(ROUNDS):
@@ -68,17 +68,17 @@ def pdf_with_notes(document: Document, fonts: Sequence[Path] = ()) -> tuple[byte
                     timestamp=0,
                 )
             except typst.TypstError as error:
-                found = _without_glyph(str(error.diagnostic))
-                if not found - lacking.keys():
+                missing = _without_glyph(str(error.diagnostic))
+                if not missing - lacking.keys():
                     raise
-                lacking |= dict.fromkeys(sorted(found))
+                lacking |= dict.fromkeys(sorted(missing))
             else:
                 return bytes(made), _notes(lacking)
     raise AssertionError("characters that were replaced are still there")
 
 
 @cache
-def _own_fonts() -> Any:
+def _bundled_fonts() -> Any:
     """Return the fonts that come with Typst; none of the system."""
     return needed(*EXTRAS["pdf"]).Fonts(include_system_fonts=False)
 
@@ -90,10 +90,10 @@ def _fonts(typst: Any, paths: Sequence[Path], folder: Path) -> Any:
         if not path.exists():
             raise InputError("--font-path", str(path), "a font file, or a folder with fonts")
         if path.is_file():
-            own = folder / f"font-{number}"
-            own.mkdir()
-            shutil.copyfile(path, own / path.name)
-        folders.append(str(path if path.is_dir() else own))
+            target = folder / f"font-{number}"
+            target.mkdir()
+            shutil.copyfile(path, target / path.name)
+        folders.append(str(path if path.is_dir() else target))
     return typst.Fonts(include_system_fonts=False, font_paths=folders)
 
 
@@ -110,8 +110,8 @@ def _logo_file(logo: str, folder: Path) -> str:
 def _without_glyph(diagnostic: str) -> set[str]:
     """Return the characters of which Typst says that no font has them."""
 
-    def meant(found: re.Match[str]) -> str:
-        return chr(int(found[1], 16)) if found[1] else found[2]
+    def meant(match: re.Match[str]) -> str:
+        return chr(int(match[1], 16)) if match[1] else match[2]
 
     return {c for text in NO_GLYPH.findall(diagnostic) for c in ESCAPED.sub(meant, text) if ord(c) > 0x7E}
 

@@ -30,11 +30,11 @@ from ..formula.lines import broken
 from ..formula.plain import plain
 from ..numbers import ShownQuantity, UnitIn, in_its_unit, in_step
 from ..reasons import SIGN_OF
-from .blocks import Cell, StepBlock, said
+from .blocks import Cell, StepBlock, inline
 
 ENOUGH = 1e-4  # relative; what is printed gives the printed result this closely
 MORE_DIGITS = (STEP_DIGITS, FULL_DIGITS, 7, 9, 12)
-CONDITIONS = 3  # of one formula that are told
+CONDITIONS = 3  # of one formula that are shown
 
 
 @dataclass
@@ -81,14 +81,14 @@ class Steps:
             lines.append(Word("does not exist"))
             notes.append(f"It exists only where {' and '.join(missing)} holds, which fails here.")
         else:
-            own, met = in_force(tree, self.outcome.values)
+            branch, met = in_force(tree, self.outcome.values)
             results = self._results(q, value, closes)
-            if own[0] != "n":
-                inserted = self._inserted(own, q.expression, value, in_si=not closes)
+            if branch[0] != "n":
+                inserted = self._inserted(branch, q.expression, value, in_si=not closes)
                 lines += [inserted] if inserted != results[0] else []
             lines += results if lines[-1] != results[-1] else []
-            told = {repr(condition): (condition, answer) for condition, answer in met}  # each once
-            notes += [self._condition(*decided, not closes) for decided in list(told.values())[:CONDITIONS]]
+            conditions = {repr(condition): (condition, answer) for condition, answer in met}  # each once
+            notes += [self._condition(*decided, not closes) for decided in list(conditions.values())[:CONDITIONS]]
             if not closes:
                 notes.append("Numbers in SI: the units of this formula do not close.")
         symbol = Letter(q.symbol)
@@ -107,9 +107,9 @@ class Steps:
     def _closes(self, q: NamedQuantity) -> bool:
         """True if the units of a formula give the unit of its result, so that numbers carry theirs."""
         assert q.expression is not None
-        found = dimension_of(q.expression, self.quantities)
+        dimension = dimension_of(q.expression, self.quantities)
         declared = parse_unit(q.unit).dimension if q.unit else None
-        return found is not None and declared is not None and found == tuple(map(Fraction, declared))
+        return dimension is not None and declared is not None and dimension == tuple(map(Fraction, declared))
 
     def _inserted(self, shown_tree: Expression, exact: Expression, value: float, in_si: bool) -> Layout:
         """Return a formula with as many digits of its numbers as its result needs."""
@@ -124,8 +124,8 @@ class Steps:
 
     def _is_enough(self, tree: Expression, value: float, in_si: bool, digits: int) -> bool:
         rounded = {name: self._rounded(self.quantities[name], in_si, digits) for name in names_in(tree)}
-        found = value_of(tree, rounded)
-        return not math.isfinite(value) or abs(found - value) <= ENOUGH * abs(value)
+        approximate = value_of(tree, rounded)
+        return not math.isfinite(value) or abs(approximate - value) <= ENOUGH * abs(value)
 
     def _rounded(self, q: NamedQuantity, in_si: bool, digits: int) -> float:
         """Return the SI value that a reader has who takes the printed number."""
@@ -140,18 +140,18 @@ class Steps:
     def _results(self, q: NamedQuantity, value: float, closes: bool) -> list[Layout]:
         """Return the result; once more in the declared unit where another one comes out of the formula."""
         direct = UnitIn.formula(q.unit)
-        found: list[Layout] = [Amount(direct.shown(value))]
+        results: list[Layout] = [Amount(direct.shown(value))]
         if q.unit and direct.unit not in ("", q.unit):
-            found.append(Amount(in_step(value, q.unit)))
+            results.append(Amount(in_step(value, q.unit)))
         if not closes and q.unit not in ("", "-"):
             return [Amount(UnitIn("SI").shown(value)), Amount(in_step(value, q.unit))]
-        return found
+        return results
 
     def _condition(self, condition: Expression, answer: bool, in_si: bool) -> Cell:
         numbers = Typesetter(self.quantities, self._leaf(in_si), numeric=True)
         tree = textbook(condition)
         words = "holds" if answer else "does not hold"
-        return said("Case in force: ", self.symbols.lay(tree), f" {words}: ", numbers.lay(tree))
+        return inline("Case in force: ", self.symbols.lay(tree), f" {words}: ", numbers.lay(tree))
 
     # -- limits --------------------------------------------------------------------------------
 
@@ -164,7 +164,7 @@ class Steps:
         """Return both sides of a limit in numbers, with enough digits to see that one is missed."""
         both = ((verdict.value, verdict.limit), (verdict.limit, verdict.value))
         sides = [Amount(apart(x, other, unit, verdict.holds)) for x, other in both]
-        return said(sides[0], f" {SIGN_OF[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
+        return inline(sides[0], f" {SIGN_OF[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
 
 
 def apart(value: float, other: float, unit: str, holds: bool) -> ShownQuantity:

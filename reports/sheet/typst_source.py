@@ -49,7 +49,7 @@ LONGEST_LINE = 88  # letters of a listing that fit
 RUNNING = 56  # letters of the title on every page
 RUNNING_FACT = 36  # letters of project, number and revision there
 REPEATED = 500  # letters of the head of a table that are said again on each page
-LONGEST_SAID = 8000  # letters of a text that only machines read; those of PDF/A have 32767 bytes
+LONGEST_ALT = 8000  # letters of a text that only machines read; those of PDF/A have 32767 bytes
 LONGEST_FACT = 500  # letters of the title, author and keywords in the properties of a file
 LONGEST_LINK = 2000  # letters
 OPEN_SCHEMES = ("http", "https", "mailto")
@@ -131,7 +131,7 @@ def _property(text: str) -> str:
 
 def _alternative(text: str) -> str:
     """Text in place of a formula or a drawing."""
-    return one_text(_shortened(text, LONGEST_SAID))
+    return one_text(_shortened(text, LONGEST_ALT))
 
 
 def _high_equation(layout: Layout) -> str:
@@ -216,29 +216,29 @@ class _Writer:
             return _text(link.text)
         return f"link({one_text(link.target)}, {_text(link.text)})"
 
-    def _said(self, cell: Cell) -> str:
+    def _line(self, cell: Cell) -> str:
         """Return a line: its pieces beside each other; formulas that are wider than a line stand on their own."""
         parts = cell if isinstance(cell, tuple) else (cell,)
-        told = [self._lines(p, LINE_OF_TEXT) if _is_wide(p, LINE_OF_TEXT) else self._inline(p) for p in parts]
-        return told[0] if len(told) == 1 else f"[{''.join(f'#{x};' for x in told)}]"
+        pieces = [self._lines(p, LINE_OF_TEXT) if _overflows(p, LINE_OF_TEXT) else self._inline(p) for p in parts]
+        return pieces[0] if len(pieces) == 1 else f"[{''.join(f'#{x};' for x in pieces)}]"
 
     def _lines(self, layout: Inline, widest: float) -> str:
         assert isinstance(layout, LAYOUTS)
         return f"lines({', '.join(map(_high_equation, _lines_of(layout, widest)))})"
 
-    def _cell(self, cell: Cell, column: Column, wide: float) -> str:
-        """Return a cell of a table; ``wide`` is the column's width in mm."""
+    def _cell(self, cell: Cell, column: Column, span: float) -> str:
+        """Return a cell of a table; ``span`` is the width of the column in mm."""
         if isinstance(cell, (Amount, Letter)) or (column.number and isinstance(cell, str) and len(cell) <= LONG_WORD):
             digits = len(cell) if isinstance(cell, str) else width(cell)
-            narrow = digits * SURELY <= wide
+            narrow = digits * SURELY <= span
             return f"box({self._inline(cell)})" if narrow else f"fit(box({self._inline(cell)}))"
         if isinstance(cell, LAYOUTS) and not isinstance(cell, Word):
-            return _high_equation(cell) if width(cell) * SURELY <= wide else self._lines(cell, wide / DIGIT)
+            return _high_equation(cell) if width(cell) * SURELY <= span else self._lines(cell, span / DIGIT)
         parts = cell if isinstance(cell, tuple) else (cell,)
-        told = [
-            self._lines(p, wide / DIGIT) if _is_wide(p, wide / DIGIT) else self._inline(p) for p in parts if p != ""
+        pieces = [
+            self._lines(p, span / DIGIT) if _overflows(p, span / DIGIT) else self._inline(p) for p in parts if p != ""
         ]
-        return told[0] if len(told) == 1 else f"[{''.join(f'#{x};' for x in told)}]"
+        return pieces[0] if len(pieces) == 1 else f"[{''.join(f'#{x};' for x in pieces)}]"
 
     # -- blocks --------------------------------------------------------------------------------
 
@@ -255,7 +255,7 @@ class _Writer:
             return f"section({self.level}, {self._anchor(block.anchor)}, {_text(block.text)})"
         if isinstance(block, Paragraph):
             sticky = isinstance(after, (TableBlock, StepBlock, Figure, Listing, Bullets))
-            return f"para({_flag(block.small)}, {_flag(sticky)}, {self._said(block.text)})"
+            return f"para({_flag(block.small)}, {_flag(sticky)}, {self._line(block.text)})"
         if isinstance(block, State):
             return f"state({', '.join([one_text(block.level), *map(_text, (block.head, *block.details))])})"
         if isinstance(block, TableBlock):
@@ -265,7 +265,7 @@ class _Writer:
         if isinstance(block, StepBlock):
             return self._step(block)
         if isinstance(block, Bullets):
-            return f"points({', '.join(self._said(item) for item in block.items)})"
+            return f"points({', '.join(self._line(item) for item in block.items)})"
         if isinstance(block, Figure):
             caption = _text(block.caption) if block.caption else "none"
             return f"drawing({_alternative(block.alt)}, {caption}, {string(block.svg)})"
@@ -274,7 +274,7 @@ class _Writer:
 
     def _table(self, block: TableBlock) -> str:
         total = sum(c.width for c in block.columns)
-        wide = [PAGE * c.width / total - 3 for c in block.columns]
+        widths = [PAGE * c.width / total - 3 for c in block.columns]
         bars = next((str(k) for k, c in enumerate(block.columns) if c.title == "used"), "none")
         labelled = False
         groups = []
@@ -282,8 +282,8 @@ class _Writer:
             labelled = labelled or bool(label)
             head = _text(label or "–") if labelled else "none"
             again = _flag(len(label) <= REPEATED)
-            groups.append(f"({head}, {again}, {_list(self._row(row, block.columns, wide) for row in rows)})")
-        told = [
+            groups.append(f"({head}, {again}, {_list(self._row(row, block.columns, widths) for row in rows)})")
+        arguments = [
             _text(block.caption),
             _list(f"{c.width:g}" for c in block.columns),
             _list(_flag(c.number) for c in block.columns),
@@ -292,23 +292,23 @@ class _Writer:
             _list(_text(c.title) for c in block.columns),
             *groups,
         ]
-        return f"tabular({', '.join(told)})"
+        return f"tabular({', '.join(arguments)})"
 
-    def _row(self, row: TableRow, columns: Sequence[Column], wide: Sequence[float]) -> str:
-        told = [f"mark: {one_text(row.mark)}"] if row.mark else []
+    def _row(self, row: TableRow, columns: Sequence[Column], widths: Sequence[float]) -> str:
+        arguments = [f"mark: {one_text(row.mark)}"] if row.mark else []
         if row.used is not None:
-            told.append(f"used: {min(1.0, max(0.0, row.used)):.4g}")
+            arguments.append(f"used: {min(1.0, max(0.0, row.used)):.4g}")
         if row.anchor:
-            told.append(f"anchor: {self._anchor(row.anchor)}")
+            arguments.append(f"anchor: {self._anchor(row.anchor)}")
         if sum(map(_letters, row.cells)) > MUCH:
-            told.append("whole: false")
+            arguments.append("whole: false")
         cells = list(row.cells)
-        below = next((k for k, cell in enumerate(cells) if k and _is_below(cell, wide[k] / DIGIT)), None)
+        below = next((k for k, cell in enumerate(cells) if k and _is_below(cell, widths[k] / DIGIT)), None)
         if below is not None:
-            told.append(f"below: {self._said(cells[below])}")
+            arguments.append(f"below: {self._line(cells[below])}")
             cells[below] = BELOW
-        told += [self._cell(cell, column, mm) for cell, column, mm in zip(cells, columns, wide, strict=True)]
-        return f"row({', '.join(told)})"
+        arguments += [self._cell(cell, column, mm) for cell, column, mm in zip(cells, columns, widths, strict=True)]
+        return f"row({', '.join(arguments)})"
 
     def _step(self, block: StepBlock) -> str:
         rows: list[str] = []
@@ -321,17 +321,17 @@ class _Writer:
                     body = f" #result(${body}$) "
                 rows.append(f'& quad #"" {body}' if place else f"&= {body}")
         alt, equal = "; ".join(block.plain), " \\ ".join(rows)
-        whole = len(alt) + len(block.meaning) + len(block.source) + sum(map(_letters, block.notes)) <= MUCH
-        told = [
+        unbroken = len(alt) + len(block.meaning) + len(block.source) + sum(map(_letters, block.notes)) <= MUCH
+        arguments = [
             one_text(str(block.number)),
             self._anchor(block.anchor),
-            _flag(whole),
+            _flag(unbroken),
             f"[#{_text(block.meaning)}; #{_code(block.name)}]" if block.name else _text(block.meaning),
             _text(block.source),
             f"formula({_alternative(alt)}, $ {typst_math(block.symbol)} {equal} $)",
-            *map(self._said, dict.fromkeys(block.notes)),
+            *map(self._line, dict.fromkeys(block.notes)),
         ]
-        return f"step({', '.join(told)})"
+        return f"step({', '.join(arguments)})"
 
 
 def _flag(is_so: bool) -> str:
@@ -350,7 +350,7 @@ def _exists(year: int, month: int, day: int) -> bool:
     return True
 
 
-def _is_wide(part: Inline, widest: float) -> bool:
+def _overflows(part: Inline, widest: float) -> bool:
     return isinstance(part, LAYOUTS) and not isinstance(part, (Letter, Amount, Word)) and width(part) > widest
 
 

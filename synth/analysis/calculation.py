@@ -85,26 +85,26 @@ def _of_front(front: ParetoFront, problem: Any, catalogs: Any) -> Calculation:
 
 
 def calculation_of(instance: Instance) -> Calculation:
-    """Return the calculation of a question; what scatters in it is told by its designs, not here."""
-    model, own = instance.model, nominal(instance.problem)
-    if own is not instance.problem:
-        model = own.model(frozenset(instance.values.given), instance.catalogs)
-    found: _Formulas = model.function("formulas", lambda: _Formulas.read(model))
+    """Return the calculation of a question; scatter is recorded with its designs."""
+    model, nominal_problem = instance.model, nominal(instance.problem)
+    if nominal_problem is not instance.problem:
+        model = nominal_problem.model(frozenset(instance.values.given), instance.catalogs)
+    formulas: _Formulas = model.function("formulas", lambda: _Formulas.read(model))
     rows = fixed_row_values(model.declaration, instance.catalogs)
     inputs = _inputs(model, instance, rows)
-    quantities = {q.name: q for q in [*inputs, *found.constants]}
-    for q in found.computed:
+    quantities = {q.name: q for q in [*inputs, *formulas.constants]}
+    for q in formulas.computed:
         quantities[q.name] = q if q.kind != "helper" else _with_unit(q, quantities)
     of_user = [_of_user(x) for x in instance.limits.judging if x.origin in (Origin.USER, Origin.PIN)]
     d = model.declaration
     return Calculation(
-        family=own.name,
-        title=own.title or own.name,
-        sources=tuple(own.sources),
+        family=nominal_problem.name,
+        title=nominal_problem.title or nominal_problem.name,
+        sources=tuple(nominal_problem.sources),
         options={name: o.chosen for name, o in d.options.items()},
         quantities=quantities,
-        limits=(*found.limits, *of_user),
-        remarks=found.remarks,
+        limits=(*formulas.limits, *of_user),
+        remarks=formulas.remarks,
     )
 
 
@@ -136,13 +136,13 @@ def _with_unit(q: NamedQuantity, known: Mapping[str, NamedQuantity]) -> NamedQua
 
 
 def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list[NamedQuantity]:
-    """Return the inputs of a model: what is asked, what is searched, and what rows of tables say."""
-    d, found = model.declaration, list[NamedQuantity]()
+    """Inputs of a model: requirements, searched quantities and cells of tables."""
+    d, quantities = model.declaration, list[NamedQuantity]()
     defaults = _defaults(model)
     for r in d.requirements.values():
         if r.sx is not None:
             common = {"unit": r.unit, "text": r.text, "source": r.source, "bounds": (r.lower, r.upper)}
-            found.append(
+            quantities.append(
                 NamedQuantity(
                     name=r.name,
                     kind="requirement",
@@ -153,14 +153,14 @@ def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list
                 )
             )
     for v in d.variables.values():
-        found.append(_searched(v, "variable", (v.lower, v.upper)))
+        quantities.append(_searched(v, "variable", (v.lower, v.upper)))
     for c in d.counts.values():
         step = float(c.values[1] - c.values[0]) if len(c.values) > 1 else None
-        found.append(replace(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))), step=step))
+        quantities.append(replace(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))), step=step))
     for choice in d.choices.values():
-        found.append(replace(_searched(choice, "choice", None), labels=choice.labels))
-    found += _of_rows(model, instance.catalogs, rows)
-    return _told_apart(found, d)
+        quantities.append(replace(_searched(choice, "choice", None), labels=choice.labels))
+    quantities += _of_rows(model, instance.catalogs, rows)
+    return _with_distinct_symbols(quantities, d)
 
 
 def _searched(record: Any, kind: str, bounds: tuple[float, float] | None) -> NamedQuantity:
@@ -176,7 +176,7 @@ def _searched(record: Any, kind: str, bounds: tuple[float, float] | None) -> Nam
 
 
 def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> list[NamedQuantity]:
-    found = []
+    quantities = []
     for entry in model.data_inputs:
         if entry.kind not in ("part", "row"):
             continue
@@ -186,7 +186,7 @@ def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> lis
         column = next((table.column(name) for name in names if table.has(name)), None)
         texts = tuple(sorted(part.texts.get(names[0], ()))) if entry.columns[0].startswith(CODE_OF) else ()
         value = rows[str(entry.sx)] if entry.kind == "row" else None
-        found.append(
+        quantities.append(
             NamedQuantity(
                 name=entry.label,
                 kind=entry.kind,
@@ -202,17 +202,17 @@ def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> lis
                 labels=texts,
             )
         )
-    return found
+    return quantities
 
 
-def _told_apart(inputs: Sequence[NamedQuantity], d: Declaration) -> list[NamedQuantity]:
-    """Return inputs in which no symbol of a column means something else as well: its slot is added then."""
+def _with_distinct_symbols(inputs: Sequence[NamedQuantity], d: Declaration) -> list[NamedQuantity]:
+    """Inputs with distinct symbols: a column that shares its symbol takes that of its slot."""
     declared = [*(x.symbol for x in d.derived.values()), *(x.symbol for x in d.steps.values())]
     declared += [x.symbol for x in d.constants.values()]
-    taken = declared + [q.symbol for q in inputs]
+    in_use = declared + [q.symbol for q in inputs]
     result = []
     for q in inputs:
-        if q.kind in ("part", "row") and taken.count(q.symbol) > 1:
+        if q.kind in ("part", "row") and in_use.count(q.symbol) > 1:
             slot = d.slots[q.slot].symbol if q.kind == "part" else q.slot.split(":", 1)[1]
             result.append(replace(q, symbol=f"{q.symbol}_{slot or q.slot}"))
         else:
@@ -221,20 +221,20 @@ def _told_apart(inputs: Sequence[NamedQuantity], d: Declaration) -> list[NamedQu
 
 
 def _defaults(model: Model) -> dict[str, Expression]:
-    """Return the formulas of defaults that follow from other requirements, where none was stated."""
+    """Formulas of defaults that follow from other requirements, where no value is explicit."""
     d = model.declaration
-    wanted = {
+    defaults = {
         r.name: ca.SX(r.default)
         for r in d.requirements.values()
         if r.sx is not None and not r.given and r.default is not None and not isinstance(r.default, float)
     }
-    if not wanted:
+    if not defaults:
         return {}
-    program = Program(model.inputs, [expanded(e, model.calls) for e in wanted.values()])
+    program = Program(model.inputs, [expanded(e, model.calls) for e in defaults.values()])
     leaves = _input_names(model, program)
     reader, parts = _Reader(program, leaves), _Parts(program, leaves)
     # Parts stand behind all inputs, so that a default of more than a line is told by its value.
-    return {name: reader.tree(k) for name, k in zip(wanted, program.outputs, strict=True) if parts.fits(k)}
+    return {name: reader.tree(k) for name, k in zip(defaults, program.outputs, strict=True) if parts.fits(k)}
 
 
 def _input_names(model: Model, program: Program) -> dict[int, str]:
@@ -259,9 +259,9 @@ class _Formulas:
         """Read the formulas of a model from its trace."""
         d = model.declaration
         limits = list(d.limits.values())
-        wanted = [*(q.sx for q in d.derived.values()), *(q.sx for q in d.steps.values())]
-        wanted += [side for x in limits for side in (x.value, x.limit)] + [a.when for a in d.advices]
-        everything = ca.vertsplit(expanded(ca.vertcat(*wanted), model.calls)) if wanted else []
+        expressions = [*(q.sx for q in d.derived.values()), *(q.sx for q in d.steps.values())]
+        expressions += [side for x in limits for side in (x.value, x.limit)] + [a.when for a in d.advices]
+        everything = ca.vertsplit(expanded(ca.vertcat(*expressions), model.calls)) if expressions else []
         program = Program(model.inputs, everything)
         nodes = iter(program.outputs)
         named = {name: next(nodes) for name in (*d.derived, *d.steps)}
@@ -280,7 +280,7 @@ class _Formulas:
         records: dict[str, NamedQuantity] = {}
         for name, node in named.items():
             record = d.derived.get(name) or d.steps[name]
-            own = leaves.get(node) == name
+            is_leaf = leaves.get(node) == name
             records[name] = NamedQuantity(
                 name=name,
                 kind="derived" if name in d.derived else "step",
@@ -288,12 +288,12 @@ class _Formulas:
                 unit=record.unit,
                 text=record.text,
                 source=record.source,
-                expression=reader.own(node) if own else reader.tree(node),
+                expression=reader.written_out(node) if is_leaf else reader.tree(node),
                 needs=needs[name],
             )
         for node, name in helpers.items():
             records[name] = NamedQuantity(
-                name=name, kind="helper", symbol=name, unit="-", expression=reader.own(node), needs=needs[name]
+                name=name, kind="helper", symbol=name, unit="-", expression=reader.written_out(node), needs=needs[name]
             )
         known = {x.name: x for x in model.constraints}
         rules = [
@@ -337,24 +337,24 @@ def _turned_round(program: Program, leaves: Mapping[int, str]) -> dict[int, str]
 
     CasADi takes signs out of sums and products, so that -(-M + L) is found where M - L was written.
     """
-    found = dict[int, str]()
+    negated = dict[int, str]()
     for node, name in leaves.items():
-        own = program.nodes[node]
-        if own.op == ca.OP_NEG and own.args[0] not in leaves and program.nodes[own.args[0]].args:
-            found.setdefault(own.args[0], name)
-    return found
+        operation = program.nodes[node]
+        if operation.op == ca.OP_NEG and operation.args[0] not in leaves and program.nodes[operation.args[0]].args:
+            negated.setdefault(operation.args[0], name)
+    return negated
 
 
 def _needs(model: Model, program: Program, named: Mapping[str, int]) -> dict[str, tuple[str, ...]]:
     """Return, per quantity, the guards without which it does not exist: those of what it is computed from."""
     declared = [(q.name, guard) for q in model.declaration.derived.values() for guard in q.needs]
-    found: dict[str, list[str]] = {name: [] for name in named}
+    needs: dict[str, list[str]] = {name: [] for name in named}
     for guard in sorted({guard for _, guard in declared}):
-        marked = program.downstream(named[name] for name, own in declared if own == guard)
+        marked = program.downstream(named[name] for name, required in declared if required == guard)
         for name, node in named.items():
             if marked[node]:
-                found[name].append(guard)
-    return {name: tuple(guards) for name, guards in found.items()}
+                needs[name].append(guard)
+    return {name: tuple(guards) for name, guards in needs.items()}
 
 
 def _in_order(records: Mapping[str, NamedQuantity]) -> list[NamedQuantity]:
@@ -374,7 +374,7 @@ def _in_order(records: Mapping[str, NamedQuantity]) -> list[NamedQuantity]:
 
 
 class _Parts:
-    """Which nodes of formulas that are too long or too deep are told alone.
+    """Names for nodes that split formulas that are too long or too deep.
 
     Parameters
     ----------
@@ -388,16 +388,16 @@ class _Parts:
     def __init__(self, program: Program, leaves: Mapping[int, str], words: Collection[str] = ()) -> None:
         self.nodes, self.leaves = program.nodes, dict(leaves)
         self.names = (name for name in (f"u_{number}" for number in count(1)) if name not in words)
-        self.found: dict[int, str] = {}
+        self.named: dict[int, str] = {}
 
     def of(self, roots: Iterable[int]) -> dict[int, str]:
-        """Return names of the parts of formulas, by node; what one formula is given others find."""
+        """Names of the parts of formulas, by node; formulas share them."""
         for root in dict.fromkeys(sorted(roots)):
             self._shorten(root)
-        return self.found
+        return self.named
 
     def fits(self, root: int) -> bool:
-        """True if a formula is told as one."""
+        """True if a formula needs no split."""
         return self._measured(root).fits
 
     def _shorten(self, root: int) -> None:
@@ -405,7 +405,7 @@ class _Parts:
             part = self._best(root, formula)
             if part is None:
                 return
-            self.found[part] = self.leaves[part] = next(self.names)
+            self.named[part] = self.leaves[part] = next(self.names)
             self._shorten(part)
 
     def _measured(self, root: int) -> _Formula:
@@ -482,14 +482,14 @@ class _Reader:
 
     def tree(self, node: int) -> Expression:
         """Return the tree of a node, or its name."""
-        return self._named(node) or self.own(node)
+        return self._named(node) or self.written_out(node)
 
     def _named(self, node: int) -> Expression | None:
         if node in self.leaves:
             return ["q", self.leaves[node]]
         return ["neg", ["q", self.turned[node]]] if node in self.turned else None
 
-    def own(self, node: int) -> Expression:
+    def written_out(self, node: int) -> Expression:
         """Expression of a node in its operands; an input stands for itself."""
         if node not in self._known:
             # Each before its readers, so that depth is no matter.
@@ -505,9 +505,9 @@ class _Reader:
         return self._known[node]
 
     def _stands_for(self, reader: int, node: int) -> Expression | None:
-        """Return the name that stands for an argument; a quantity is not told by its own negative."""
-        own = self.turned.get(node)
-        return None if own is not None and self.leaves.get(reader) == own else self._named(node)
+        """Name of an argument; none where it is the negative of the quantity that reads it."""
+        negated = self.turned.get(node)
+        return None if negated is not None and self.leaves.get(reader) == negated else self._named(node)
 
     def _made(self, k: int, a: list[Expression]) -> Expression:
         node: Node = self.nodes[k]

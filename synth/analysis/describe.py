@@ -149,10 +149,10 @@ def _classifications(
     An optional requirement can replace a formula; what exists without any is judged without any.
     """
     result: dict[tuple[str, str], str] = {}
-    for given in (everything, frozenset[str]()):
-        model = problem.model(given, tables)
-        found = classify(model, *declared_ranges(model, tables))
-        for kind, shapes in (("derived", found.quantities), ("limit", found.limits), ("objective", found.objectives)):
+    for present in (everything, frozenset[str]()):
+        model = problem.model(present, tables)
+        types = classify(model, *declared_ranges(model, tables))
+        for kind, shapes in (("derived", types.quantities), ("limit", types.limits), ("objective", types.objectives)):
             result |= {(kind, name): shape.text for name, shape in shapes.items()}
     return result
 
@@ -204,8 +204,7 @@ def _closes_last(text: str) -> bool:
 
 def _looked_up(r: NextRowRecord) -> str:
     """Name of a row, in short."""
-    beside = f", with its row of {r.beside.table}" if r.beside else ""
-    return f"next {r.column} of {r.table}{beside}"
+    return f"next {r.column} of {r.table}" + (f", with its row of {r.beside.table}" if r.beside else "")
 
 
 def _variable(v: VariableRecord) -> dict[str, Any]:

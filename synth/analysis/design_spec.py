@@ -16,32 +16,32 @@ if TYPE_CHECKING:
     from synth.tables.catalogs import Catalogs
 
 
-def must_be_one_family(asked: Spec) -> None:
+def must_be_one_family(spec: Spec) -> None:
     """Refuse a spec of several families."""
-    refuse_several(asked.family, asked.file)
+    refuse_several(spec.family, spec.file)
 
 
-def must_be_a_question(asked: Spec) -> None:
+def must_be_a_question(spec: Spec) -> None:
     """Refuse a spec with values."""
-    refuse_values(asked.values, asked.file)
+    refuse_values(spec.values, spec.file)
 
 
-def must_be_a_design(asked: Spec) -> None:
+def must_be_a_design(spec: Spec) -> None:
     """Refuse a spec of several families, without values, or with something left to fix."""
-    must_be_one_family(asked)
-    if asked.values is None:
+    must_be_one_family(spec)
+    if spec.values is None:
         raise InputError(
-            f"{asked.file}: values",
+            f"{spec.file}: values",
             None,
             A_DESIGN,
             ("values",),
         )
-    if asked.fix:
+    if spec.fix:
         right = "these under values: a given design has nothing left to fix"
-        raise InputError(f"{asked.file}: fix", ", ".join(asked.fix), right, ("fix",))
+        raise InputError(f"{spec.file}: fix", ", ".join(spec.fix), right, ("fix",))
 
 
-def given_design(asked: Spec, tables: Catalogs | None = None) -> tuple[DesignProblem, Catalogs, Design]:
+def design_of_spec(spec: Spec, tables: Catalogs | None = None) -> tuple[DesignProblem, Catalogs, Design]:
     """Load the problem and evaluate the design that a spec with values describes.
 
     Rows of tables that are away are those that the spec has kept, or the front beside it. ``tables``: in place of those
@@ -54,23 +54,23 @@ def given_design(asked: Spec, tables: Catalogs | None = None) -> tuple[DesignPro
     from synth.results.loading import rows_kept
     from synth.robust.counterpart import robust_counterpart
 
-    problem = robust_counterpart(load(asked.family, **asked.options), asked.robust or None, asked.limits)
-    kept = _rows_kept(asked)
-    stated = asked.catalogs if tables is None else tables
-    if stated is None or isinstance(stated, Mapping):  # what was in memory no file names
-        stated = {**{str(row["table"]): IN_MEMORY for row in asked.rows.values()}, **(stated or {})} or None
-    known = rows_kept(asked.folder)
+    problem = robust_counterpart(load(spec.family, **spec.options), spec.robust or None, spec.limits)
+    kept = _rows_kept(spec)
+    sources = spec.catalogs if tables is None else tables
+    if sources is None or isinstance(sources, Mapping):  # a file names no table that was in memory
+        sources = {**{str(row["table"]): IN_MEMORY for row in spec.rows.values()}, **(sources or {})} or None
+    known = rows_kept(spec.folder)
     rows = {name: list({**known.get(name, {}), **kept.get(name, {})}.values()) for name in {**known, **kept}}
-    catalogs = catalogs_for(problem, stated, asked.folder, rows)
+    catalogs = catalogs_for(problem, sources, spec.folder, rows)
     try:
         design = evaluate(
             problem,
-            asked.requirements,
-            values=asked.values,
-            parts=_one_each(asked),
+            spec.requirements,
+            values=spec.values,
+            parts=_one_each(spec),
             catalogs=catalogs,
-            limits=asked.limits,
-            objectives=asked.objectives,
+            limits=spec.limits,
+            objectives=spec.objectives,
         )
     except InputError as error:
         gone = {f"table {name}": file for name, file in catalogs.away().items()}
@@ -81,7 +81,7 @@ def given_design(asked: Spec, tables: Catalogs | None = None) -> tuple[DesignPro
     return problem, catalogs, design
 
 
-def _rows_kept(asked: Spec) -> dict[str, dict[str, dict[str, Any]]]:
+def _rows_kept(spec: Spec) -> dict[str, dict[str, dict[str, Any]]]:
     """Return the rows that a spec has kept of tables, by table and designation.
 
     Raises
@@ -92,23 +92,23 @@ def _rows_kept(asked: Spec) -> dict[str, dict[str, dict[str, Any]]]:
     from synth.tables.reading import OF_RECORD
     from synth.tables.table import row_hash
 
-    found: dict[str, dict[str, dict[str, Any]]] = {}
-    for key, told in asked.rows.items():
-        cells = {name: x for name, x in told.items() if name not in OF_RECORD}
+    by_table: dict[str, dict[str, dict[str, Any]]] = {}
+    for key, entry in spec.rows.items():
+        cells = {name: x for name, x in entry.items() if name not in OF_RECORD}
         cells = {name: x if x is None or isinstance(x, str) else float(x) for name, x in cells.items()}
-        if row_hash(cells) != told["hash"]:
+        if row_hash(cells) != entry["hash"]:
             raise InputError(f"rows: {key}", Described("a row that was changed"), ROW_EXPECTED, ("rows", key))
-        found.setdefault(told["table"], {})[told["designation"]] = {**told, **cells}
-    return found
+        by_table.setdefault(entry["table"], {})[entry["designation"]] = {**entry, **cells}
+    return by_table
 
 
-def _one_each(asked: Spec) -> dict[str, str]:
+def _one_each(spec: Spec) -> dict[str, str]:
     """Return the designation per slot; a list of one counts as that one."""
     result = {}
-    for slot, rule in asked.parts.items():
+    for slot, rule in spec.parts.items():
         rows = [rule] if isinstance(rule, str) else list(rule)
         if len(rows) != 1:
             right = "one designation: a given design has one part in each slot"
-            raise InputError(f"{asked.file}: parts: {slot}", rows, right, ("parts", slot))
+            raise InputError(f"{spec.file}: parts: {slot}", rows, right, ("parts", slot))
         result[slot] = rows[0]
     return result

@@ -1,4 +1,4 @@
-"""Design records: what is told of a design that was found or given."""
+"""Design records of a search or of an evaluation."""
 
 from __future__ import annotations
 
@@ -46,22 +46,22 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
         kinds={name: kind for name, _, kind in d.quantities()},
         limit_units={x.name: x.unit for x in instance.constraints},
         limit_senses={x.name: x.sense for x in instance.constraints},
-        restated=_restated(instance),
+        restated=_repeated_entries(instance),
         headline=d.headlines.shown,
         sized_by=d.headlines.sized_by,
-        tables={name: joined(instance.catalogs.table(name).hashes) for name in instance.catalogs.own},
+        tables={name: joined(instance.catalogs.table(name).hashes) for name in instance.catalogs.user_tables},
     )
 
 
-def _restated(instance: Instance) -> dict[str, Any]:
-    """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
-    restated: dict[str, Any] = dict(instance.problem.restated)
+def _repeated_entries(instance: Instance) -> dict[str, Any]:
+    """Entries that DESIGN.yaml repeats for a check: limits and user tables, without those in memory."""
+    entries: dict[str, Any] = dict(instance.problem.restated)
     if instance.limits.as_typed:
-        restated["limits"] = stated(instance.limits.as_typed)
+        entries["limits"] = stated(instance.limits.as_typed)
     files = instance.catalogs.files()
     if files:
-        restated["catalogs"] = files
-    return restated
+        entries["catalogs"] = files
+    return entries
 
 
 def make_design(
@@ -88,48 +88,50 @@ def make_design(
     **more
         Fields of Design that the search knows (gap, elasticity, ...).
     """
-    told = told_by(instance, result, variables[None, :], [row])[0]
-    return design_of(frame, told, parts, choices, more)
+    (record,) = design_records(instance, result, variables[None, :], [row])
+    return design_of(frame, record, parts, choices, more)
 
 
 def design_of(
     frame: Frame,
-    told: Mapping[str, Any],
+    record: Mapping[str, Any],
     parts: Mapping[str, PartRow],
     choices: Mapping[str, str],
     more: Mapping[str, Any],
 ) -> Design:
-    """Return a design of what its evaluation tells and what the search knows."""
-    known = {"status": Status.INFEASIBLE if told["violated"] else Status.FEASIBLE, **told, **more}
-    known["advice"] = (*told["advice"], *known.pop("remarks", ()))
-    objectives = {name: told["values"][name] for name in frame.objectives}
+    """Design of the record of its evaluation and what the search adds."""
+    known = {"status": Status.INFEASIBLE if record["violated"] else Status.FEASIBLE, **record, **more}
+    known["advice"] = (*record["advice"], *known.pop("remarks", ()))
+    objectives = {name: record["values"][name] for name in frame.objectives}
     return Design(frame=frame, parts=dict(parts), choices=dict(choices), objectives=objectives, **known)
 
 
-def told_by(instance: SearchSpace, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
-    """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
-    model, own = instance.model, np.asarray(rows, dtype=np.int64)
-    count = len(own)
-    sides = {n: (value[own], bound[own]) for n, (value, bound) in result.limits.items()}
+def design_records(
+    instance: SearchSpace, result: Evaluation, points: np.ndarray, rows: Sequence[int]
+) -> list[dict[str, Any]]:
+    """Fields of ``Design`` of some rows of an evaluation, at these variables."""
+    model, at = instance.model, np.asarray(rows, dtype=np.int64)
+    count = len(at)
+    sides = {n: (value[at], bound[at]) for n, (value, bound) in result.limits.items()}
     senses = {x.name: x.sense for x in instance.constraints}
-    residuals = {n: r[own] for n, r in result.residuals.items()}
-    broken = [(x.name, ~result.holds[x.name][own]) for x in instance.constraints]
+    residuals = {n: r[at] for n, r in result.residuals.items()}
+    broken = [(x.name, ~result.holds[x.name][at]) for x in instance.constraints]
     with np.errstate(all="ignore"):
         used = {
             name: _where_known(utilisation(value, bound, senses[name]), residuals[name])
             for name, (value, bound) in sides.items()
         }
-    void = [(x, gone) for x in instance.constraints if (gone := result.void[x.name][own]).any()]
+    void = [(x, gone) for x in instance.constraints if (gone := result.void[x.name][at]).any()]
     lacking = [", ".join(model.data_inputs[k].label for k in x.void_without) for x, _ in void]
     unchecked = [
         (f"not checked: {x.name}, no {columns}", gone) for (x, gone), columns in zip(void, lacking, strict=True)
     ]
     advice = [
-        (_message(a.code, a.message, a.source), result.advice[k][own]) for k, a in enumerate(model.declaration.advices)
+        (_message(a.code, a.message, a.source), result.advice[k][at]) for k, a in enumerate(model.declaration.advices)
     ]
     pairs = {n: list(zip(value.tolist(), bound.tolist(), strict=True)) for n, (value, bound) in sides.items()}
     fields = {
-        "values": _row_by_row({name: v[own].tolist() for name, v in result.values.items()}, count),
+        "values": _row_by_row({name: v[at].tolist() for name, v in result.values.items()}, count),
         "limits": _row_by_row(pairs, count),
         "residuals": _row_by_row({name: r.tolist() for name, r in residuals.items()}, count),
         "utilisation": _row_by_row(used, count),
@@ -193,8 +195,8 @@ def off_grid(variables: Sequence[VariableRecord], points: np.ndarray) -> list[di
     return result
 
 
-def rows_beside(model: Model, next_rows: Mapping[str, NextRow]) -> tuple[PartRow, ...]:
-    """Return the rows of the user's own tables that a design reads beside its parts.
+def lookup_rows(model: Model, next_rows: Mapping[str, NextRow]) -> tuple[PartRow, ...]:
+    """Rows of user tables that a design reads in addition to its parts.
 
     Parameters
     ----------
@@ -203,9 +205,9 @@ def rows_beside(model: Model, next_rows: Mapping[str, NextRow]) -> tuple[PartRow
         As the design tells them.
     """
     d, catalogs = model.declaration, model.declaration.catalogs
-    if not catalogs.own:
+    if not catalogs.user_tables:
         return ()
     named = [(row.table, catalogs.table(row.table).row_index(fixed_designation(row.slot))) for row in d.rows.values()]
-    for name, found in next_rows.items():
-        named += rows_read(d.next_rows[name], found, catalogs)
-    return tuple(part_row(catalogs.table(table), k) for table, k in dict.fromkeys(named) if table in catalogs.own)
+    for name, selected in next_rows.items():
+        named += rows_read(d.next_rows[name], selected, catalogs)
+    return tuple(part_row(catalogs.table(t), k) for t, k in dict.fromkeys(named) if t in catalogs.user_tables)

@@ -68,18 +68,18 @@ def drawing_of(problem: DesignProblem, design: Design) -> Drawing:
     ValueError
         When the drawing is wrong: a fault of the author of the family.
     """
-    found = problem.drawing(requirements_of(design), design)
-    if found is None:
+    drawing = problem.drawing(requirements_of(design), design)
+    if drawing is None:
         raise InputError("family", problem.name, "a family that has a drawing")
-    names = {item.number: item.name for item in found.items}
-    for area in (area for view in found.views for area in view.areas):
+    names = {item.number: item.name for item in drawing.items}
+    for area in (area for view in drawing.views for area in view.areas):
         if moments(area.outline)[0] <= 0:
             what = names.get(area.item, f"item {area.item}")
             raise InputError("drawing", what, "a design whose parts have bodies: sizes of this one cross each other")
-    faults = faults_of(found, design)
+    faults = faults_of(drawing, design)
     if faults:
         raise ValueError(f"{type(problem).__name__}.drawing: " + "; ".join(faults))
-    return found
+    return drawing
 
 
 def quantity_of(design: Design, name: str) -> float | None:
@@ -93,8 +93,8 @@ def quantity_of(design: Design, name: str) -> float | None:
     """
     slot, _, column = name.partition(".")
     if column:
-        found = design.parts[slot].get(column) if slot in design.parts else None
-        return float(found) if isinstance(found, (int, float)) else None
+        cell = design.parts[slot].get(column) if slot in design.parts else None
+        return float(cell) if isinstance(cell, (int, float)) else None
     for numbers in (design.values, design.steps, design.frame.requirement_values):
         if name in numbers:
             return float(numbers[name])
@@ -125,11 +125,11 @@ def faults_of(drawing: Drawing, design: Design) -> list[str]:
         named |= {b.item for detail in view.details for b in detail.balloons}
         faults += [f"{view.name}: there is no item {k}" for k in sorted(named - set(numbers))]
     for dimension in drawing.measured:
-        wanted = shown_measure(dimension, design)
-        if wanted is None:
+        expected = shown_measure(dimension, design)
+        if expected is None:
             faults.append(f"there is no quantity {dimension.quantity}")
-        elif not math.isclose(dimension.measure, wanted, rel_tol=MARGINS.same, abs_tol=MARGINS.same):
-            faults.append(f"{dimension.quantity}: measures {dimension.measure!r}, the design has {wanted!r}")
+        elif not math.isclose(dimension.measure, expected, rel_tol=MARGINS.same, abs_tol=MARGINS.same):
+            faults.append(f"{dimension.quantity}: measures {dimension.measure!r}, the design has {expected!r}")
     return faults
 
 
@@ -148,8 +148,8 @@ def weighed(drawing: Drawing, design: Design) -> list[tuple[str, float, float]]:
     rows = []
     for weight in drawing.weights:
         density = quantity_of(design, weight.density) or math.nan
-        told = [quantity_of(design, name) for name in weight.quantities]
-        mass = sum(math.nan if value is None else value for value in told)
+        masses = [quantity_of(design, name) for name in weight.quantities]
+        mass = sum(math.nan if value is None else value for value in masses)
         rows.append((" + ".join(weight.quantities), drawing.volume(weight) * 1e-9 * density, mass))
     return rows
 
@@ -163,20 +163,20 @@ def is_drawn(family: str) -> bool:
 
 
 def drawings_of(
-    problem: DesignProblem, designs: Sequence[Design], *, asked: bool = False
+    problem: DesignProblem, designs: Sequence[Design], *, requested: bool = False
 ) -> tuple[dict[int, Drawing], list[str]]:
     """Return the drawings of designs by rank, 0 for one without, and why there is none of some of them.
 
-    ``asked``: whether drawings were asked for by name, so that it must be told where a family has none.
+    ``requested``: whether drawings were named in the request, so that a family without one is noted.
     """
-    found: dict[int, Drawing] = {}
+    drawings: dict[int, Drawing] = {}
     notes: list[str] = []
     if not draws(problem):
-        return found, [f"no drawing: {problem.title or problem.name} has none"] if asked else []
+        return drawings, [f"no drawing: {problem.title or problem.name} has none"] if requested else []
     for design in designs:
         try:
-            found[design.rank or 0] = drawing_of(problem, design)
+            drawings[design.rank or 0] = drawing_of(problem, design)
         except InputError as error:
             which = f"design #{design.rank}" if design.rank else "the design"
             notes.append(f"no drawing of {which}: {error}")
-    return found, notes
+    return drawings, notes

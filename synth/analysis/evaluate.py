@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.designs import make_design, make_frame, rows_beside
+from synth.analysis.designs import lookup_rows, make_design, make_frame
 from synth.analysis.settings import DERIVED
 from synth.errors import InputError, RefusedError, at
 from synth.model.model import DataInput, Model
@@ -121,8 +121,8 @@ def _evaluate(
     frame = make_frame(instance, chosen_objectives(model, objectives))
     part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
     result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
-    found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
-    refuse_not_computable(model, result, found, variables, data)
+    beyond = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
+    refuse_not_computable(model, result, beyond, variables, data)
     next_rows = model.next_rows(variables[None, :], data)[0]
     return make_design(
         instance,
@@ -133,24 +133,24 @@ def _evaluate(
         part_rows,
         choices,
         remarks=remarks,
-        outside=found,
+        outside=beyond,
         steps=DesignSteps(model.steps(variables[None, :], data)[0]),
         next_rows=next_rows,
-        rows=rows_beside(model, next_rows),
+        rows=lookup_rows(model, next_rows),
     )
 
 
 def _chosen_rows(instance: Instance, parts: Mapping[str, str]) -> dict[str, tuple[Any, int]]:
     model = instance.model
     slots = model.declaration.slots
-    asked = {model.name_of(str(word), "parts", list(slots), "a slot"): str(d) for word, d in parts.items()}
+    designations = {model.name_of(str(word), "parts", list(slots), "a slot"): str(d) for word, d in parts.items()}
     result = {}
     for slot, part in slots.items():
-        if slot not in asked:
+        if slot not in designations:
             raise InputError(f"parts: {slot}", None, f"a designation of table {part.table}", ("parts", slot))
         table = instance.catalogs.table(part.table)
         with at("parts", slot):
-            result[slot] = (table, table.row_index(asked[slot]))
+            result[slot] = (table, table.row_index(designations[slot]))
     return result
 
 
@@ -274,14 +274,14 @@ def _solve_for(
     # Searched lies nearest what was meant; from its corners and inside, and from further out.
     shares = rng.random((DERIVED.outside, len(unknown)))
     reach = [np.clip(lower + (upper - lower) * (3 * share - 1), least, most) for share in shares]
-    found = list(_solutions(difference, slope, [lower, upper, *starts[: DERIVED.again], *reach], least, most))
-    if found:
+    solutions = list(_solutions(difference, slope, [lower, upper, *starts[: DERIVED.again], *reach], least, most))
+    if solutions:
         size = np.maximum(upper - lower, DERIVED.smallest * np.abs(upper))
-        return min(found, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
-    wanted = ", ".join(f"{n} = {typed_quantity(derived[n], model.units[n])}" for n in names)
+        return min(solutions, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
+    targets = ", ".join(f"{n} = {typed_quantity(derived[n], model.units[n])}" for n in names)
     ranges = ", ".join(f"{v.name} ({shown_range(v)})" for v in unknown)
     right = f"quantities that some {ranges} can give, or values not far outside"
-    raise InputError("values", wanted, right, ("values",))
+    raise InputError("values", targets, right, ("values",))
 
 
 def _solutions(

@@ -46,32 +46,32 @@ class FiredGuard:
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What a refusal wants: one side at most, or below, the other."""
+class Inequality:
+    """One side must be at most, or below, the other."""
 
     smaller: Any
     larger: Any
     strictly: bool
 
 
-def wanted(when: Any) -> list[Wanted] | None:
+def required_inequalities(when: Any) -> list[Inequality] | None:
     """Conditions that must all hold for a guard not to refuse; None where it is not of that form.
 
     Examples
     --------
     >>> a, b, c = (ca.SX.sym(x) for x in "abc")
-    >>> wanted(ca.logic_or(a < b, c >= b))
-    [Wanted(smaller=SX(b), larger=SX(a), strictly=False), Wanted(smaller=SX(c), larger=SX(b), strictly=True)]
-    >>> wanted(ca.logic_and(a < b, c > b)) is None
+    >>> required_inequalities(ca.logic_or(a < b, c >= b))
+    [Inequality(smaller=SX(b), larger=SX(a), strictly=False), Inequality(smaller=SX(c), larger=SX(b), strictly=True)]
+    >>> required_inequalities(ca.logic_and(a < b, c > b)) is None
     True
     """
     when = ca.SX(when)
     if when.is_constant() or when.is_symbolic():
         return None
     if when.op() in (ca.OP_LT, ca.OP_LE):
-        return [Wanted(when.dep(1), when.dep(0), when.op() == ca.OP_LE)]
+        return [Inequality(when.dep(1), when.dep(0), when.op() == ca.OP_LE)]
     if when.op() == ca.OP_OR:
-        sides = [wanted(when.dep(k)) for k in (0, 1)]
+        sides = [required_inequalities(when.dep(k)) for k in (0, 1)]
         return None if None in sides else [one for side in sides for one in side or ()]
     return None
 
@@ -85,13 +85,13 @@ def fired_guards(instance: Instance) -> list[FiredGuard]:
         Made with ``refuse=False``.
     """
     model = instance.model
-    found = []
+    guards = []
     for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
         if len(kinds) <= 1:
             one = _RefusedChoices(instance, refusal, next(iter(kinds), ""))
             if one.fires(instance.values):
-                found.append(one.told())
-    return found
+                guards.append(one.fired_guard())
+    return guards
 
 
 def requirements_of(instance: Instance, code: str) -> list[str]:
@@ -117,8 +117,8 @@ class _RefusedChoices:
         self.instance, self.refusal, self.name = instance, refusal, name
         calls = instance.model.calls
         self.when = numeric(expanded(refusal.when, calls))
-        self.wanted = wanted(refusal.when) or []
-        self.pairs = [tuple(numeric(expanded(x, calls)) for x in (w.smaller, w.larger)) for w in self.wanted]
+        self.inequalities = required_inequalities(refusal.when) or []
+        self.pairs = [tuple(numeric(expanded(x, calls)) for x in (w.smaller, w.larger)) for w in self.inequalities]
         self.slot = next((s for s in instance.selection.slots if s.slot == name), None)
 
     def _places(self, requirements: RequirementValues) -> Iterator[dict[str, float]]:
@@ -140,8 +140,8 @@ class _RefusedChoices:
         """True if nothing that is offered escapes with these values of the requirements."""
         return all(_at(self.when, values) > 0.5 for values in self._places(requirements))
 
-    def told(self) -> FiredGuard:
-        """Return it with its amounts."""
+    def fired_guard(self) -> FiredGuard:
+        """Refusal with its amounts at the nearest row."""
         places = list(self._places(self.instance.values))
         # The row that comes nearest, and of it what is missed by most.
         gaps = [[_gap(*(_at(x, values) for x in pair)) for pair in self.pairs] for values in places]
@@ -157,7 +157,7 @@ class _RefusedChoices:
         )
         words = f"{self.refusal.code}"
         if name:
-            strictly = self.wanted[worst].strictly
+            strictly = self.inequalities[worst].strictly
             side = (
                 ("more than" if strictly else "at least")
                 if sense == AT_LEAST
@@ -173,15 +173,15 @@ class _RefusedChoices:
         )
 
     def _sides(self, worst: int, values: Mapping[str, float]) -> tuple[str, float, float, str, str]:
-        """Return the requirement on one side of what is missed, its value, and what the other side asks of it."""
+        """Requirement on one side of the missed inequality, its value and its bound."""
         if worst >= 0:
-            pair = self.wanted[worst].smaller, self.wanted[worst].larger
+            pair = self.inequalities[worst].smaller, self.inequalities[worst].larger
             names = {str(r.sx): r for r in self.instance.model.declaration.requirements.values() if r.sx is not None}
             for k in (1, 0):  # the larger side is what most limits are called by
                 if pair[k].is_symbolic() and str(pair[k]) in names:
                     r, (small, large) = names[str(pair[k])], (_at(x, values) for x in self.pairs[worst])
-                    own, other = (small, large) if k == 0 else (large, small)
-                    return r.name, own, other, r.unit, AT_MOST if k == 0 else AT_LEAST
+                    value, bound = (small, large) if k == 0 else (large, small)
+                    return r.name, value, bound, r.unit, AT_MOST if k == 0 else AT_LEAST
         return "", math.nan, math.nan, "-", ""
 
     def _lift(self, name: str) -> str:
@@ -189,25 +189,25 @@ class _RefusedChoices:
         r, value = self.instance.model.declaration.requirements[name], self.instance.values.requirements[name]
         if not value > 0:
             return ""
-        found: list[tuple[float, str]] = []
+        candidates: list[tuple[float, str]] = []
         for sign in (1.0, -1.0):
             end = r.upper if sign > 0 else r.lower
-            room = min(GUARDS.farthest, abs(math.log(end / value))) if 0 < end < math.inf else GUARDS.farthest
+            reach = min(GUARDS.farthest, abs(math.log(end / value))) if 0 < end < math.inf else GUARDS.farthest
             free = next(
-                (s for s in np.linspace(0, room, GUARDS.steps + 1)[1:] if not self._fires_at(name, sign * s)), None
+                (s for s in np.linspace(0, reach, GUARDS.steps + 1)[1:] if not self._fires_at(name, sign * s)), None
             )
             if free is None:
                 continue
-            low, high = free - room / GUARDS.steps, float(free)
+            low, high = free - reach / GUARDS.steps, float(free)
             for _ in range(GUARDS.halvings):
                 middle = (low + high) / 2
                 low, high = (middle, high) if self._fires_at(name, sign * middle) else (low, middle)
             needed = value * math.exp(sign * high)
             for text in (next(outward(needed, r.unit, sign > 0, WAYS_OUT.digits)), *outward(needed, r.unit, sign > 0)):
                 if not self._fires_text(name, text):
-                    found.append((high, text))
+                    candidates.append((high, text))
                     break
-        return min(found)[1] if found else ""
+        return min(candidates)[1] if candidates else ""
 
     def _fires_at(self, name: str, change: float) -> bool:
         return self._fires_with(name, self.instance.values.requirements[name] * math.exp(change))

@@ -63,16 +63,16 @@ def simulate(
     """
     problem = load(p)
     catalogs = catalogs_for(problem, catalogs)
-    told = read_settings(problem, settings, catalogs)
+    chosen = read_settings(problem, settings, catalogs)
     return simulate_design(
-        problem, evaluate(problem, requirements, design, values=values, parts=parts, catalogs=catalogs), told
+        problem, evaluate(problem, requirements, design, values=values, parts=parts, catalogs=catalogs), chosen
     )
 
 
-def simulate_design(problem: DesignProblem, design: Design, told: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
+def simulate_design(problem: DesignProblem, design: Design, chosen: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
     """Simulate a design that was just evaluated, with settings that were already read."""
-    found = problem.simulate({**requirements_of(design), **told}, design)
-    return _checked(problem, "simulate", "simulation", found)
+    frames = problem.simulate({**requirements_of(design), **chosen}, design)
+    return _checked(problem, "simulate", "simulation", frames)
 
 
 def curves(
@@ -152,15 +152,15 @@ def read_settings(problem: DesignProblem, settings: Mapping[str, Any] | None, ca
         When one is unknown or has an impossible value.
     """
     declared = problem.simulation_settings
-    told: dict[str, Any] = {}
+    chosen: dict[str, Any] = {}
     for name, value in as_mapping(settings, "settings", "{'time': '5 s'}").items():
         if name not in declared:
             close = difflib.get_close_matches(str(name), declared, n=2)
             listed = " or ".join(close) or ", ".join(declared) or "no settings: this family has none"
             raise InputError("settings", name, listed, ("settings", str(name)))
         with at("settings", name):
-            told[name] = _read_setting(f"settings: {name}", declared[name], value, catalogs)
-    return told
+            chosen[name] = _read_setting(f"settings: {name}", declared[name], value, catalogs)
+    return chosen
 
 
 def _read_setting(field: str, setting: Setting, value: Any, catalogs: Catalogs) -> Any:
@@ -179,11 +179,11 @@ def requirements_of(design: Design) -> dict[str, float | None]:
     return {**design.frame.requirement_values, **dict.fromkeys(design.frame.not_asked)}
 
 
-def _checked(problem: DesignProblem, hook: str, kind: str, found: Any) -> dict[str, pd.DataFrame]:
+def _checked(problem: DesignProblem, hook: str, kind: str, frames: Any) -> dict[str, pd.DataFrame]:
     """Return the frames of a hook once they keep to the convention; a fault there is one of the family's author."""
-    if not found:
+    if not frames:
         raise InputError("family", problem.name, f"a family that has {'a ' if kind == 'simulation' else ''}{kind}")
-    for key, frame in found.items():
+    for key, frame in frames.items():
         where = f"{type(problem).__name__}.{hook}: {key!r}"
         if not FILE_NAME.fullmatch(key):
             raise ValueError(f"{where} is no file name in small letters")
@@ -192,4 +192,4 @@ def _checked(problem: DesignProblem, hook: str, kind: str, found: Any) -> dict[s
         for column in frame.columns:
             if not split_header(str(column))[1]:
                 raise ValueError(f"{where}: column {column!r} needs a unit, such as 'time [s]'")
-    return dict(found)
+    return dict(frames)

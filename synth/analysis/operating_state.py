@@ -1,4 +1,4 @@
-"""The state of a given design at an operating point: a hook of families, checked like curves and simulations."""
+"""The state of a design at an operating point: a hook of families, checked like curves and simulations."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def state(
     )
 
 
-def read_point(problem: DesignProblem, given: Mapping[str, Any]) -> dict[str, float]:
+def read_point(problem: DesignProblem, entries: Mapping[str, Any]) -> dict[str, float]:
     """Return an operating point in SI.
 
     Raises
@@ -87,7 +87,7 @@ def read_point(problem: DesignProblem, given: Mapping[str, Any]) -> dict[str, fl
     if not declared:
         raise InputError("family", problem.name, "a family that tells its state at a point (at)")
     point: dict[str, float] = {}
-    for name, value in as_mapping(given, "at", "{'speed': '900 rpm'}").items():
+    for name, value in as_mapping(entries, "at", "{'speed': '900 rpm'}").items():
         if name not in declared:
             close = difflib.get_close_matches(str(name), declared, n=2)
             raise InputError("at", name, " or ".join(close) or ", ".join(declared), ("at",))
@@ -112,27 +112,27 @@ def state_of(problem: DesignProblem, design: Design, point: Mapping[str, float])
         When the design has no state there.
     """
     with np.errstate(all="ignore"):
-        found = problem.state(requirements_of(design), design, point)
+        frame = problem.state(requirements_of(design), design, point)
     where = f"{type(problem).__name__}.state"
-    if found is None or list(found.columns[: len(WORDS)]) != list(WORDS):
+    if frame is None or list(frame.columns[: len(WORDS)]) != list(WORDS):
         raise ValueError(f"{where} must return a frame whose first columns are {', '.join(WORDS)}")
-    numbers = found.columns[len(WORDS) :]
+    numbers = frame.columns[len(WORDS) :]
     for column in numbers:
         if not split_header(str(column))[1]:
             raise ValueError(f"{where}: column {column!r} needs a unit, such as 'torque [N*m]'")
-    if not np.isfinite(found[numbers].to_numpy(dtype=float)).all(axis=1).any():
+    if not np.isfinite(frame[numbers].to_numpy(dtype=float)).all(axis=1).any():
         shown = ", ".join(typed_quantity(x, problem.operating_point[n].unit) for n, x in point.items())
         more = f"; this one violates {', '.join(design.violated)}" if design.violated else ""
         raise InputError("at", shown, f"a point at which the design has a state{more}", ("at",))
-    return found
+    return frame
 
 
-def state_rows(found: pd.DataFrame) -> list[list[str]]:
+def state_rows(frame: pd.DataFrame) -> list[list[str]]:
     """Return a state as a table for people: a heading per course, then the regime and a row per quantity."""
-    rows = [["", *found["course"]], ["regime", *found["regime"]]]
-    for column in found.columns[len(WORDS) :]:
+    rows = [["", *frame["course"]], ["regime", *frame["regime"]]]
+    for column in frame.columns[len(WORDS) :]:
         name, unit = split_header(str(column))
         behind = "" if unit == "-" else f" {unit}"
-        shown = [f"{number_text(x)}{behind}" if math.isfinite(x) else UNKNOWN for x in found[column]]
+        shown = [f"{number_text(x)}{behind}" if math.isfinite(x) else UNKNOWN for x in frame[column]]
         rows.append([name, *shown])
     return rows

@@ -66,7 +66,7 @@ class WrittenReport:
     lacking: Sequence[ExtraNeededError] = ()
 
     def complete(self) -> Path:
-        """Return the folder of a report that has everything that was asked for.
+        """Folder of a report that has every requested file.
 
         Raises
         ------
@@ -182,8 +182,7 @@ def explored(
     read = _calculation(front, problem, catalogs)
     pictures, _ = _drawings(front, read, front.designs[:drawn], problem)
     how = ReportOptions.read(about=about)
-    asked = ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_beside(front))
-    return record(asked)
+    return record(ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_related_results(front)))
 
 
 def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
@@ -196,19 +195,18 @@ def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
     """
     record = installed(report_named("explorer_comparison"), "explore")
     content, _, fronts = _compared(source)
-    asked = ComparisonRequest(content=content, fronts=fronts, how=ReportOptions.read(about=about))
-    return record(_explored(asked))
+    return record(_explored(ComparisonRequest(content=content, fronts=fronts, how=ReportOptions.read(about=about))))
 
 
-def _explored(asked: ComparisonRequest) -> ComparisonRequest:
+def _explored(request: ComparisonRequest) -> ComparisonRequest:
     """Request with what the explorer needs: calculations, and drawings of the first designs by rank."""
-    calculations = {family: calculation(front) for family, front in asked.fronts.items()}
+    calculations = {family: calculation(front) for family, front in request.fronts.items()}
     drawings: dict[int, Drawing] = {}
-    for family, front in asked.fronts.items():
-        ranks = {x["own_rank"]: int(x["rank"]) for x in asked.content["designs"][:DRAWN] if x["family"] == family}
+    for family, front in request.fronts.items():
+        ranks = {x["own_rank"]: int(x["rank"]) for x in request.content["designs"][:DRAWN] if x["family"] == family}
         drawn, _ = _drawings(front, calculations[family], [d for d in front.designs if d.rank in ranks])
-        drawings |= {ranks[own]: drawing for own, drawing in drawn.items()}
-    return replace(asked, calculations=calculations, drawings=drawings)
+        drawings |= {ranks[family_rank]: drawing for family_rank, drawing in drawn.items()}
+    return replace(request, calculations=calculations, drawings=drawings)
 
 
 def _of_front(
@@ -224,11 +222,11 @@ def _of_front(
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
     read = _calculation(front, problem, catalogs)
-    drawings, untold = _drawings(front, read, named_designs(front, chosen), problem, asked=_draws(how))
+    drawings, untold = _drawings(front, read, named_designs(front, chosen), problem, requested=_draws(how))
     shown = foremost(front, int(full)) if {"html", "pdf"} & set(how.formats) else []
     shown += front.designs[:DRAWN] if "explorer" in how.formats else ()
     more = {d.rank: d for d in shown if d.rank not in drawings}
-    asked = ReportRequest(
+    request = ReportRequest(
         calculation=read,
         front=front.placed(place),
         chosen=[str(x) for x in chosen],
@@ -236,9 +234,9 @@ def _of_front(
         how=how,
         rows=_offered(front, problem, catalogs) if "xlsx" in how.formats else {},
         drawings=drawings | _drawings(front, read, list(more.values()), problem)[0],
-        **_beside(front),
+        **_related_results(front),
     )
-    files, notes, lacking = installed(report_named("files"), "report")(asked)
+    files, notes, lacking = installed(report_named("files"), "report")(request)
     return files, [*notes, *untold, *_differences(front, read, problem, catalogs)], lacking
 
 
@@ -284,20 +282,20 @@ def _drawings(
     designs: Sequence[Design],
     problem: FamilyLike = None,
     *,
-    asked: bool = False,
+    requested: bool = False,
 ) -> tuple[dict[int, Drawing], list[str]]:
     """Return drawings of some designs of a front by rank, and why there is none of others; none without the family."""
     try:
-        own = _family(front, read, problem)
+        family = _family(front, read, problem)
     except InputError as error:
-        return {}, [f"no drawing: {error}"] if asked else []
-    return drawings_of(own, designs, asked=asked)
+        return {}, [f"no drawing: {error}"] if requested else []
+    return drawings_of(family, designs, requested=requested)
 
 
 def _refuse_another_front(front: ParetoFront, place: Path) -> None:
     """Refuse a folder that holds another front: its files would speak of two machines."""
-    own = front.folder is not None and Path(front.folder).resolve() == place.resolve()
-    if not own and (place / FRONT_FILE).is_file():
+    same_folder = front.folder is not None and Path(front.folder).resolve() == place.resolve()
+    if not same_folder and (place / FRONT_FILE).is_file():
         there = read_json(place / FRONT_FILE, "output", "a folder for reports")
         if not isinstance(there, Mapping) or result_digest(there) != front.result_digest:
             raise InputError("output", str(place), "another folder: this one holds another front")
@@ -310,8 +308,8 @@ def report_design(
     place = Path(folder)
     # The sheet of a front's design says how far the front is proven; this one must not take its place.
     name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
-    drawings, untold = drawings_of(instance.problem, [design], asked=_draws(how))
-    asked = ReportRequest(
+    drawings, untold = drawings_of(instance.problem, [design], requested=_draws(how))
+    request = ReportRequest(
         calculation=calculation_of(instance),
         design=design.placed(place),
         name=name,
@@ -319,7 +317,7 @@ def report_design(
         rows=instance.offered() if "xlsx" in how.formats else {},
         drawings=drawings,
     )
-    files, notes, lacking = installed(report_named("files"), "report")(asked)
+    files, notes, lacking = installed(report_named("files"), "report")(request)
     return write_report(place, files, [*notes, *untold], design.status is not Status.INFEASIBLE, lacking)
 
 
@@ -342,18 +340,18 @@ def report_comparison(
     notes, links, lacking = list[str](), dict[str, str](), dict[str, ExtraNeededError]()
     for family, place in places.items():
         ranks = [x["own_rank"] for x in chosen if x["family"] == family]
-        made, told, lacks = _of_front(fronts[family], ranks, full, how, folder / place)
+        made, messages, lacks = _of_front(fronts[family], ranks, full, how, folder / place)
         lacking |= {error.extra: error for error in lacks}
         files |= {f"{place}/{name}": file for name, file in made.items()}
-        notes += [note for note in told if note not in notes]
+        notes += [note for note in messages if note not in notes]
         first = next((name for name in made if name.startswith(("report.", "explorer."))), "")
         links |= {family: f"{place}/{first}"}
     make = installed(report_named("comparison"), "report")
-    asked = ComparisonRequest(content=content, fronts=fronts, how=how, links=links)
-    own, told, lacks = make(_explored(asked) if "explorer" in how.formats else asked)
+    request = ComparisonRequest(content=content, fronts=fronts, how=how, links=links)
+    shared, messages, lacks = make(_explored(request) if "explorer" in how.formats else request)
     lacking |= {error.extra: error for error in lacks}
-    notes += [note for note in told if note not in notes]
-    return write_report(folder, {**own, **files}, notes, bool(listed), list(lacking.values()))
+    notes += [note for note in messages if note not in notes]
+    return write_report(folder, {**shared, **files}, notes, bool(listed), list(lacking.values()))
 
 
 def _compared(source: Path) -> tuple[dict[str, Any], dict[str, str], dict[str, ParetoFront]]:
@@ -370,13 +368,13 @@ def _compared(source: Path) -> tuple[dict[str, Any], dict[str, str], dict[str, P
     return {**content, "designs": listed}, places, fronts
 
 
-def _listed(told: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
+def _listed(entry: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
     """Return a design of a common front with the rank that it has in its family."""
-    family, wanted = told["family"], told["objectives"]
-    for own in fronts[family].designs:
-        if all(own.values.get(name) == value for name, value in wanted.items()):
-            return {**told, "own_rank": own.rank}
-    raise KeyError(f"design #{told['rank']} of {family}")
+    family, objectives = entry["family"], entry["objectives"]
+    for design in fronts[family].designs:
+        if all(design.values.get(name) == value for name, value in objectives.items()):
+            return {**entry, "own_rank": design.rank}
+    raise KeyError(f"design #{entry['rank']} of {family}")
 
 
 def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) -> list[Mapping[str, Any]]:
@@ -392,22 +390,22 @@ def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) ->
     return list({known[word]["rank"]: known[word] for word in words}.values())
 
 
-def _beside(front: ParetoFront) -> dict[str, Any]:
+def _related_results(front: ParetoFront) -> dict[str, Any]:
     """Further results on a front, in its folder or in one below; nothing where it has none."""
     if front.folder is None:
         return {}
     folder = Path(front.folder)
-    found: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
+    results: dict[str, Any] = {"curves": sorted(p.name for pattern in CURVES for p in folder.glob(pattern))}
     digest = front.result_digest
     for path in (folder / "prices.json", *sorted(folder.glob("*/prices.json"))):
         if path.is_file():
             content = read_json(path, "prices", "a prices.json as clutchsynth has written it")
             if isinstance(content, Mapping) and content.get("front") == digest:
-                found["prices"] = [row for rows in dict(content.get("designs", {})).values() for row in rows]
+                results["prices"] = [row for rows in dict(content.get("designs", {})).values() for row in rows]
                 break
     near = [_near_of(path, front) for path in sorted(folder.glob("*/near_equals.csv"))]
-    found["near_equals"] = [x for x in near if x]
-    return found
+    results["near_equals"] = [x for x in near if x]
+    return results
 
 
 def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
@@ -415,14 +413,14 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     right = "a table as clutchsynth has written it"
     text = read_bytes(path, "near_equals", right).decode("utf-8", "replace")
     rows = list(csv.DictReader(unstyled(text).splitlines()))
-    told = read_json(path.with_suffix(".json"), "near_equals", "a near_equals.json as clutchsynth has written it")
-    if not rows or not isinstance(told, Mapping):
+    content = read_json(path.with_suffix(".json"), "near_equals", "a near_equals.json as clutchsynth has written it")
+    if not rows or not isinstance(content, Mapping):
         return {}
     for design in front.designs:
         columns = design_columns(front.frame, design.choices, design.parts)
-        own = dict(zip(columns, design_row(front.frame, design), strict=True))
-        if all(rows[0].get(column) == str(csv_cell(value)) for column, value in own.items()):
-            return {"rank": design.rank, "sentence": str(told.get("sentence", "")), "rows": rows[1:]}
+        cells = dict(zip(columns, design_row(front.frame, design), strict=True))
+        if all(rows[0].get(column) == str(csv_cell(value)) for column, value in cells.items()):
+            return {"rank": design.rank, "sentence": str(content.get("sentence", "")), "rows": rows[1:]}
     return {}
 
 

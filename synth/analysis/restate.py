@@ -43,16 +43,16 @@ def problem_of(
         When the problem or its tables cannot be had.
     """
     if problem is None and front.question is not None:
-        own: DesignProblem = nominal(front.question.problem)  # a problem of one's own has no name to be loaded by
+        base: DesignProblem = nominal(front.question.problem)  # a problem of one's own has no name to be loaded by
     else:
-        own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
-    restated = front.frame.restated
-    own = robust_counterpart(own, restated.get("robust"), restated.get("limits"))
+        base = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
+    repeated = front.frame.restated
+    base = robust_counterpart(base, repeated.get("robust"), repeated.get("limits"))
     if catalogs is not None or not kept:
-        return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
+        return base, catalogs_for(base, repeated.get("catalogs") if catalogs is None else catalogs)
     tables = kept_tables(front)
-    refuse_unused(own, tables)
-    return own, tables
+    refuse_unused(base, tables)
+    return base, tables
 
 
 def kept_tables(front: ParetoFront) -> Catalogs:
@@ -66,8 +66,8 @@ def kept_tables(front: ParetoFront) -> Catalogs:
     return Catalogs(named, kept=kept) if named else as_catalogs(None)
 
 
-def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:
-    """Return the question of a front with a problem and its tables.
+def rebuilt_question(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:
+    """Question of a front, posed for a problem with these tables.
 
     Raises
     ------
@@ -91,10 +91,10 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
 
 def table_differences(front: ParetoFront, tables: Catalogs) -> tuple[list[str], list[str]]:
     """Remarks on tables that are away, and on those that have changed since the front was found."""
-    away, names = tables.away(), set(tables.own)
-    told = tables.differences()
-    gone = [sentence for sentence in told if any(sentence.startswith(f"table {name}:") for name in away)]
-    changed = [sentence for sentence in told if sentence not in gone]
+    away, names = tables.away(), set(tables.user_tables)
+    sentences = tables.differences()
+    gone = [sentence for sentence in sentences if any(sentence.startswith(f"table {name}:") for name in away)]
+    changed = [sentence for sentence in sentences if sentence not in gone]
     for name, digest in front.frame.tables.items():
         if name in names - away.keys() and joined(tables.table(name).hashes) != digest:
             changed.append(f"table {name}: it is not the one that the front was found with")
@@ -112,9 +112,9 @@ def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None, k
     if front.question is not None and problem is None and catalogs is None:
         known: Instance = front.question
         return known
-    own, tables = problem_of(front, problem, catalogs, kept)
+    base, tables = problem_of(front, problem, catalogs, kept)
     try:
-        return asked_again(front, own, tables)
+        return rebuilt_question(front, base, tables)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if isinstance(error, InputError):
             raise

@@ -23,8 +23,8 @@ def needed(rows: Iterable[Row]) -> list[Row]:
     return [row for row in rows if row["kind"] == "requirement" and row["default"] is None and not row["optional"]]
 
 
-def stated_value(row: Row, text: str) -> str:
-    """Stated requirement in the words of the user, once it is known to be a value of it.
+def checked_value(row: Row, text: str) -> str:
+    """Value of a requirement in the words of the user, once it was read as one.
 
     Raises
     ------
@@ -39,28 +39,28 @@ def stated_value(row: Row, text: str) -> str:
     return " ".join(text.split())
 
 
-def spec_template(problem: DesignProblem, stated: Mapping[str, str], file: str = "SPEC.yaml") -> str:
+def spec_template(problem: DesignProblem, values: Mapping[str, str], file: str = "SPEC.yaml") -> str:
     """Return a commented spec of a family as YAML.
 
     Parameters
     ----------
     problem : DesignProblem
-        Options that differ from their default are stated.
-    stated : mapping
-        Requirement -> value with its unit; those that are needed and not stated are left to be filled in.
+        Options that differ from their default are written.
+    values : mapping
+        Requirement -> value with its unit; needed requirements without one stay blank.
     file : str
         The name it will have, for the command that it shows.
 
     Returns
     -------
     str
-        What is not stated stands in comments, so that the spec asks what is asked without it.
+        Everything else stands in comments, so that the question is the same as without it.
     """
     rows = described(problem)
     of = {kind: [row for row in rows if row["kind"] == kind] for kind in ("option", "requirement", "objective")}
     sizes = [row for row in rows if row["kind"] in ("variable", "count", "choice")]
     slots = [row for row in rows if row["kind"] == "slot"]
-    own = [row["name"] for row in of["objective"] if row["default"] == "yes"]
+    defaults = [row["name"] for row in of["objective"] if row["default"] == "yes"]
     others = [row["name"] for row in of["objective"] if row["default"] != "yes"]
     lines = [
         f"# {problem.title}: a spec to start from.",
@@ -72,15 +72,15 @@ def spec_template(problem: DesignProblem, stated: Mapping[str, str], file: str =
         f"family: {problem.name}",
         "",
         "requirements:",
-        *_requirements(of["requirement"], stated),
+        *_requirements(of["requirement"], values),
         *_options(of["option"], problem.options),
         "",
         "# What to make small or large.",
-        *_entry("objectives", f"[{', '.join(own)}]", f"also: {', '.join(others)}" if others else "", indent=0),
+        *_entry("objectives", f"[{', '.join(defaults)}]", f"also: {', '.join(others)}" if others else "", indent=0),
         *_entry("points", str(SearchSettings().points), "at most so many designs; fewer if no more exist", indent=0),
         "",
         "# Bounds on anything that is computed:",
-        f'# limits: {{{own[0] if own else "mass"}: "<= ..."}}',
+        f'# limits: {{{defaults[0] if defaults else "mass"}: "<= ..."}}',
         "",
         "# Sizes and counts that are given; the search finds the others.",
         "# fix:",
@@ -109,12 +109,12 @@ def _options(rows: Sequence[Row], chosen: Mapping[str, str]) -> list[str]:
     return ["", *lines]
 
 
-def _requirements(rows: Sequence[Row], stated: Mapping[str, str]) -> list[str]:
+def _requirements(rows: Sequence[Row], values: Mapping[str, str]) -> list[str]:
     must = [row["name"] for row in needed(rows)]
-    first = [row for row in rows if row["name"] in must or row["name"] in stated]
+    first = [row for row in rows if row["name"] in must or row["name"] in values]
     lines = ["  # the duty: needed" if must else "  # the duty"]
     for row in first:
-        lines += _entry(row["name"], stated.get(row["name"], ""), _meaning(row, f"{_range(row)} {row['unit']}"))
+        lines += _entry(row["name"], values.get(row["name"], ""), _meaning(row, f"{_range(row)} {row['unit']}"))
     groups: dict[str, list[Row]] = {}
     for row in rows:
         if row not in first:
@@ -130,9 +130,9 @@ def _requirements(rows: Sequence[Row], stated: Mapping[str, str]) -> list[str]:
 def _entry(name: str, value: str, comment: str, indent: int = 2, off: bool = False) -> list[str]:
     """Return a line with its comment beside it, or above it where there is no room."""
     start = f"{' ' * indent}{'# ' if off else ''}{name}: {value}".rstrip()
-    beside = f"{start:{COLUMN}}  # {comment}" if comment else start
-    if len(beside) <= WIDTH:
-        return [beside]
+    commented = f"{start:{COLUMN}}  # {comment}" if comment else start
+    if len(commented) <= WIDTH:
+        return [commented]
     lines, words = [""], comment.split()
     for word in words:
         if len(lines[-1]) + len(word) > WIDTH - indent - 4:

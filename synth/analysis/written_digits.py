@@ -40,9 +40,9 @@ def written_digits(
         Of these.
     objectives : list of str
     """
-    found = [ALL] * len(points)
+    needed = [ALL] * len(points)
     if not len(points):
-        return found
+        return needed
     before = result.also(space.limits.bounding)
     open_rows = np.arange(len(points))
     for digits in DIGITS:
@@ -60,11 +60,11 @@ def written_digits(
             value = before.values[name][open_rows]
             same &= ~(np.abs(after.values[name] - value) > AGREE * np.abs(value))
         for row in open_rows[same].tolist():
-            found[row] = digits
+            needed[row] = digits
         open_rows = open_rows[~same]
         if not len(open_rows):
             break
-    return found
+    return needed
 
 
 def _rounded(space: SearchSpace, points: np.ndarray, digits: int) -> np.ndarray:

@@ -62,7 +62,7 @@ class BatchResult:
     counts: Mapping[str, int]  # rows by status
     database: Any = field(repr=False)
     catalogs: Any = field(default=None, repr=False, compare=False)  # own tables, and
-    own: Any = field(default=None, repr=False, compare=False)  # a problem that is not registered
+    user_family: Any = field(default=None, repr=False, compare=False)  # a problem that is not registered
     keep: Any = field(default=None, repr=False, compare=False)  # a temporary folder lives as long as this
 
     def designs(self) -> pd.DataFrame:
@@ -112,10 +112,11 @@ class BatchResult:
         from synth.batches.batch_report import BatchOptions, report_result
         from synth.results.report_request import ReportOptions
 
-        named = "" if row is None else str(row).strip()
-        options = BatchOptions(named, ReportOptions.read(formats, about, fonts=fonts))
+        options = BatchOptions("" if row is None else str(row).strip(), ReportOptions.read(formats, about, fonts=fonts))
         target = self.folder if folder is None else Path(folder)
-        return report_result(self.folder, target, options, self.database, self.job, self.catalogs, self.own).complete()
+        return report_result(
+            self.folder, target, options, self.database, self.job, self.catalogs, self.user_family
+        ).complete()
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:
@@ -280,9 +281,9 @@ class BatchJob:
             "time_limit": settings.time_limit,
         }
         self.common = {
-            name: {str(key): stated_value(value) for key, value in as_mapping(given, name, EXAMPLES[name]).items()}
+            name: {str(key): stated_value(value) for key, value in as_mapping(entries, name, EXAMPLES[name]).items()}
             for name in ("parts", "limits", "fix")
-            for given in [common[name]]
+            for entries in [common[name]]
         }
         self.catalog_spec = str(Path(catalogs).resolve()) if isinstance(catalogs, (str, Path)) else catalogs
         self.catalogs = as_catalogs(self.catalog_spec)
@@ -296,7 +297,7 @@ class BatchJob:
             "tables": self.catalogs.digest(),
         }
         self.basis = digest([self.settings, {k: v for k, v in self.hashes.items() if k != "rows"}])
-        own = self.questioner.own
+        user_family = self.questioner.user_family
         self.id = digest(
             [
                 self.basis,
@@ -305,8 +306,8 @@ class BatchJob:
                 self.mapping,
                 self.common,
                 self.questioner.default,
-                self.questioner.own_options,
-                None if own is None else own.__qualname__,
+                self.questioner.user_options,
+                None if user_family is None else user_family.__qualname__,
             ]
         )[:16]
         self.address: Any = database or file_url(folder.resolve() / DATABASE)
@@ -422,28 +423,28 @@ class BatchJob:
         InputError
             No row asks a question.
         """
-        tell = PlanProgress(progress, self.numbers.plan.pause, self.table)
+        plan_progress = PlanProgress(progress, self.numbers.plan.pause, self.table)
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with (
             tempfile.TemporaryFile(prefix="clutchsynth-") as checked,
             closing(RowGroups(self.numbers.groups)) as groups,
         ):
-            asked, first, count = 0, list[ReadRow](), 0
+            valid, first, count = 0, list[ReadRow](), 0
             rows = checked_rows(self.questioner, self.id, self.catalog_spec, workers, self.numbers.plan)
-            for count, row in enumerate(tell.each(rows, "checked"), start=1):
+            for count, row in enumerate(plan_progress.each(rows, "checked"), start=1):
                 if row.key is not None:
-                    asked += 1
+                    valid += 1
                     if self._has_one_objective():
                         groups.show(row.key, row.alike, row.place)
-                if count <= self.numbers.plan.shown_faults and not asked:
+                if count <= self.numbers.plan.shown_faults and not valid:
                     first.append(row)
                 pickle.dump((self._recorded(row), row.alike, row.place), checked)
-            if not asked:
+            if not valid:
                 self._refuse(first, count)
             company = _Company(groups, WarmStarts(self.numbers.warm_starts))
-            for waiting in tell.each(_read_again(checked, count), "grouped"):
+            for waiting in plan_progress.each(_read_again(checked, count), "grouped"):
                 company.show(*waiting)
-            yield tell.each((company.placed(*waiting) for waiting in _read_again(checked, count)), "written")
+            yield plan_progress.each((company.placed(*waiting) for waiting in _read_again(checked, count)), "written")
 
     def _rows_per_unit(self) -> int:
         return self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit
@@ -452,10 +453,10 @@ class BatchJob:
         place = self.address if isinstance(self.address, str) else Path(str(self.address.database))
         if isinstance(place, Path) and not place.is_file():
             return False
-        found = self.store.job(self.id) or self.store.job_like(BATCH, self.id)
-        if found is not None:
-            self.id = found.id  # one that a service has made has an id of its own
-        return found is not None
+        record = self.store.job(self.id) or self.store.job_like(BATCH, self.id)
+        if record is not None:
+            self.id = record.id  # one that a service has made has an id of its own
+        return record is not None
 
     def _is_single(self) -> bool:
         """True if each row asks for one best design only."""
@@ -493,7 +494,7 @@ class BatchJob:
             "mapping": self.mapping,
             "hashes": self.hashes,
             "catalogs": kept,
-            "own": None if self.questioner.own is None else self.questioner.own.__qualname__,
+            "own": None if self.questioner.user_family is None else self.questioner.user_family.__qualname__,
             "families": sorted(name for name in self.questioner.named if name in families()),
             "columns": [
                 {"title": c.title, "position": c.position, "carried": c.position in carried}
@@ -545,8 +546,8 @@ class BatchJob:
             self.plan(workers)
             stopped = self.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
             counts = self.write()
-        own = self.questioner.own
-        return BatchResult(self.place, self.id, stopped, counts, self.address, self.catalog_spec, own, keep)
+        user_family = self.questioner.user_family
+        return BatchResult(self.place, self.id, stopped, counts, self.address, self.catalog_spec, user_family, keep)
 
     def work(
         self,
@@ -556,7 +557,7 @@ class BatchJob:
         say: Callable[[str], None] = lambda sentence: None,
     ) -> str:
         """Work the job off; return why it was stopped, or an empty text."""
-        shares = Shares(self.settings, self.catalog_spec, self.questioner.own)
+        shares = Shares(self.settings, self.catalog_spec, self.questioner.user_family)
         return work_off(self.store, self.id, shares, workers, scheduler, progress, say, self.numbers)
 
     def write(self) -> dict[str, int]:
@@ -608,8 +609,8 @@ def work_off(
     if stopped == "cancelled":
         return stopped
     if stopped:
-        store.rest(job)
-        store.tell(job, "stopped", stopped)
+        store.requeue(job)
+        store.add_event(job, "stopped", stopped)
     else:
         store.settle(job)
     return stopped
@@ -648,17 +649,17 @@ class _Company:
         if question is None:
             return record
         member = self._groups.member(question["key"], alike)
-        asked: Mapping[str, Any]
+        content: Mapping[str, Any]
         if member is not None:
-            position, asked = member.position(), member.asked(question["content"])
-            key = digest(asked)
+            position, content = member.position(), member.with_group(question["content"])
+            key = digest(content)
         else:
-            key, asked, teacher = self._school.taught(
+            key, content, teacher = self._school.taught(
                 question["structure"], question["key"], where, question["content"]
             )
             # Questions with one teacher stand together, so that few processes need its experience.
             position = teacher.encode() + b"\0" + canonical_position((encoded(question["content"]),))
-        return {**record, "key": key, "question": {**question, "key": key, "content": asked, "position": position}}
+        return {**record, "key": key, "question": {**question, "key": key, "content": content, "position": position}}
 
 
 def resume(
@@ -676,13 +677,13 @@ def resume(
     InputError
         The job has a problem or tables that only the script that made it knows, or the program has changed.
     """
-    found = store.job(job)
-    if found is None:
+    record = store.job(job)
+    if record is None:
         raise InputError("job", job, "a job of this database")
-    content = found.content
-    if found.kind != BATCH:
-        raise InputError("job", job, f"a batch; this is a job of the kind {found.kind}, which a worker goes on with")
-    if found.request.get("catalogs"):
+    content = record.content
+    if record.kind != BATCH:
+        raise InputError("job", job, f"a batch; this is a job of the kind {record.kind}, which a worker goes on with")
+    if record.request.get("catalogs"):
         raise InputError("job", job, "the service that has its tables, to go on with it")
     if content["own"] is not None or content["catalogs"] == "memory":
         raise InputError("job", job, "its own script: only that knows the problem or the tables it was made with")
@@ -696,9 +697,9 @@ def resume(
     # Of the processor the first version has told nothing.
     changed = [name for name, text in now.items() if content["hashes"].get(name, text) != text]
     if changed:
-        wanted = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
-        raise InputError("job", job, wanted)
-    store.reopen(job, "resumed", f"was {found.state}")
+        expected = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
+        raise InputError("job", job, expected)
+    store.reopen(job, "resumed", f"was {record.state}")
     return work_off(
         store, job, Shares(content["settings"], content["catalogs"], None), workers, scheduler, progress, say
     )

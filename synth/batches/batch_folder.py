@@ -27,10 +27,10 @@ def opened_batch(source: Any, database: Any = None) -> Store:
     if database is not None:
         return Store(database, create=False)
     folder = Path(source)
-    beside = [folder / DATABASE]
+    candidates = [folder / DATABASE]
     if (folder / SUMMARY).is_file():  # what was stopped stands in a folder below that of its database
-        beside.append(folder.parent / DATABASE)
-    file = next((path for path in beside if path.is_file()), None)
+        candidates.append(folder.parent / DATABASE)
+    file = next((path for path in candidates if path.is_file()), None)
     if file is None:
         raise InputError("DIR", str(source), f"the folder of a batch, with {DATABASE} in it (or its database)")
     return Store(file_url(file.resolve()), create=False)
@@ -46,13 +46,13 @@ def job_of_folder(store: Store, source: Any, job: str | None = None) -> Job:
     """
     jobs = store.jobs()
     if job is not None:
-        fitting = [found for found in jobs if found.id == job]
+        fitting = [candidate for candidate in jobs if candidate.id == job]
     else:
         folder = str(Path(source).resolve())
-        fitting = [found for found in jobs if found.folder == folder] or (jobs if len(jobs) == 1 else [])
+        fitting = [candidate for candidate in jobs if candidate.folder == folder] or (jobs if len(jobs) == 1 else [])
     if not fitting:
         raise InputError("DIR", str(source), "the folder that a batch was written to")
-    return max(fitting, key=lambda found: found.updated)
+    return max(fitting, key=lambda candidate: candidate.updated)
 
 
 def job_written(folder: Path) -> str | None:
@@ -60,8 +60,8 @@ def job_written(folder: Path) -> str | None:
     if not (folder / SUMMARY).is_file():
         return None
     right = "a batch.json as clutchsynth has written it"
-    told = read_json(folder / SUMMARY, "batch", right)
-    job = told.get("job") if isinstance(told, Mapping) else None
+    summary = read_json(folder / SUMMARY, "batch", right)
+    job = summary.get("job") if isinstance(summary, Mapping) else None
     if not isinstance(job, str):
         raise InputError("batch", str(folder / SUMMARY), right)
     return job

@@ -14,7 +14,7 @@ from synth.analysis.drawing import drawings_of
 from synth.analysis.evaluate import evaluate_in_si
 from synth.analysis.reporting import WrittenReport, installed, write_report
 from synth.batches.batch_folder import job_of_folder, job_written, opened_batch
-from synth.batches.outputs import GROUPS, RANKING, SAID, SHORT, best_design, explanation_of, missed_limits, status_of
+from synth.batches.outputs import BRIEF, GROUPS, RANKING, SHORT, best_design, explanation_of, missed_limits, status_of
 from synth.batches.solve import GROUP, LIKE
 from synth.batches.store import Answered, Store
 from synth.batches.views import row_at
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("html", "pdf", "xlsx")
 RANGE, VARIANTS, ASSIGNED = "size_range.json", "variants.csv", "assignment.csv"
-TOLD_LINES = 6  # of rows that a name fits
+LISTED_LINES = 6  # of rows that a name fits
 
 
 @dataclass(frozen=True)
@@ -70,21 +70,21 @@ def report_batch(source: Path, folder: Path, options: BatchOptions, database: st
 
 
 def report_result(
-    source: Path, folder: Path, options: BatchOptions, database: Any, job: str, tables: Any = None, own: Any = None
+    source: Path, folder: Path, options: BatchOptions, database: Any, job: str, tables: Any = None, problem: Any = None
 ) -> WrittenReport:
-    """Write the report of a batch that was asked from Python; ``tables`` and ``own`` are those that it was given.
+    """Write the report of a batch that ran from Python, with its ``tables`` and ``problem``.
 
     Else, returns and raises as :func:`report_batch`.
     """
     with opened_batch(source, database) as store:
-        found = job_of_folder(store, source, job)
-        return _written(store, found, source, folder, options, _tables_of(found, tables), own)
+        record = job_of_folder(store, source, job)
+        return _written(store, record, source, folder, options, _tables_of(record, tables), problem)
 
 
 def batch_report_files(
-    store: Store, job: Job, options: BatchOptions, tables: Any = None, own: Any = None, beside: Path | None = None
+    store: Store, job: Job, options: BatchOptions, tables: Any = None, problem: Any = None, folder: Path | None = None
 ) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
-    """Return the files of the report of a batch, what else is to be told, whether some row has designs, what lacks.
+    """Files of the report of a batch, its notes, whether some row has designs, and missing extras.
 
     Parameters
     ----------
@@ -92,39 +92,39 @@ def batch_report_files(
         Where the batch is kept.
     options : BatchOptions
     tables : catalogs, InputError or None
-        Own part tables; why they cannot be had.
-    own : DesignProblem subclass, optional
+        User tables; why they cannot be had.
+    problem : DesignProblem subclass, optional
         A problem that is not registered.
-    beside : Path, optional
+    folder : Path, optional
         A folder in which a size range may stand.
     """
     for word in options.how.formats or ("",):
         if word not in FORMATS:
             raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
     make = installed(report_named("batch_files"), "report")
-    record, notes = _BatchReader(store, job, tables, own).record(options.row, beside)
-    files, told, lacking = make(BatchReportRequest(record, options.how))
-    return files, [*notes, *told], any(row.designs for row in record.rows), lacking
+    record, notes = _BatchReader(store, job, tables, problem).record(options.row, folder)
+    files, messages, lacking = make(BatchReportRequest(record, options.how))
+    return files, [*notes, *messages], any(row.designs for row in record.rows), lacking
 
 
 def _written(
-    store: Store, job: Job, source: Path, folder: Path, options: BatchOptions, tables: Any, own: Any
+    store: Store, job: Job, source: Path, folder: Path, options: BatchOptions, tables: Any, problem: Any
 ) -> WrittenReport:
     check_kind(folder, BATCH)
     there = job_written(folder)
     if there not in (None, job.id):
         raise InputError("output", str(folder), "another folder: this one holds another batch")
-    files, notes, found, lacking = batch_report_files(store, job, options, tables, own, source)
-    return write_report(folder, files, notes, found, lacking)
+    files, notes, has_designs, lacking = batch_report_files(store, job, options, tables, problem, source)
+    return write_report(folder, files, notes, has_designs, lacking)
 
 
-def _tables_of(job: Job, given: Any) -> Any:
-    """Return own tables of a batch, or why they cannot be had."""
-    stated = job.content.get("catalogs") if given is None else given
-    if stated == "memory":
+def _tables_of(job: Job, catalogs: Any) -> Any:
+    """User tables of a batch, or why they cannot be had."""
+    source = job.content.get("catalogs") if catalogs is None else catalogs
+    if source == "memory":
         return InputError("tables", job.source, "the BatchResult itself: its tables were in memory")
     try:
-        return as_catalogs(stated)
+        return as_catalogs(source)
     except InputError as error:
         return error
 
@@ -134,12 +134,12 @@ class _BatchReader:
 
     Parameters
     ----------
-    store, job, tables, own
+    store, job, tables, user_family
         As for :func:`batch_report_files`.
     """
 
-    def __init__(self, store: Store, job: Job, tables: Any, own: Any) -> None:
-        self.store, self.job, self.tables, self.own = store, job, tables, own
+    def __init__(self, store: Store, job: Job, tables: Any, user_family: Any) -> None:
+        self.store, self.job, self.tables, self.user_family = store, job, tables, user_family
         content = job.content
         self.headings = tuple(str(column["title"]) for column in content["columns"])
         positions = [int(column["position"]) for column in content["columns"]]
@@ -153,8 +153,8 @@ class _BatchReader:
             for key, layout in self.layouts.items()
         }
 
-    def record(self, named: str, beside: Path | None) -> tuple[BatchRecord, list[str]]:
-        """Return the batch with one row in full, and what else is to be told."""
+    def record(self, named: str, folder: Path | None) -> tuple[BatchRecord, list[str]]:
+        """Batch with one row in full, and notes."""
         rows = [self._row(answered) for answered in self.store.rows(self.job.id, canonical=False)]
         content = self.job.content
         record = BatchRecord(
@@ -167,13 +167,13 @@ class _BatchReader:
             settings=content["settings"],
             hashes={name: str(value) for name, value in content["hashes"].items()},
             versions=installed_versions(),
-            size_range=None if beside is None else _size_range(beside, {row.key for row in rows}),
+            size_range=None if folder is None else _size_range(folder, {row.key for row in rows}),
         )
         row = chosen_row(record, named)
         if row is None:
             return record, []
-        told = self._in_full(row)
-        return replace(record, chosen=told), [f"row of line {row.line}: {told.note}"] if told.note else []
+        in_full = self._in_full(row)
+        return replace(record, chosen=in_full), [f"row of line {row.line}: {in_full.note}"] if in_full.note else []
 
     def _row(self, answered: Answered) -> BatchRow:
         content = answered.content or {}
@@ -188,7 +188,7 @@ class _BatchReader:
             status=status_of(answered),
             designs=len(designs),
             objectives=self._objectives(layout, designs[0]) if layout else (None,) * len(self.objectives),
-            best=best_design(self.layouts[layout], designs[0], SAID[1:]) if layout else "",
+            best=best_design(self.layouts[layout], designs[0], BRIEF[1:]) if layout else "",
             reason=reason,
             causes=_causes(answered, reason),
             remarks=answered.remarks,
@@ -197,8 +197,8 @@ class _BatchReader:
 
     def _objectives(self, layout: str, cells: Sequence[str]) -> tuple[float | None, ...]:
         places = self.places[layout]
-        found = [cells[places[name]] if name in places else "" for name in self.objectives]
-        return tuple(float(cell) if cell else None for cell in found)
+        texts = [cells[places[name]] if name in places else "" for name in self.objectives]
+        return tuple(float(cell) if cell else None for cell in texts)
 
     # -- one row ---------------------------------------------------------------------------------------------------
 
@@ -226,11 +226,11 @@ class _BatchReader:
         """
         content: Mapping[str, Any] = answered.content or {}
         settings = self.job.content["settings"]
-        asked = {key: value for key, value in question.items() if key not in (LIKE, GROUP)}
-        own = self.own is not None and self.own.name == question["family"]
-        problem = load(self.own if own else question["family"], **question["options"])
+        request_content = {key: value for key, value in question.items() if key not in (LIKE, GROUP)}
+        is_user_family = self.user_family is not None and self.user_family.name == question["family"]
+        problem = load(self.user_family if is_user_family else question["family"], **question["options"])
         request = Request.from_json(
-            {**asked, "objectives": settings["objectives"], "grid": settings["grid"]},
+            {**request_content, "objectives": settings["objectives"], "grid": settings["grid"]},
             problem=problem,
             catalogs=as_catalogs(self.tables),
         )
@@ -313,8 +313,8 @@ def chosen_row(record: BatchRecord, named: str) -> BatchRow | None:
     if len(fitting) == 1:
         return fitting[0]
     if fitting:
-        lines = ", ".join(str(row.line) for row in fitting[:TOLD_LINES])
-        more = ", ..." if len(fitting) > TOLD_LINES else ""
+        lines = ", ".join(str(row.line) for row in fitting[:LISTED_LINES])
+        more = ", ..." if len(fitting) > LISTED_LINES else ""
         raise InputError("row", named, f"a line of the table: this fits lines {lines}{more}", ("row",))
     names = " or ".join(record.headings[k] for k in record.carried[:2])
     lines = f"a line from {record.rows[0].line} to {record.rows[-1].line}" if record.rows else "a batch with rows"
@@ -336,10 +336,10 @@ def _size_range(folder: Path, keys: set[str]) -> dict[str, Any] | None:
         if not path.is_file() or not (path.parent / VARIANTS).is_file():
             continue
         served = {row.get("row", "") for row in _table(path.parent / ASSIGNED)}
-        told = read_json(path, "size range", "a size_range.json as clutchsynth has written it")
-        if isinstance(told, Mapping) and served and served <= keys:
+        content = read_json(path, "size range", "a size_range.json as clutchsynth has written it")
+        if isinstance(content, Mapping) and served and served <= keys:
             rows = _table(path.parent / VARIANTS)
-            return {"told": dict(told), "columns": list(rows[0]) if rows else [], "rows": rows}
+            return {"told": dict(content), "columns": list(rows[0]) if rows else [], "rows": rows}
     return None
 
 

@@ -15,15 +15,15 @@ CONDITION = re.compile(r"[<>=!'\"]|\b(?:in|and|or|not)\b")
 
 
 def _entries(text: str, where: str, example: str) -> list[tuple[str, str, str]]:
-    found = []
+    entries = []
     for entry in BETWEEN.split(text):
         if not entry.strip():
             continue
         match = ENTRY.fullmatch(entry)
         if match is None:
             raise InputError(where, entry.strip(), f"entries with semicolons between them, for example '{example}'")
-        found.append((match[1], match[2], match[3]))
-    return found
+        entries.append((match[1], match[2], match[3]))
+    return entries
 
 
 def _single(text: str, where: str, example: str) -> dict[str, str]:

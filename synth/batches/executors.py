@@ -91,9 +91,9 @@ class Processes(Executor):
             self._all[self._all.index(worker)] = fresh
             return fresh
 
-    def found(self) -> int:
+    def with_designs(self) -> int:
         """Number of rows with designs by now, of the groups that are under way."""
-        return sum(int(worker.found.value) for worker in self._all)
+        return sum(int(worker.with_designs.value) for worker in self._all)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the processes at once, whatever they do."""
@@ -110,8 +110,8 @@ class _Worker:
 
     def __init__(self, context: Any) -> None:
         far, self._near = context.Pipe(duplex=False)
-        self.found = context.RawValue("q", 0)
-        self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far, self.found))
+        self.with_designs = context.RawValue("q", 0)
+        self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far, self.with_designs))
         self._far = far
 
     def end(self) -> None:
@@ -120,12 +120,12 @@ class _Worker:
         self.pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _begin(lifeline: Connection, found: Any) -> None:
+def _begin(lifeline: Connection, shared_count: Any) -> None:
     """Prepare a worker process: one thread, deaf to Ctrl-C and SIGTERM, and gone when its master is.
 
-    ``found``: where it shows how many rows of a group have designs.
+    ``shared_count``: memory for the number of rows of its group that have designs.
     """
-    share(found)
+    share(shared_count)
     begin_to_serve()
 
     def watch() -> None:
@@ -169,16 +169,16 @@ class Cluster(Executor):
         try:
             import distributed  # an extra: only for those who outgrow one machine
         except ImportError:
-            wanted = "the extra for clusters: pip install 'clutchsynth[cluster]'"
-            raise InputError("--scheduler", address, wanted) from None
+            expected = "the extra for clusters: pip install 'clutchsynth[cluster]'"
+            raise InputError("--scheduler", address, expected) from None
         self._address, self._say, self._settings = address, say, settings
         self._client_type = _quiet_client(distributed.Client)
         self._is_idle = False  # nobody works there, and that was said
         try:
             self._connect()
         except Exception as error:  # whatever comes of an address of another kind, or of another server there
-            wanted = f"the address of a Dask scheduler that answers, such as tcp://host:8786 ({type(error).__name__})"
-            raise InputError("--scheduler", address, wanted) from error
+            expected = f"the address of a Dask scheduler that answers, such as tcp://host:8786 ({type(error).__name__})"
+            raise InputError("--scheduler", address, expected) from error
 
     def _connect(self) -> None:
         import dask

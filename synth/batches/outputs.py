@@ -50,8 +50,8 @@ ROW_COLUMNS = (
     "remarks",
 )
 MISSED = re.compile(r"(?:: |; )([^;:]+?) is [^;]+? where ")  # in the explanation of a row, behind "misses"
-TOLD = 3  # limits of a row that are named
-SAID = ("objectives", "searched", "choices", "parts")  # of a design in words
+NAMED_LIMITS = 3  # limits of a row that are named
+BRIEF = ("objectives", "searched", "choices", "parts")  # of a design in words
 SHORT = 12  # digits of a key that tell rows apart
 
 
@@ -84,8 +84,8 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
     with claimed(folder, job):
         check_kind(folder, BATCH)
         settle(folder)
-        beside = folder / f"{STOPPED}_{job[:8]}"
-        target = folder if record.state == DONE or _job_in(folder) in (None, job) else beside
+        stopped_folder = folder / f"{STOPPED}_{job[:8]}"
+        target = folder if record.state == DONE or _job_in(folder) in (None, job) else stopped_folder
         with replaced(target) as new:
             with _styled(new, "designs.csv", csv) as file:
                 _write_designs(file, store, job, content)
@@ -104,8 +104,8 @@ def write_outputs(store: Store, job: str, folder: Path, csv: CsvStyle = ENGLISH)
             new.write("batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
             if holds(target, BATCH):
                 new.drop(BATCH_REPORTS)
-            if target != beside:
-                new.drop(f"{beside.name}/{name}" for name in BATCH.owned)
+            if target != stopped_folder:
+                new.drop(f"{stopped_folder.name}/{name}" for name in BATCH.owned)
     return counts, target
 
 
@@ -145,13 +145,13 @@ def _write_designs(file: TextIO, store: Store, job: str, content: Mapping[str, A
     for row in store.rows(job, canonical=True):
         if row.layout is None or row.content is None:
             continue
-        own = [(row.key or "")[:SHORT], row.family, *(row.cells[k] for k in carried)]
+        identity = [(row.key or "")[:SHORT], row.family, *(row.cells[k] for k in carried)]
         place = places[row.layout]
         for cells in row.content["rows"]:
             line = [""] * len(columns)
             for k, cell in zip(place, cells[len(RANKING) :], strict=True):
                 line[k] = cell
-            write([*own, *cells[: len(RANKING)], *line])
+            write([*identity, *cells[: len(RANKING)], *line])
 
 
 def _common_columns(layouts: Mapping[str, Mapping[str, Any]]) -> tuple[list[list[str]], dict[str, list[int]]]:
@@ -204,7 +204,7 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
         counts[status] = counts.get(status, 0) + 1
         answer = row.content or {}
         designs = answer.get("rows", [])
-        own = [
+        leading = [
             row.line,
             (row.key or "")[:SHORT],
             row.family,
@@ -217,7 +217,7 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
             explanation_of(row),
             row.remarks,
         ]
-        write([*own, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
+        write([*leading, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
     return dict(sorted(counts.items()))
 
 
@@ -285,12 +285,12 @@ def _reason(row: Answered) -> str:
     if row.faults:
         more = f" and {len(row.faults) - 1} more" if len(row.faults) > 1 else ""
         return str(row.faults[0]["sentence"]).partition(", ")[2].partition("; expected")[0] + more
-    told = explanation_of(row)
-    names = missed_limits(told)
+    explanation = explanation_of(row)
+    names = missed_limits(explanation)
     if not names:
-        return told
-    more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
-    return f"nearest design misses {', '.join(map(words, names[:TOLD]))}{more}"
+        return explanation
+    more = f" and {len(names) - NAMED_LIMITS} more" if len(names) > NAMED_LIMITS else ""
+    return f"nearest design misses {', '.join(map(words, names[:NAMED_LIMITS]))}{more}"
 
 
 def _grouped(layout: Mapping[str, Any], cells: Sequence[str]) -> dict[str, dict[str, str]]:
@@ -299,13 +299,13 @@ def _grouped(layout: Mapping[str, Any], cells: Sequence[str]) -> dict[str, dict[
     return {group: {name: next(values) for name in layout[group]} for group in GROUPS}
 
 
-def best_design(layout: Mapping[str, Any], cells: Sequence[str], said: Sequence[str] = SAID) -> str:
+def best_design(layout: Mapping[str, Any], cells: Sequence[str], groups: Sequence[str] = BRIEF) -> str:
     """Return a design in words: objectives, sizes, choices and parts, or some of them."""
-    found = _grouped(layout, cells)
-    return ", ".join(_said(name, cell) for group in said for name, cell in found[group].items() if cell)
+    by_group = _grouped(layout, cells)
+    return ", ".join(_cell_text(name, cell) for group in groups for name, cell in by_group[group].items() if cell)
 
 
-def _said(heading: str, cell: str) -> str:
+def _cell_text(heading: str, cell: str) -> str:
     name, _, unit = heading.partition(" [")
     unit = unit.removesuffix("]")
     if heading == name:

@@ -94,14 +94,14 @@ class RowChecker:
     @classmethod
     def of(cls, questioner: Questioner, job: str, catalogs: Any) -> RowChecker:
         """Checker of the rows of a questioner; ``catalogs`` as they were stated."""
-        own, table = questioner.own, questioner.table
+        user_family, table = questioner.user_family, questioner.table
         return cls(
             job,
             table.name,
             table.header(),
             frozenset(questioner.named),
-            questioner.default if own is None else own,
-            questioner.own_options if own is not None else {},
+            questioner.default if user_family is None else user_family,
+            questioner.user_options if user_family is not None else {},
             questioner.mapping,
             questioner.settings,
             questioner.common,
@@ -158,22 +158,22 @@ def checked_rows(
         under_way: deque[tuple[Lines, Future[list[ReadRow]]]] = deque()
 
         def begin() -> None:
-            some = next(chunks, None)
-            if some is not None:
-                under_way.append((some, executor.submit(check_lines, checker, some)))
+            chunk = next(chunks, None)
+            if chunk is not None:
+                under_way.append((chunk, executor.submit(check_lines, checker, chunk)))
 
         for _ in range(executor.slots):
             begin()
         while under_way:
-            some, future = under_way.popleft()
+            chunk, future = under_way.popleft()
             try:
                 rows = future.result()
             except BrokenProcessPool:  # something has ended the process: its lines are checked here
-                rows = [questioner.row(line, cells) for line, cells in some]
+                rows = [questioner.row(line, cells) for line, cells in chunk]
             begin()
             yield from rows
 
 
 def _chunks(lines: Iterator[tuple[int, tuple[str, ...]]], size: int) -> Iterator[Lines]:
-    while some := list(islice(lines, size)):
-        yield some
+    while chunk := list(islice(lines, size)):
+        yield chunk

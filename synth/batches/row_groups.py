@@ -34,8 +34,8 @@ class GroupMember:
     rows: int
     number: int
 
-    def asked(self, question: Mapping[str, Any]) -> dict[str, Any]:
-        """Question of a member, and the group that it belongs to."""
+    def with_group(self, question: Mapping[str, Any]) -> dict[str, Any]:
+        """Question of a member with its group."""
         return {**question, GROUP: {"name": self.name, "rows": self.rows}}
 
     def position(self) -> bytes:
@@ -73,11 +73,11 @@ class RowGroups:
         """Return the place of a question in its group; None where it is answered alone."""
         if not self._formed:
             self._form()
-        found = self._database.execute(
+        row = self._database.execute(
             "SELECT name, rows, number FROM shown WHERE alike = ? AND key = ? AND name IS NOT NULL",
             (bytes.fromhex(alike), bytes.fromhex(key)),
         ).fetchone()
-        return None if found is None else GroupMember(*found)
+        return None if row is None else GroupMember(*row)
 
     def _form(self) -> None:
         self._formed = True
@@ -85,21 +85,21 @@ class RowGroups:
         several = "SELECT alike, count(*) FROM shown GROUP BY alike HAVING count(*) >= ?"
         alike = self._database.execute(several, (least,)).fetchall()
         most = self._settings.size(sum(count for _, count in alike))
-        for own, _ in alike:
-            for name, keys in self._groups(own, most):
+        for common, _ in alike:
+            for name, keys in self._groups(common, most):
                 self._database.executemany(
                     "UPDATE shown SET name = ?, rows = ?, number = ? WHERE alike = ? AND key = ?",
-                    [(name, len(keys), number, own, key) for number, key in enumerate(keys)],
+                    [(name, len(keys), number, common, key) for number, key in enumerate(keys)],
                 )
 
     def _groups(self, alike: bytes, most: int) -> Iterator[tuple[str, list[bytes]]]:
         """Name and keys of each group of questions that are alike."""
-        with closing(self._database.execute("SELECT key, place FROM shown WHERE alike = ?", (alike,))) as found:
-            points = Points.written(found)
-        for some in points.portions(max(self._settings.portion, most)):
-            for rows in neighbourhoods(some["place"], most):
+        with closing(self._database.execute("SELECT key, place FROM shown WHERE alike = ?", (alike,))) as records:
+            points = Points.written(records)
+        for portion in points.portions(max(self._settings.portion, most)):
+            for rows in neighbourhoods(portion["place"], most):
                 if len(rows) > 1:
-                    keys = [some["key"][k].tobytes() for k in rows.tolist()]
+                    keys = [portion["key"][k].tobytes() for k in rows.tolist()]
                     yield digest([alike.hex(), [key.hex() for key in keys]]), keys
 
 
@@ -117,10 +117,10 @@ class Points:
         self._count = 0
 
     @classmethod
-    def written(cls, found: Iterable[tuple[bytes, bytes]]) -> Points:
+    def written(cls, pairs: Iterable[tuple[bytes, bytes]]) -> Points:
         """Points of keys and places."""
         points: Points | None = None
-        for key, place in found:
+        for key, place in pairs:
             points = points or cls(len(place) // 8)
             points._file.write(key + place)
             points._count += 1
@@ -135,16 +135,16 @@ class Points:
         waiting = [self]
         try:
             while waiting:
-                some = waiting.pop()
-                with some._file:
-                    halving = None if some._count <= most else some._halving(most)
+                cell = waiting.pop()
+                with cell._file:
+                    halving = None if cell._count <= most else cell._halving(most)
                     if halving is None:
-                        yield from some._read(some._count)
+                        yield from cell._read(cell._count)
                     else:
-                        waiting += some._halved(*halving, most)
+                        waiting += cell._halved(*halving, most)
         finally:
-            for some in waiting:
-                some._file.close()
+            for cell in waiting:
+                cell._file.close()
 
     def _read(self, count: int) -> Iterator[np.ndarray]:
         self._file.seek(0)
@@ -152,17 +152,17 @@ class Points:
             yield np.frombuffer(raw, dtype=self._kind)
 
     def _halving(self, portion: int) -> tuple[int, int] | None:
-        ends = [(c.min(axis=0), c.max(axis=0)) for c in (_cells(some["place"]) for some in self._read(portion))]
+        ends = [(c.min(axis=0), c.max(axis=0)) for c in (_cells(block["place"]) for block in self._read(portion))]
         return _halving(np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0))
 
     def _halved(self, coordinate: int, bit: int, portion: int) -> tuple[Points, Points]:
         (coordinates,) = self._kind["place"].shape
         halves = high, low = Points(coordinates), Points(coordinates)
-        for some in self._read(portion):
-            above = _is_high(_cells(some["place"])[:, coordinate], bit)
-            for half, own in ((high, some[above]), (low, some[~above])):
-                half._file.write(own.tobytes())
-                half._count += len(own)
+        for block in self._read(portion):
+            above = _is_high(_cells(block["place"])[:, coordinate], bit)
+            for half, half_points in ((high, block[above]), (low, block[~above])):
+                half._file.write(half_points.tobytes())
+                half._count += len(half_points)
         return halves
 
 
@@ -191,13 +191,13 @@ def neighbourhoods(places: np.ndarray, most: int) -> Iterator[np.ndarray]:
         if len(rows) <= most:
             yield _in_order(places, rows)
             continue
-        own = cells[rows]
-        halving = _halving(own.min(axis=0), own.max(axis=0))
+        members = cells[rows]
+        halving = _halving(members.min(axis=0), members.max(axis=0))
         if halving is None:  # numbers that are the same but for how they are written
             yield from np.array_split(rows, -(-len(rows) // most))
             continue
         coordinate, bit = halving
-        high = _is_high(own[:, coordinate], bit)
+        high = _is_high(members[:, coordinate], bit)
         waiting += [rows[high], rows[~high]]
 
 
@@ -223,12 +223,12 @@ def _in_order(places: np.ndarray, rows: np.ndarray) -> np.ndarray:
     order: list[int] = []
     waiting = [rows]
     while waiting:
-        some = waiting.pop()
-        own = places[some]
-        widest = int(np.ptp(own, axis=0).argmax())
-        some = some[np.argsort(own[:, widest], kind="stable")]
-        if len(some) <= 2:
-            order += some.tolist()
+        group = waiting.pop()
+        positions = places[group]
+        widest = int(np.ptp(positions, axis=0).argmax())
+        group = group[np.argsort(positions[:, widest], kind="stable")]
+        if len(group) <= 2:
+            order += group.tolist()
         else:
-            waiting += [some[len(some) // 2 :], some[: len(some) // 2]]
+            waiting += [group[len(group) // 2 :], group[: len(group) // 2]]
     return np.array(order, dtype=np.int64)

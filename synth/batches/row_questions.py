@@ -142,15 +142,15 @@ def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe
     present = {mapping.get(title, title).partition("[")[0].strip() for title in titles}
     columns: list[RowColumn] = []
     for position, title in enumerate(titles):
-        stated = mapping.get(title, title)
-        carried = stated == CARRY
+        mapped = mapping.get(title, title)
+        carried = mapped == CARRY
         try:
-            name, unit = split_header(title if carried else stated)
+            name, unit = split_header(title if carried else mapped)
             if title in mapping and unit is None and not carried:
                 unit = split_header(title)[1]
         except InputError as error:
             if title in mapping and not carried:
-                raise InputError(f"mapping: {title}", stated, error.expected) from None
+                raise InputError(f"mapping: {title}", mapped, error.expected) from None
             name, unit, carried = title, None, True  # no name of ours has brackets in its middle
         if not carried:
             meant = None if universe.knows(name) else universe.suggestion(name, unit, present)
@@ -202,12 +202,12 @@ class Questioner:
         self.common, self.catalogs = common, catalogs
         loaded = None if problem is None else load(problem)
         self.default = None if loaded is None else loaded.name
-        self.own_options = {} if loaded is None else dict(loaded.options)
+        self.user_options = {} if loaded is None else dict(loaded.options)
         # A problem of the user's own is known by its class; what options it has, its rows have.
-        self.own = type(loaded) if loaded is not None and not isinstance(problem, str) else None
-        header = _header(table, mapping, self.own)
+        self.user_family = type(loaded) if loaded is not None and not isinstance(problem, str) else None
+        header = _header(table, mapping, self.user_family)
         self.named = self._families_named(header, mapping) if named is None else named
-        self.universe = Universe(self.named, self.own)
+        self.universe = Universe(self.named, self.user_family)
         self.columns = read_columns(table, mapping, self.universe)
         self.structural = {c.name: c for c in self.columns if c.name in STRUCTURE and not c.carried}
         if self.default is None and FAMILY not in self.structural:
@@ -226,11 +226,11 @@ class Questioner:
 
     def _families_named(self, header: tuple[str, ...], mapping: Mapping[str, str]) -> set[str]:
         """Return the families that rows name, and the one for all others."""
-        found = {self.default} if self.default is not None else set()
+        families = {self.default} if self.default is not None else set()
         places = [k for k, title in enumerate(header) if mapping.get(title, title).strip() == FAMILY]
         if places:
-            found |= {cells[places[0]].strip() for _, cells in self.table.lines() if len(cells) > places[0]}
-        return {name for name in found if name}
+            families |= {cells[places[0]].strip() for _, cells in self.table.lines() if len(cells) > places[0]}
+        return {name for name in families if name}
 
     # -- rows ----------------------------------------------------------------------------------
 
@@ -284,7 +284,7 @@ class Questioner:
         faults: list[Fault] = []
         requirements: dict[str, str] = {}
         numbers: dict[str, float] = {}
-        given: dict[str, dict[str, Any]] = {
+        by_block: dict[str, dict[str, Any]] = {
             name: {str(k): v for k, v in self.common.get(name, {}).items()} for name in (LIMITS, FIX, PARTS)
         }
         sources: dict[str, RowColumn] = {}
@@ -293,7 +293,7 @@ class Questioner:
             if text:
                 column = self.structural[name]
                 try:
-                    given[name] |= READERS[name](text, f"column {column.title}")
+                    by_block[name] |= READERS[name](text, f"column {column.title}")
                 except InputError as error:
                     faults.append(Fault.of(line, column.title, error))
         for column, word in variant.columns:
@@ -312,11 +312,11 @@ class Questioner:
                 continue
             if word.kind == "requirement":
                 requirements[word.name], numbers[word.name] = value, number
-            elif word.name in given[FIX]:
+            elif word.name in by_block[FIX]:
                 right = f"{word.name} in one place: it stands in column {FIX} too"
                 faults.append(Fault(line, column.title, text, right))
             else:
-                given[FIX][word.name] = value
+                by_block[FIX][word.name] = value
         if faults:
             raise _Wrong(faults)
         unused = [c.title for c in variant.unused if cells[c.position].strip()] + ignored
@@ -324,7 +324,7 @@ class Questioner:
             "family": family,
             "options": dict(sorted(options.items())),
             "requirements": dict(sorted(requirements.items())),
-            **{name: dict(sorted(entries.items())) for name, entries in given.items()},
+            **{name: dict(sorted(entries.items())) for name, entries in by_block.items()},
         }
         return question, [numbers[name] for name in question["requirements"]], unused
 
@@ -333,58 +333,58 @@ class Questioner:
         """Return a cell with its unit, and its number in SI (0 for words); refuse what is no number of the kind."""
         if word.unit is None or (word.kind == "count" and is_list(text)):
             return text, 0.0
-        stated = text
+        quantity_text = text
         if column.unit not in (None, "-"):
             try:
-                stated = f"{check_number(text, column.title)} {column.unit}"
+                quantity_text = f"{check_number(text, column.title)} {column.unit}"
             except InputError:
                 if not LETTER.search(text):
                     raise
-        return stated, parse_quantity(stated, word.unit, column.title)
+        return quantity_text, parse_quantity(quantity_text, word.unit, column.title)
 
     def problems(self) -> list[type[DesignProblem]]:
         """Return the classes of the families that rows name, those registered and the user's own."""
         known = [type(load(name)) for name in sorted(self.named) if name in families()]
-        return known if self.own is None else [*known, self.own]
+        return known if self.user_family is None else [*known, self.user_family]
 
     # -- families and options ------------------------------------------------------------------
 
     def _variant(self, line: int, cells: tuple[str, ...], family: str) -> tuple[_Variant, dict[str, str], list[str]]:
         text = self._cell(OPTIONS, cells)
-        stated: dict[str, str] = {}
+        chosen: dict[str, str] = {}
         places: dict[str, RowColumn] = {}
         if text:
             try:
-                stated = dict(READERS[OPTIONS](text, ""))  # type: ignore[arg-type]
+                chosen = dict(READERS[OPTIONS](text, ""))  # type: ignore[arg-type]
             except InputError as error:
                 raise _Wrong([Fault.of(line, self.structural[OPTIONS].title, error)]) from None
-            places = dict.fromkeys(stated, self.structural[OPTIONS])
+            places = dict.fromkeys(chosen, self.structural[OPTIONS])
         spellings = self.universe.options.get(family, {})
         for column in self.columns:
             name = spellings.get(column.name)
             if name is not None and not column.carried and cells[column.position].strip():
-                if name in stated:
+                if name in chosen:
                     right = f"option {name} in one place: it stands in {places[name].title} too"
                     raise _Wrong([Fault(line, column.title, cells[column.position].strip(), right)])
-                stated[name], places[name] = cells[column.position].strip(), column
+                chosen[name], places[name] = cells[column.position].strip(), column
         if family == self.default:
-            stated = {**self.own_options, **stated}
+            chosen = {**self.user_options, **chosen}
         ignored: list[str] = []
-        found = self._known_variant(family, stated)
-        while isinstance(found, UnknownOptionError) and found.path[-1] in places:
+        variant = self._known_variant(family, chosen)
+        while isinstance(variant, UnknownOptionError) and variant.path[-1] in places:
             # An option that another option takes away is not applied, where a column gives it.
-            column = places[str(found.path[-1])]
+            column = places[str(variant.path[-1])]
             if column.name == OPTIONS:
                 break
-            del stated[str(found.path[-1])]
+            del chosen[str(variant.path[-1])]
             ignored.append(column.title)
-            found = self._known_variant(family, stated)
-        if isinstance(found, InputError):
-            named = str(found.path[-1]) if found.path else ""
+            variant = self._known_variant(family, chosen)
+        if isinstance(variant, InputError):
+            named = str(variant.path[-1]) if variant.path else ""
             column_of = places.get(named) or self.structural.get(OPTIONS)
             title = column_of.title if column_of is not None else ""
-            raise _Wrong([Fault.of(line, title, found)])
-        return found, stated, ignored
+            raise _Wrong([Fault.of(line, title, variant)])
+        return variant, chosen, ignored
 
     def _known_variant(self, family: str, options: Mapping[str, str]) -> _Variant | InputError:
         label = encoded([family, options])
@@ -417,7 +417,7 @@ class Questioner:
 
     def problem(self, family: str, options: Mapping[str, str]) -> DesignProblem:
         """Return the problem of a family with the options of a row."""
-        return load(self.own if self.own is not None and family == self.default else family, **options)
+        return load(self.user_family if self.user_family is not None and family == self.default else family, **options)
 
     def _check_column(self, column: RowColumn, word: Word) -> None:
         where = f"{self.table.name}, line 1, column {column.title}"
@@ -440,16 +440,16 @@ class Questioner:
         titles = {word.name: column.title for column, word in variant.columns}
         try:
             catalogs = catalogs_for(problem, self.catalogs)
-            given = frozenset(question["requirements"])
+            requirement_names = frozenset(question["requirements"])
             key = digest(question)
             if key not in self._checked:
-                asked = {name: question[name] for name in (REQUIREMENTS, PARTS, LIMITS, FIX)}
-                asked |= {"objectives": self.settings["objectives"], "grid": self.settings["grid"]}
-                instance = Instance(Request(problem=problem, catalogs=catalogs, **asked))
+                fields = {name: question[name] for name in (REQUIREMENTS, PARTS, LIMITS, FIX)}
+                fields |= {"objectives": self.settings["objectives"], "grid": self.settings["grid"]}
+                instance = Instance(Request(problem=problem, catalogs=catalogs, **fields))
                 instance.ranges.grids()
-                if given not in variant.checked:
+                if requirement_names not in variant.checked:
                     chosen_objectives(instance.model, self.settings["objectives"])
-                    variant.checked.add(given)
+                    variant.checked.add(requirement_names)
                 if len(self._checked) >= REMEMBERED:
                     self._checked.clear()
                 self._checked.add(key)
@@ -472,7 +472,7 @@ class Questioner:
         return Fault(line, "", shown, error.expected)
 
 
-def _header(table: RowTable, mapping: Mapping[str, str], own: Any) -> tuple[str, ...]:
+def _header(table: RowTable, mapping: Mapping[str, str], user_family: Any) -> tuple[str, ...]:
     """Return the header of a table.
 
     Raises
@@ -485,7 +485,7 @@ def _header(table: RowTable, mapping: Mapping[str, str], own: Any) -> tuple[str,
         header = table.header()
     except InputError as error:
         fault = error
-    universe = Universe(set(), own)
+    universe = Universe(set(), user_family)
 
     def known(cells: Sequence[str]) -> int:
         names = (mapping.get(title.strip(), title).partition("[")[0].strip() for title in cells)

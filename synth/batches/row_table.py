@@ -86,10 +86,10 @@ class RowTable:
         if isinstance(self.source, Path):
             named = table_file(self.source)
             with open_bytes(named.path, "rows", ROWS) as content:
-                found = hashlib.file_digest(content, "sha256")
+                checksum = hashlib.file_digest(content, "sha256")
             if named.path != self.source:
-                found.update(self.source.name.removeprefix(named.path.name).encode())
-            return found.hexdigest()
+                checksum.update(self.source.name.removeprefix(named.path.name).encode())
+            return checksum.hexdigest()
         return hashlib.sha256(repr(self.source).encode("utf-8", "surrogatepass")).hexdigest()
 
     def _records(self) -> Iterator[tuple[int, tuple[str, ...]]]:
@@ -171,7 +171,7 @@ def text_of(value: Any) -> str:
     ('20', 'yes', 'mass: <= 20 kg; friction_pair: a, b')
     """
     if isinstance(value, Mapping):
-        return "; ".join(f"{name}: {part}" for name, some in value.items() for part in _several(name, some))
+        return "; ".join(f"{name}: {part}" for name, parts in value.items() for part in _several(name, parts))
     return cell_text(value)
 
 

@@ -17,7 +17,7 @@ from synth.batches.executors import Cluster, Inline, Processes, is_foreign, is_l
 from synth.batches.settings import BATCHES, RunnerSettings
 from synth.batches.signs import show
 from synth.batches.solve import OtherCodeError, is_group, solve_unit
-from synth.batches.store import NONE_ALONE, Account, Outcome, Store
+from synth.batches.store import NONE_UNGROUPED, Account, Outcome, Store
 from synth.batches.unit_results import sorted_out
 from synth.errors import InputError
 from synth.queue.job_queue import Claim
@@ -35,7 +35,7 @@ class Shares:
 
     settings: Mapping[str, Any]
     catalogs: Any
-    own: Any
+    user_family: Any
 
 
 class Runner:
@@ -68,13 +68,13 @@ class Runner:
         self.owner = new_owner()
         self.started = time.monotonic()
         self.first: Account | None = None
-        self.said = 0.0
+        self.last_report = 0.0
         self.pause = settings.pause
         self.cancelled = threading.Event()
         self.over = threading.Event()
         self.waiting: deque[Claim] = deque()
         self.under_way: dict[Future[Any], Claim] = {}
-        self.found = 0
+        self.with_designs = 0
 
     def run(self) -> str:
         """Work until nothing is left.
@@ -92,7 +92,7 @@ class Runner:
         except KeyboardInterrupt:
             if self.cancelled.is_set():
                 return "cancelled"
-            self.store.tell(self.job, "interrupted", self.owner)
+            self.store.add_event(self.job, "interrupted", self.owner)
             return "interrupted"
         finally:
             self.over.set()
@@ -103,7 +103,7 @@ class Runner:
 
     def _work(self) -> str:
         while True:
-            self._tell()
+            self._report_progress()
             if self.cancelled.is_set():
                 return "cancelled"
             if isinstance(self.executor, Cluster) and not self.executor.alive():
@@ -118,16 +118,16 @@ class Runner:
                 for future in done:
                     self._take(future, self.under_way.pop(future))
             elif not self.waiting and not self._others_work():
-                self._tell(always=True)
+                self._report_progress(always=True)
                 return ""
 
     def _fill(self) -> None:
         """Keep all slots busy."""
         free = self.executor.slots - len(self.under_way)
-        wanted = free - len(self.waiting)
-        if wanted > 0:
+        missing = free - len(self.waiting)
+        if missing > 0:
             # Some more than there are slots for: asking the database costs more than what it gives.
-            ahead = wanted + self.executor.slots
+            ahead = missing + self.executor.slots
             self.waiting.extend(self._patiently(lambda: self.store.claim(self.job, self.owner, ahead)))
         while free > 0 and self.waiting:
             claim = self.waiting.popleft()
@@ -136,7 +136,7 @@ class Runner:
                 "questions": claim.questions,
                 "settings": dict(self.shares.settings),
                 "catalogs": self.shares.catalogs,
-                "own": self.shares.own,
+                "own": self.shares.user_family,
                 "code": computing_digest(),
                 "tell": self._hear if isinstance(self.executor, Inline) else show,
             }
@@ -171,18 +171,18 @@ class Runner:
         claim: Claim,
         outcomes: Mapping[str, Outcome],
         errors: Mapping[str, str],
-        alone: Mapping[str, str] = NONE_ALONE,
+        ungrouped: Mapping[str, str] = NONE_UNGROUPED,
     ) -> None:
         most = self.settings.attempts
-        self._patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, most, alone))
+        self._patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, most, ungrouped))
 
     def _others_work(self) -> bool:
         """True if units are left that other processes have; wait a little for them."""
-        left = sum(self._patiently(lambda: self.store.open_units(self.job)))
-        if left:
+        open_units = sum(self._patiently(lambda: self.store.open_units(self.job)))
+        if open_units:
             self.store.release_dead(self.job)
             self.cancelled.wait(self.settings.tick)
-        return left > 0
+        return open_units > 0
 
     def _patiently(self, call: Callable[[], T]) -> T:
         """Call the database, again and again while it does not answer, for some time."""
@@ -213,25 +213,25 @@ class Runner:
 
     def _hear(self, state: Mapping[str, Any]) -> None:
         """Take note of how far the group is that this process searches."""
-        self.found = int(state["incumbents"])
+        self.with_designs = int(state["incumbents"])
         try:
-            self._tell()
+            self._report_progress()
         except (OperationalError, OSError, InputError):
             return  # no matter of the search: whatever comes of it is written patiently
 
-    def _tell(self, always: bool = False) -> None:
+    def _report_progress(self, always: bool = False) -> None:
         """Report how far the job is, now and then."""
-        if self.progress is None or (not always and time.monotonic() - self.said < self.pause):
+        if self.progress is None or (not always and time.monotonic() - self.last_report < self.pause):
             return
         begin = time.monotonic()
         account = self.store.account(self.job)
-        self.said = time.monotonic()
+        self.last_report = time.monotonic()
         self.pause = max(
-            self.settings.pause, (self.said - begin) / self.settings.report_share
+            self.settings.pause, (self.last_report - begin) / self.settings.report_share
         )  # counting must not cost what it counts
         if self.first is None:
             self.first = account
-        elapsed, fresh = self.said - self.started, account.done - self.first.done
+        elapsed, fresh = self.last_report - self.started, account.done - self.first.done
         rate = fresh / elapsed if elapsed > 0 else 0.0
         self.progress(
             {
@@ -241,7 +241,7 @@ class Runner:
                 "infeasible": account.status.get("infeasible", 0),
                 "bad": account.bad,
                 "rate": rate,
-                "found": self.executor.found() if isinstance(self.executor, Processes) else self.found,
+                "found": self.executor.with_designs() if isinstance(self.executor, Processes) else self.with_designs,
                 "left": (account.rows - account.done) / rate if rate > 0 else None,
             }
         )

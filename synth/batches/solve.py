@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 LIKE = "like"  # where a question names the one whose experience helps
 GROUP = "group"  # where it names those that it is answered together with
-ALONE = "alone"  # in place of an answer: why the question must be asked alone; empty where nothing was proven of it
+UNGROUPED = "ungrouped"  # in place of an answer: why it needs a search by itself; empty where nothing was proven
 LONGEST_ERROR = 2000
 
 
@@ -42,14 +42,14 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     ----------
     work : mapping
         ``job``, ``questions`` by key, ``settings`` of the search, ``catalogs``, ``own`` (the class of a problem that is
-        not registered, or None) and ``code``, the hash of what computes where it is asked; ``tell``, where progress is
-        wanted.
+        not registered, or None) and ``code``, the hash of what computes where it is asked; ``tell``, for
+        progress.
 
     Returns
     -------
     dict
-        Per key what :func:`answer` returns, or ``{"error": text}`` where the search failed, or ``{ALONE: text}`` where
-        the questions are a group that left this one to be asked alone.
+        Per key what :func:`answer` returns, or ``{"error": text}`` where the search failed, or ``{UNGROUPED: text}``
+        where a group has left this question to be searched by itself.
 
     Raises
     ------
@@ -65,13 +65,13 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     shared = Shared(work["job"], work["catalogs"], work["own"])
     if is_group(work["questions"]):
         return answered_together(work["questions"], work["settings"], shared, work.get("tell"))
-    found: dict[str, dict[str, Any]] = {}
+    answers: dict[str, dict[str, Any]] = {}
     for key, question in work["questions"].items():
         try:
-            found[key] = answer(question, work["settings"], shared)
+            answers[key] = answer(question, work["settings"], shared)
         except (Exception, SystemExit) as error:
-            found[key] = {"error": told_of(error)}
-    return found
+            answers[key] = {"error": error_text(error)}
+    return answers
 
 
 def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
@@ -80,7 +80,7 @@ def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
     return bool(groups) and groups[0] is not None and groups.count(groups[0]) == len(groups) == groups[0]["rows"]
 
 
-def told_of(error: BaseException) -> str:
+def error_text(error: BaseException) -> str:
     """Return an error in words, with the place where it came up."""
     last = traceback.extract_tb(error.__traceback__)[-1:]
     place = f" ({last[0].filename.rsplit('/', 1)[-1]}, line {last[0].lineno})" if last else ""
@@ -88,12 +88,12 @@ def told_of(error: BaseException) -> str:
 
 
 def answered_together(
-    questions: Mapping[str, Mapping[str, Any]], settings: Mapping[str, Any], shared: Shared, tell: Progress | None
+    questions: Mapping[str, Mapping[str, Any]], settings: Mapping[str, Any], shared: Shared, progress: Progress | None
 ) -> dict[str, dict[str, Any]]:
     """Search the designs for the questions of a group at once.
 
-    What cannot be posed, what is not like the others after all, and what is not proven has to be asked alone: there it
-    is refused, fails, or is searched for longer, in words of its own.
+    A question that is refused, differs from the others or is not proven is left to a search by itself: there it
+    is refused, fails, or takes longer, with its own message.
 
     Parameters
     ----------
@@ -101,36 +101,36 @@ def answered_together(
         By key, in the order of the group.
     settings, shared
         As for :func:`answer`. The time limit of each question counts for all of them together.
-    tell : callable, optional
-        Told how far the search is.
+    progress : callable, optional
+        Called with the progress of the search.
 
     Returns
     -------
     dict
-        Per key what :func:`answer` returns, or ``{ALONE: text}``.
+        Per key what :func:`answer` returns, or ``{UNGROUPED: text}``.
     """
     from synth.search.joint.joint_groups import groups_of
 
-    found: dict[str, dict[str, Any]] = {key: {ALONE: ""} for key in questions}
-    posed: dict[str, Question] = {}
+    answers: dict[str, dict[str, Any]] = {key: {UNGROUPED: ""} for key in questions}
+    checked: dict[str, Question] = {}
     for key, question in questions.items():
         try:
-            posed[key] = _posed(question, settings, shared)
+            checked[key] = _checked_question(question, settings, shared)
         except (Exception, SystemExit) as error:
-            found[key] = {ALONE: "" if isinstance(error, InputError) else told_of(error)}
-    keys = list(posed)
-    for group in groups_of(list(posed.values())):
-        some = {keys[k]: posed[keys[k]] for k in group}
+            answers[key] = {UNGROUPED: "" if isinstance(error, InputError) else error_text(error)}
+    keys = list(checked)
+    for group in groups_of(list(checked.values())):
+        group_questions = {keys[k]: checked[keys[k]] for k in group}
         try:
-            found |= _settled(some, tell)
+            answers |= _settled(group_questions, progress)
         except (Exception, SystemExit) as error:
-            found |= {key: {ALONE: told_of(error)} for key in some}
-    if tell is not None:
-        tell({"incumbents": 0})  # no group is under way any more
-    return found
+            answers |= {key: {UNGROUPED: error_text(error)} for key in group_questions}
+    if progress is not None:
+        progress({"incumbents": 0})  # no group is under way any more
+    return answers
 
 
-def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[str, dict[str, Any]]:
+def _settled(questions: Mapping[str, Question], progress: Progress | None) -> dict[str, dict[str, Any]]:
     """Search the designs for questions that are alike; what is not settled is left out, all of it if time is over."""
     from synth.search.joint.joint_search import JointSearch
 
@@ -139,7 +139,7 @@ def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[s
     budget = None if limit is None else limit * len(each)
     try:
         with until(math.inf if budget is None else begin + budget):
-            fronts = JointSearch(each, tell, budget).settled()
+            fronts = JointSearch(each, progress, budget).settled()
     except Stopped as stop:
         _give_up_unwanted(stop.reason)
         return {}
@@ -172,8 +172,8 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     if LIKE in question:
         known, branching = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
     try:
-        posed = _posed(question, settings, shared)
-        front = posed.answer(known=known, branching=branching)
+        checked = _checked_question(question, settings, shared)
+        front = checked.answer(known=known, branching=branching)
     except InputError as refusal:
         # The rows were checked; what only the search can see is still said in its words.
         seconds = time.monotonic() - begin
@@ -182,7 +182,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     return record(front, time.monotonic() - begin)
 
 
-def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
+def _checked_question(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
     """Check a question as a whole."""
     from synth.question.request import Request
     from synth.question.settings import SearchSettings
@@ -198,7 +198,7 @@ def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], BranchingStatistics | None]:
     """Designs and branching knowledge of a similar question; nothing where that search fails."""
     try:
-        front, branching = _posed(json.loads(question), json.loads(settings), shared).experience()
+        front, branching = _checked_question(json.loads(question), json.loads(settings), shared).experience()
     except Exception:  # its own row tells why
         return (), None
     _give_up_unwanted(front.interrupted)
@@ -249,7 +249,7 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
     extra = {name: name.split(" ", 1)[0] for name in frame.limit_units if " " in name}
     searched = [n for n, kind in frame.kinds.items() if kind in ("variable", "count") and n not in frame.objectives]
     derived = [n for n, kind in frame.kinds.items() if kind == "derived" and n not in frame.objectives]
-    own = [n for n in frame.limit_units if n not in extra]
+    family_limits = [n for n in frame.limit_units if n not in extra]
     added = list(dict.fromkeys(extra.values()))
     layout = {
         "family": frame.family,
@@ -259,7 +259,7 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
         "choices": list(first.choices),
         "parts": list(first.parts),
         "derived": [header(n, frame.units[n]) for n in derived],
-        "limits": [f"utilisation: {n}" for n in own] + [f"utilisation: limits on {n}" for n in added],
+        "limits": [f"utilisation: {n}" for n in family_limits] + [f"utilisation: limits on {n}" for n in added],
     }
     rows = []
     for d in front.designs:
@@ -267,7 +267,7 @@ def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:
         cells += [cell_value(d.values[n], frame.units[n]) for n in [*frame.objectives, *searched]]
         cells += [*d.choices.values(), *(str(part) for part in d.parts.values())]
         cells += [cell_value(d.values[n], frame.units[n]) for n in derived]
-        cells += [d.utilisation.get(n) for n in own]
+        cells += [d.utilisation.get(n) for n in family_limits]
         for quantity in added:
             used = [u for n, of in extra.items() if of == quantity and (u := d.utilisation.get(n)) is not None]
             cells.append(max(used, default=None))
@@ -296,8 +296,8 @@ class Shared:
     is the same.
     """
 
-    def __init__(self, job: str, catalogs: Any, own: Any) -> None:
-        self.job, self.catalogs, self.own = job, catalogs, own
+    def __init__(self, job: str, catalogs: Any, user_family: Any) -> None:
+        self.job, self.catalogs, self.user_family = job, catalogs, user_family
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Shared) and self.job == other.job
@@ -319,5 +319,5 @@ def _problem(shared: Shared, family: str, options: tuple[tuple[str, str], ...]) 
     """Return a problem that is ready to use; it keeps its traces, so it is made once per process."""
     from synth.model.registry import load
 
-    own = shared.own
-    return load(own if own is not None and own.name == family else family, **dict(options))
+    user_family = shared.user_family
+    return load(user_family if user_family is not None and user_family.name == family else family, **dict(options))

@@ -19,11 +19,11 @@ from sqlalchemy.exc import IntegrityError
 from synth.batches.solve import GROUP
 from synth.queue.database import digest
 from synth.queue.job_queue import Claim, JobQueue, held_by
-from synth.queue.job_table import BATCH, BODY, DONE, KEEP, LOCAL, OPEN, ROWS, Ending, tell_on
+from synth.queue.job_table import BATCH, BODY, DONE, KEEP, LOCAL, OPEN, ROWS, Ending, insert_event
 from synth.queue.models import Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 
 WITH_DESIGNS = ("optimal", "feasible")  # how rows stand that have some
-NONE_ALONE: Mapping[str, str] = MappingProxyType({})  # no question that a group leaves to be asked alone
+NONE_UNGROUPED: Mapping[str, str] = MappingProxyType({})  # no question that a group leaves to a search by itself
 
 
 @dataclass(frozen=True)
@@ -142,9 +142,9 @@ class Store(JobQueue):
             )
             if held.rowcount != 1:
                 return False
-            asked = connection.execute(sa.select(Job.content).where(Job.id == job)).scalar_one()
+            stored = connection.execute(sa.select(Job.content).where(Job.id == job)).scalar_one()
             # By which the same request is known when it comes again, and how long it is kept.
-            kept = {name: asked[name] for name in (BODY, KEEP) if name in asked}
+            kept = {name: stored[name] for name in (BODY, KEEP) if name in stored}
             planned = {**content, BODY: "", **kept}
             connection.execute(
                 sa.update(Job).where(Job.id == job).values(content=planned, basis=basis, updated=moment())
@@ -159,18 +159,18 @@ class Store(JobQueue):
         connection.execute(sa.update(Job).where(Job.id == job).values(rows=count))
         known = self._copy_known(connection, job)
         units = self._write_units(connection, job, rows_per_unit)
-        tell_on(connection, job, "created", f"{count} rows in {units} units, {known} questions answered before")
+        insert_event(connection, job, "created", f"{count} rows in {units} units, {known} questions answered before")
 
     def count_rows(self, job: str, pause: float) -> None:
         """Note how far a batch is among its progress, if that was not done within so many seconds."""
-        found = self.job(job)
-        known = None if found is None else (found.progress or {}).get("counted")
+        record = self.job(job)
+        known = None if record is None else (record.progress or {}).get("counted")
         now = time.time()
-        if found is None or (known is not None and 0 <= now - known < pause):
+        if record is None or (known is not None and 0 <= now - known < pause):
             return
-        self._tell_rows(job, self.account(job), now)
+        self._record_progress(job, self.account(job), now)
 
-    def _tell_rows(self, job: str, account: Account, now: float) -> None:
+    def _record_progress(self, job: str, account: Account, now: float) -> None:
         state = {"rows": account.rows, "done": account.done, "bad": account.bad, "status": dict(account.status)}
         self.progress(job, {**state, "counted": now})
 
@@ -179,11 +179,11 @@ class Store(JobQueue):
         if sum(self.open_units(job)):
             return False
         account = self.account(job)
-        self._tell_rows(job, account, time.time())  # all of them, once it has ended
+        self._record_progress(job, account, time.time())  # all of them, once it has ended
         counts = {**account.status, "bad_input": account.bad} if account.bad else dict(account.status)
-        found = any(counts.get(status) for status in WITH_DESIGNS)
+        has_designs = any(counts.get(status) for status in WITH_DESIGNS)
         outcome = next((status for status in WITH_DESIGNS if counts.get(status)), "infeasible")
-        summary = {"rows": account.rows, "status": dict(sorted(counts.items())), "designs": found}
+        summary = {"rows": account.rows, "status": dict(sorted(counts.items())), "designs": has_designs}
         return self.end(job, Ending(state=DONE, outcome=outcome, summary=summary))
 
     def resume(self, job: str, tenant: int, code: str) -> bool:
@@ -195,32 +195,32 @@ class Store(JobQueue):
 
     def _write_rows(self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, Any]]) -> int:
         count = 0
-        for some in _chunks(rows, self.settings.chunk):
-            asked = [{"job": job, "unit": None, **row["question"]} for row in some if row["question"] is not None]
-            if asked:
-                connection.execute(self.insert_once(RowQuestion), asked)
+        for chunk in _chunks(rows, self.settings.chunk):
+            questions = [{"job": job, "unit": None, **row["question"]} for row in chunk if row["question"] is not None]
+            if questions:
+                connection.execute(self.insert_once(RowQuestion), questions)
             connection.execute(
-                sa.insert(Row), [{"job": job, **{k: v for k, v in row.items() if k != "question"}} for row in some]
+                sa.insert(Row), [{"job": job, **{k: v for k, v in row.items() if k != "question"}} for row in chunk]
             )
-            count += len(some)
+            count += len(chunk)
         return count
 
     def _copy_known(self, connection: sa.Connection, job: str) -> int:
         """Take the answers that another job of the same tenant and the same basis has; return how many."""
-        asked = sa.select(RowQuestion.key).where(RowQuestion.job == job)
+        keys = sa.select(RowQuestion.key).where(RowQuestion.job == job)
         this, other = sa.alias(cast(sa.Table, Job.__table__)), Job
         others = sa.select(other.id).where(
             this.c.id == job, other.basis == this.c.basis, other.tenant == this.c.tenant, other.id != job
         )
-        usable = sa.and_(Result.job.in_(others), Result.key.in_(asked), Result.status != "failed")
+        usable = sa.and_(Result.job.in_(others), Result.key.in_(keys), Result.status != "failed")
         answers = sa.select(
             sa.literal(job), Result.key, Result.status, Result.seconds, Result.layout, Result.content
         ).where(usable)
         columns = ["job", "key", "status", "seconds", "layout", "content"]
         connection.execute(self.insert_once(Result).from_select(columns, answers))
-        taken = sa.select(Result.layout).where(Result.job == job)
+        layout_keys = sa.select(Result.layout).where(Result.job == job)
         layouts = sa.select(sa.literal(job), Layout.key, Layout.content).where(
-            Layout.job.in_(others), Layout.key.in_(taken)
+            Layout.job.in_(others), Layout.key.in_(layout_keys)
         )
         connection.execute(self.insert_once(Layout).from_select(["job", "key", "content"], layouts))
         return int(
@@ -245,14 +245,14 @@ class Store(JobQueue):
         order = (RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         answered = sa.select(Result.key).where(Result.job == job)
         group = RowQuestion.content[GROUP]
-        asked = (
+        query = (
             sa.select(RowQuestion.structure, RowQuestion.key, group["name"].as_string(), group["rows"].as_integer())
             .where(RowQuestion.job == job, RowQuestion.key.not_in(answered))
             .order_by(*order)
             .execution_options(stream_results=True, yield_per=self.settings.chunk)
         )
         for (_, _, rows), same in itertools.groupby(
-            connection.execute(asked), key=lambda question: (question[0], *question[2:])
+            connection.execute(query), key=lambda question: (question[0], *question[2:])
         ):
             if rows is None:
                 yield from _chunks((question[1] for question in same), rows_per_unit)
@@ -283,7 +283,7 @@ class Store(JobQueue):
         outcomes: Mapping[str, Outcome],
         errors: Mapping[str, str],
         most_attempts: int,
-        alone: Mapping[str, str] = NONE_ALONE,
+        ungrouped: Mapping[str, str] = NONE_UNGROUPED,
     ) -> bool:
         """Write what came out of a unit, if the owner still holds it.
 
@@ -297,8 +297,8 @@ class Store(JobQueue):
             Question key -> error. Each of these questions is tried again in a unit of its own, until it has failed
             ``most_attempts`` times; then it is answered by its error.
         most_attempts : int
-        alone : mapping
-            Question key -> why it has to be asked alone, as one of a group: each in a unit of its own, as if for the
+        ungrouped : mapping
+            Question key -> why its group leaves it to a search by itself: each in a unit of its own, as if for the
             first time.
 
         Returns
@@ -340,13 +340,13 @@ class Store(JobQueue):
                         for key, o in final.items()
                     ],
                 )
-            for keys, tried in ((again, attempts), (list(alone), claim.attempts)):
+            for keys, tried in ((again, attempts), (list(ungrouped), claim.attempts)):
                 if keys:
                     self._add_units(connection, job, [[key] for key in keys], tried)
             for key, error in errors.items():
-                tell_on(connection, job, "failed", f"attempt {attempts} of question {key[:12]}: {error}")
-            for reason, count in Counter(filter(None, alone.values())).items():
-                tell_on(connection, job, "alone", f"{count} questions of a group: {reason}")
+                insert_event(connection, job, "failed", f"attempt {attempts} of question {key[:12]}: {error}")
+            for reason, count in Counter(filter(None, ungrouped.values())).items():
+                insert_event(connection, job, "alone", f"{count} questions of a group: {reason}")
         return True
 
     # -- looking -------------------------------------------------------------------------------
@@ -373,29 +373,29 @@ class Store(JobQueue):
         order = (Row.position, Row.line) if canonical else (Row.line,)
         # Lines alone are put in order: to sort rows with all that was found would take as much room again.
         streamed = {"stream_results": True, "yield_per": self.settings.chunk}
-        asked = sa.select(Row.line).where(Row.job == job).order_by(*order).execution_options(**streamed)
+        query = sa.select(Row.line).where(Row.job == job).order_by(*order).execution_options(**streamed)
         with self.engine.connect() as connection:
-            for some in _chunks(connection.scalars(asked), self.settings.chunk):
-                answers = answered_rows().where(Row.job == job, Row.line.in_(some))
-                found = {row[0]: row for row in connection.execute(answers)}
-                yield from (Answered(*found[line]) for line in some)
+            for chunk in _chunks(connection.scalars(query), self.settings.chunk):
+                answers = answered_rows().where(Row.job == job, Row.line.in_(chunk))
+                by_line = {row[0]: row for row in connection.execute(answers)}
+                yield from (Answered(*by_line[line]) for line in chunk)
 
     def questions(self, job: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
         """Return the questions of a job in canonical order: key, structure, content."""
-        asked = (
+        query = (
             sa.select(RowQuestion.key, RowQuestion.structure, RowQuestion.content)
             .where(RowQuestion.job == job)
             .order_by(RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         )
         with self.engine.connect().execution_options(stream_results=True, yield_per=self.settings.chunk) as connection:
-            for row in connection.execute(asked):
+            for row in connection.execute(query):
                 yield row[0], row[1], row[2]
 
     def layouts(self, job: str) -> dict[str, dict[str, Any]]:
         """Return the layouts of a job by key."""
         with self.engine.begin() as connection:
-            found = connection.execute(sa.select(Layout.key, Layout.content).where(Layout.job == job))
-            return {key: content for key, content in found}
+            rows = connection.execute(sa.select(Layout.key, Layout.content).where(Layout.job == job))
+            return {key: content for key, content in rows}
 
 
 def answered_rows() -> sa.Select[Any]:
@@ -417,5 +417,5 @@ def answered_rows() -> sa.Select[Any]:
 
 def _chunks(items: Iterable[Any], size: int) -> Iterator[list[Any]]:
     remaining = iter(items)
-    while some := list(itertools.islice(remaining, size)):
-        yield some
+    while chunk := list(itertools.islice(remaining, size)):
+        yield chunk

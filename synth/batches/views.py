@@ -37,10 +37,10 @@ class PackedRecord:
 
 def standings(queue: JobQueue, jobs: Collection[str]) -> dict[str, Standing]:
     """States of some jobs; those that are gone are missing."""
-    asked = sa.select(Job.id, Job.state, Job.outcome, Job.updated, Job.progress)
+    query = sa.select(Job.id, Job.state, Job.outcome, Job.updated, Job.progress)
     with queue.engine.connect() as connection:
-        found = connection.execute(asked.where(Job.id.in_(list(jobs))))
-        return {job: Standing(*standing) for job, *standing in found}
+        rows = connection.execute(query.where(Job.id.in_(list(jobs))))
+        return {job: Standing(*standing) for job, *standing in rows}
 
 
 @dataclass(frozen=True)
@@ -78,32 +78,32 @@ def traces(
         ``created`` and ``id`` of the last job of the page before.
     most : int
     """
-    asked = sa.select(Job.id, Tenant.name, Job.kind, Job.state, Job.rows, Job.created, Job.started, Job.ended)
-    asked = asked.join(Tenant, Tenant.id == Job.tenant).order_by(Job.created.desc(), Job.id.desc()).limit(most)
+    query = sa.select(Job.id, Tenant.name, Job.kind, Job.state, Job.rows, Job.created, Job.started, Job.ended)
+    query = query.join(Tenant, Tenant.id == Job.tenant).order_by(Job.created.desc(), Job.id.desc()).limit(most)
     if tenant is not None:
-        asked = asked.where(Tenant.name == tenant)
+        query = query.where(Tenant.name == tenant)
     if states:
-        asked = asked.where(Job.state.in_(states))
+        query = query.where(Job.state.in_(states))
     if before is not None:
         created, name = before
-        asked = asked.where(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
+        query = query.where(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
     with queue.engine.connect() as connection:
-        return [JobTrace(*row) for row in connection.execute(asked)]
+        return [JobTrace(*row) for row in connection.execute(query)]
 
 
 def packed_record(queue: JobQueue, job: str, name: str) -> PackedRecord | None:
     """Return a file of a job; None where it has none of that name."""
-    asked = sa.select(JobRecord.media, JobRecord.digest, JobRecord.size, JobRecord.content)
+    query = sa.select(JobRecord.media, JobRecord.digest, JobRecord.size, JobRecord.content)
     with queue.engine.connect() as connection:
-        found = connection.execute(asked.where(JobRecord.job == job, JobRecord.name == name)).one_or_none()
-    return None if found is None else PackedRecord(*found)
+        row = connection.execute(query.where(JobRecord.job == job, JobRecord.name == name)).one_or_none()
+    return None if row is None else PackedRecord(*row)
 
 
 def uploads_kept(queue: JobQueue, tenant: int) -> int:
     """Number of files kept that a tenant has uploaded."""
-    asked = sa.select(sa.func.count()).select_from(Upload).where(Upload.tenant == tenant, Upload.expires > moment())
+    query = sa.select(sa.func.count()).select_from(Upload).where(Upload.tenant == tenant, Upload.expires > moment())
     with queue.engine.connect() as connection:
-        return int(connection.scalar(asked) or 0)
+        return int(connection.scalar(query) or 0)
 
 
 # ---- rows -----------------------------------------------------------------------------------------------------------
@@ -122,17 +122,17 @@ def rows_after(queue: JobQueue, job: str, line: int, most: int, statuses: Sequen
     statuses : sequence of str
         Only rows that stand so; all where there is none.
     """
-    wanted: list[Any] = [Row.job == job, Row.line > line]
+    conditions: list[Any] = [Row.job == job, Row.line > line]
     if statuses:
         stands: list[sa.ColumnElement[bool]] = [Result.status.in_(statuses)]
         if BAD_INPUT in statuses:
             stands.append(Row.key.is_(None))
         if NOT_SOLVED in statuses:
             stands.append(sa.and_(Row.key.is_not(None), Result.status.is_(None)))
-        wanted.append(sa.or_(*stands))
+        conditions.append(sa.or_(*stands))
     with queue.engine.connect() as connection:
-        found = connection.execute(answered_rows().where(*wanted).order_by(Row.line).limit(most))
-        return [Answered(*row) for row in found]
+        rows = connection.execute(answered_rows().where(*conditions).order_by(Row.line).limit(most))
+        return [Answered(*row) for row in rows]
 
 
 def row_at(queue: JobQueue, job: str, line: int) -> tuple[Answered, dict[str, Any] | None] | None:
@@ -141,12 +141,12 @@ def row_at(queue: JobQueue, job: str, line: int) -> tuple[Answered, dict[str, An
         row = connection.execute(answered_rows().where(Row.job == job, Row.line == line)).one_or_none()
         if row is None:
             return None
-        asked = sa.select(RowQuestion.content).where(RowQuestion.job == job, RowQuestion.key == row.key)
-        return Answered(*row), connection.scalar(asked)
+        query = sa.select(RowQuestion.content).where(RowQuestion.job == job, RowQuestion.key == row.key)
+        return Answered(*row), connection.scalar(query)
 
 
 def layouts_of(queue: JobQueue, job: str, keys: Collection[str]) -> dict[str, dict[str, Any]]:
     """Return some layouts of a job by key."""
-    asked = sa.select(Layout.key, Layout.content).where(Layout.job == job, Layout.key.in_(list(keys)))
+    query = sa.select(Layout.key, Layout.content).where(Layout.job == job, Layout.key.in_(list(keys)))
     with queue.engine.connect() as connection:
-        return {key: content for key, content in connection.execute(asked)}
+        return {key: content for key, content in connection.execute(query)}

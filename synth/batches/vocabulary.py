@@ -49,8 +49,8 @@ def word_of(declaration: Declaration, name: str, settings: Mapping[str, Any]) ->
 
 def words_of(declaration: Declaration, settings: Mapping[str, Any]) -> dict[str, Word]:
     """Return every spelling (name or symbol) of what was declared, and what it stands for."""
-    own = {spelling: word_of(declaration, name, settings) for spelling, name in declaration.names().items()}
-    return {name: word_of(declaration, name, settings) for name in settings if name not in own} | own
+    declared = {spelling: word_of(declaration, name, settings) for spelling, name in declaration.names().items()}
+    return {name: word_of(declaration, name, settings) for name in settings if name not in declared} | declared
 
 
 def all_words(
@@ -68,7 +68,7 @@ def all_words(
     first = base.declaration(frozenset(), catalogs)
     words = words_of(first, base.simulation_settings)
     spellings = {spelling: word.name for spelling, word in words.items()}
-    found = {word.name: word for word in words.values()}
+    by_name = {word.name: word for word in words.values()}
     for option in first.options.values() if every_option else ():
         for label in option.choices:
             if label != option.chosen:
@@ -78,9 +78,9 @@ def all_words(
                     continue  # a label that is refused brings no names
                 for spelling, name in other.names().items():
                     spellings.setdefault(spelling, name)
-                    if name not in found:
-                        found[name] = word_of(other, name, {})
-    return found, spellings
+                    if name not in by_name:
+                        by_name[name] = word_of(other, name, {})
+    return by_name, spellings
 
 
 @cache
@@ -97,13 +97,13 @@ class Universe:
     ----------
     used : set of str
         Families that rows name: of these every option counts, of the others the names that they have by default.
-    own : DesignProblem subclass or instance, optional
+    user_family : DesignProblem subclass or instance, optional
     """
 
-    def __init__(self, used: Set[str], own: Any = None) -> None:
+    def __init__(self, used: Set[str], user_family: Any = None) -> None:
         problems: list[Any] = [*every_family()]
-        if own is not None and not isinstance(own, str):
-            problems.append(own)
+        if user_family is not None and not isinstance(user_family, str):
+            problems.append(user_family)
         self.words: dict[str, list[Word]] = {}
         self.symbols: set[str] = set()  # and names, of the families that rows name
         self.options: dict[str, dict[str, str]] = {}  # of these families: spelling -> name

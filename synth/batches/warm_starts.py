@@ -61,5 +61,5 @@ class WarmStarts:
             self._nearest[structure] = keys, cKDTree([teachers[k][0] for k in keys])
         keys, tree = self._nearest[structure]
         teacher = keys[int(tree.query(where)[1])]
-        asked = {**question, LIKE: dict(teachers[teacher][1])}
-        return digest(asked), asked, teacher
+        extended = {**question, LIKE: dict(teachers[teacher][1])}
+        return digest(extended), extended, teacher

@@ -97,13 +97,13 @@ class View:
         """All shapes; of a section through the axis those of the other half and the centre line as well."""
         if not self.revolved:
             return self.shapes
-        whole: list[Drawable] = []
+        shapes: list[Drawable] = []
         for shape in self.shapes:
             joined = both_halves(shape)
-            alone = joined is not shape or (isinstance(shape, Area) and shape.half)
-            whole += [joined] if alone else [shape, mirrored(shape)]
+            single = joined is not shape or (isinstance(shape, Area) and shape.half)
+            shapes += [joined] if single else [shape, mirrored(shape)]
         left, _, right, _ = box_of([p for shape in self.shapes for p in points_of(shape)])
-        return (*whole, Line((left, 0.0), (right, 0.0), LineKind.CENTRE))
+        return (*shapes, Line((left, 0.0), (right, 0.0), LineKind.CENTRE))
 
     @cached_property
     def behind(self) -> tuple[tuple[float, float], ...]:

@@ -59,9 +59,9 @@ class Area:
     @property
     def volume(self) -> float:
         """Volume of the part [mm3]: by Pappus' rule where it is revolved."""
-        told = [moments(self.outline), *(moments(hole) for hole in self.holes)]
+        rings = [moments(self.outline), *(moments(hole) for hole in self.holes)]
         column = 1 if self.depth is None else 0
-        net = abs(told[0][column]) - sum(abs(m[column]) for m in told[1:])
+        net = abs(rings[0][column]) - sum(abs(m[column]) for m in rings[1:])
         if self.depth is not None:
             return net * self.depth
         return net * (math.pi if self.half else 2 * math.pi)
@@ -278,14 +278,14 @@ def edges_behind(areas: Sequence[Area]) -> list[XY]:
         return []
     span = corners[-1][0] - corners[0][0]
     near = 1e-7 * span
-    found: list[tuple[float, float]] = []
+    edges: list[tuple[float, float]] = []
     free: dict[float, float] = {}
     for x, y in corners:
         if x not in free:
             free[x] = min(_innermost(pieces, x - near), _innermost(pieces, x + near))
-        if 0 < y <= free[x] + 10 * near and not (found and x - found[-1][0] <= near):
-            found.append((x, y))
-    return found
+        if 0 < y <= free[x] + 10 * near and not (edges and x - edges[-1][0] <= near):
+            edges.append((x, y))
+    return edges
 
 
 def _innermost(pieces: Sequence[tuple[float, float, XY, XY]], x: float) -> float:

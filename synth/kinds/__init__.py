@@ -2,7 +2,7 @@
 
 Importing this package loads nothing heavy; the module of a kind is imported where its work is done. Such a module has
 
-``read(request, sources) -> Posed``
+``read(request, sources) -> CheckedRequest``
     Checks a request as far as that goes without the search.
 ``work(request, sources, tell) -> dict of Record``
     Does what a request that was read asks for.
@@ -22,17 +22,17 @@ from typing import Any, Protocol, cast
 
 from synth.errors import InputError
 from synth.question.request_fields import FIELDS
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.verbs.requests import VERBS, Subject, Verb
 
-__all__ = ["KINDS", "Kind", "KindModule", "Posed", "Record", "Sources", "Tell", "kind"]
+__all__ = ["KINDS", "CheckedRequest", "Kind", "KindModule", "Record", "ReportProgress", "Sources", "kind"]
 
 
 class KindModule(Protocol):
     """What the module of a kind has; ``beside`` those with ``keys`` alone."""
 
-    read: Callable[[Mapping[str, Any], Sources], Posed]
-    work: Callable[[Mapping[str, Any], Sources, Tell], dict[str, Record]]
+    read: Callable[[Mapping[str, Any], Sources], CheckedRequest]
+    work: Callable[[Mapping[str, Any], Sources, ReportProgress], dict[str, Record]]
     summary: Callable[[Mapping[str, bytes]], dict[str, Any]]
     beside: Callable[[Mapping[str, Any], Sources], tuple[dict[str, Any], list[InputError]]]
 
@@ -48,7 +48,7 @@ class Kind:
     module : str
         Imported in an engine process only.
     bulk : bool
-        Whether it waits behind what somebody waits for; of some kinds ``Posed.bulk`` decides for each request.
+        Whether it waits behind what somebody waits for; of some kinds ``CheckedRequest.bulk`` decides for each request.
     record : str
         Name of the main record.
     """

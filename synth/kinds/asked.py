@@ -20,7 +20,7 @@ from synth.question.request_fields import FIELDS, REFERENCE, SEARCHED, shown_kin
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import no_family, refuse_several
 from synth.question.spec_patch import patched
-from synth.queue.records import QUESTION, TABLE, Record, Sources, Tell
+from synth.queue.records import QUESTION, TABLE, Record, ReportProgress, Sources
 from synth.results import ParetoFront
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, changed
 from synth.results.loading import COMPARISON, front_of_record
@@ -395,7 +395,7 @@ def _shown(value: Any, unit: str) -> str:
 # ---- what comes out -------------------------------------------------------------------------------------------------
 
 
-def told(tell: Tell) -> Tell:
+def told(tell: ReportProgress) -> ReportProgress:
     """Return a progress function that tells what JSON can hold."""
 
     def show(state: Mapping[str, Any]) -> None:

@@ -27,7 +27,7 @@ from synth.kinds.settings import KIND_SETTINGS
 from synth.model.registry import load
 from synth.question.request_fields import shown_kind
 from synth.question.settings import SearchSettings
-from synth.queue.records import TABLE, Posed, Record, Sources, Tell
+from synth.queue.records import TABLE, CheckedRequest, Record, ReportProgress, Sources
 from synth.results.drawings import can_make
 from synth.results.report_request import ReportOptions
 from synth.tables.table_file import EXCEL
@@ -43,7 +43,7 @@ REPORTS = {"report.html": "html", "report.pdf": "pdf", "batch.xlsx": "xlsx"}  # 
 STATED = "rows.json"  # what rows are kept as that stand in a request
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request: its table as a whole, its settings, and rows until one can be asked.
 
     All of them are checked when it is planned.
@@ -61,7 +61,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         count = job.table.count()
         counted = f"{count} row{'' if count == 1 else 's'}"
         asked = {**kept, "table": {"name": table.name, "digest": table.digest}}
-        return Posed(
+        return CheckedRequest(
             request=asked,
             title=counted if table.name == STATED else f"{job.table.name}: {counted}",
             families=tuple(sorted(job.questioner.named)),
@@ -73,7 +73,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
         )
 
 
-def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def check(payload: Mapping[str, Any], tell: ReportProgress) -> dict[str, Any]:
     """Content of a table and the rows that cannot be asked; of a long one the first, as far as time allows.
 
     Raises
@@ -114,7 +114,7 @@ def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         }
 
 
-def plan(payload: Mapping[str, Any], tell: Tell) -> bool:
+def plan(payload: Mapping[str, Any], tell: ReportProgress) -> bool:
     """Check the rows of a batch and write them to its job, unless somebody else does meanwhile.
 
     Raises
@@ -138,7 +138,7 @@ def files_to_have() -> tuple[str, ...]:
     return (*FILES, *(name for name, word in REPORTS.items() if can_make(word)))
 
 
-def files(payload: Mapping[str, Any], tell: Tell) -> Record:
+def files(payload: Mapping[str, Any], tell: ReportProgress) -> Record:
     """Return one of the files of a batch, as far as its rows are answered.
 
     Raises

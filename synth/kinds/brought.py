@@ -15,7 +15,7 @@ from synth.errors import Described, InputError, shortened
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.registry import every_declaration
 from synth.question.catalogs import as_catalogs, meant_by, needed_columns
-from synth.queue.records import Tell
+from synth.queue.records import ReportProgress
 from synth.tables.catalogs import Catalogs, must_have_designation
 from synth.tables.delimited_text import DelimitedText, delimited_text, first_lines
 from synth.tables.reading import csv_of_file
@@ -27,7 +27,7 @@ from synth.units import split_header
 OF_ROWS = ("source", "confidence")  # that every row has, in any table
 
 
-def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def rows_of_file(payload: Mapping[str, Any], tell: ReportProgress) -> dict[str, Any]:
     """Dialect of a file with rows for a batch, its header and its first rows.
 
     Raises
@@ -45,7 +45,7 @@ def rows_of_file(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         }
 
 
-def text_of_file(payload: Mapping[str, Any], tell: Tell) -> str:
+def text_of_file(payload: Mapping[str, Any], tell: ReportProgress) -> str:
     """Return the text of a file with a part table; of a workbook that of ``sheet``, or the first with designations.
 
     Raises
@@ -66,7 +66,7 @@ def _as_file(payload: Mapping[str, Any]) -> Iterator[Path]:
         yield file
 
 
-def part_table(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def part_table(payload: Mapping[str, Any], tell: ReportProgress) -> dict[str, Any]:
     """Read a part table as a question would.
 
     Returns

@@ -23,7 +23,7 @@ from synth.kinds.asked import (
 from synth.question.request import check_grid, listed_objectives
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import asks_several, read_keys
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.calculation import CALCULATION
 from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON
@@ -45,7 +45,7 @@ from synth.verbs.requests import SPEC
 KEPT = (FRONT_FILE, CALCULATION, OFFERED)  # of the front of each family; the rest is rendered from these
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request: the sheet, and that one family at least can be asked.
 
     Raises
@@ -68,7 +68,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     )
     stated = _stated(content, settings, spec.get("catalogs"))
     serving = [one for one in found if not one.misfits]
-    return Posed(
+    return CheckedRequest(
         request=stated,
         title="Comparison: " + ("; ".join(map(_titled, found)) if content[FAMILY] != "any" else "all families"),
         families=tuple(dict.fromkeys(one.problem.name for one in serving)),
@@ -97,7 +97,7 @@ def _one_can_be_asked(found: list[Applicant], asked: Any, settings: SearchSettin
         raise first
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Search all families and put their designs on one front."""
     content, settings = _read(request)
     asked: dict[str, Any] = {key: content[key] or None for key in (*KEYS, "weights") if key != "requirements"}

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.kinds.asked import front_in
-from synth.queue.records import Tell
+from synth.queue.records import ReportProgress
 from synth.results.plain import finite
 from synth.tables.conditions import parse_condition
 from synth.tables.schema import Column
@@ -20,7 +20,7 @@ NAME = "designs"
 DOWN = "-"
 
 
-def page(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def page(payload: Mapping[str, Any], tell: ReportProgress) -> dict[str, Any]:
     """Return some designs of a front.
 
     Parameters

@@ -23,7 +23,7 @@ from synth.kinds.asked import (
 from synth.order.feasibility import Status
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
+from synth.queue.records import QUESTION, CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.infeasibility.explain import explanation_of
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
 from synth.verbs.request import in_request
@@ -33,7 +33,7 @@ MAIN = "explanation.json"
 PHYSICS = "physics"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; what a search alone goes by (points, gap, weights) is left out.
 
     Raises
@@ -46,7 +46,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     ExplainedQuestion(asked)
     stated = stated_spec(asked, settings, ("seed", "time_limit"))
     stated = {key: value for key, value in stated.items() if key not in ("objectives", "weights")}
-    return Posed(
+    return CheckedRequest(
         request={**stated, **ExplainRequest.read(own, in_request).to_json()},
         title=f"Ways out: {titled(asked)}",
         families=(asked.problem.name,),
@@ -63,7 +63,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     return spec, faults
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what excludes each other and what would help."""
     spec, own = spec_of(request, sources, (PHYSICS,))
     found = explanation_of(*_asked(spec, sources), told(tell), ExplainRequest.read(own, in_request).physics)

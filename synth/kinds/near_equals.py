@@ -7,14 +7,14 @@ from typing import Any
 
 from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
 from synth.order.feasibility import Status
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
 from synth.verbs.requests import NearEqualsRequest
 
 MAIN = "near_equals.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -26,14 +26,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     front, _ = front_of(of, sources)
     chosen_design(front, asked.design)
     read_share(asked.within)
-    return Posed(
+    return CheckedRequest(
         request={**of.to_json(), **asked.to_json()},
         title=f"Near equals within {asked.within} of design {asked.design}: {front.frame.title}",
         families=(front.frame.family,),
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what is nearly as good."""
     of, asked = about_front(request, NearEqualsRequest)
     front, tables = front_of(of, sources)

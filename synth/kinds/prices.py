@@ -8,14 +8,14 @@ from typing import Any
 
 from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
 from synth.order.feasibility import Status
-from synth.queue.records import QUESTION, Posed, Record, Sources, Tell
+from synth.queue.records import QUESTION, CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.prices.run import chosen_designs, prices, read_step
 from synth.verbs.requests import PricesRequest
 
 MAIN = "prices.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; ``design`` is a rank or a list of ranks, all where it is left out.
 
     Raises
@@ -27,15 +27,15 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     front, _ = front_of(of, sources)
     ranks = tuple(int(d.rank or 0) for d in chosen_designs(front, asked.design))
     read_step(asked.step)
-    return Posed(
+    return CheckedRequest(
         request={**of.to_json(), **replace(asked, design=ranks).to_json()},
         title=f"Prices: {front.frame.title}, {asked.step}",
         families=(front.frame.family,),
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
-    """Tell what a per cent of everything costs."""
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+    """Price everything."""
     of, asked = about_front(request, PricesRequest)
     front, tables = front_of(of, sources)
     found = prices(front, asked.design, asked.step, catalogs=tables, progress=told(tell), time_limit=asked.time_limit)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from synth.analysis.design_spec import given_design, must_be_a_design
+from synth.analysis.design_spec import must_be_a_design
 from synth.errors import InputError
 from synth.kinds.asked import (
     about_front,
@@ -26,7 +26,7 @@ from synth.order.feasibility import Status
 from synth.question.request_fields import FIELDS
 from synth.question.spec import spec_from_mapping
 from synth.question.uncertainty import read_block
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results import Design, Frame
 from synth.results.plain import plain
 from synth.results.ratings import NOT_SHOWN, YES
@@ -40,7 +40,7 @@ MAIN = "rating.json"
 ROBUST = "robust"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -52,7 +52,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     scattering = read_block(given.block)
     rater_for(given.frame, scattering, given.problem, given.tables)
     stated = {**given.stated, ROBUST: plain(given.block)}
-    return Posed(
+    return CheckedRequest(
         request=stated if given.time_limit is None else {**stated, "time_limit": given.time_limit},
         title=f"Rating: {given.frame.title}, {', '.join(map(words, scattering.names))}",
         families=(given.frame.family,),
@@ -60,7 +60,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Rate the designs."""
     given = _designs(request, sources)
     found = rate(
@@ -122,7 +122,7 @@ def _designs(request: Mapping[str, Any], sources: Sources) -> _Given:
     tables = catalogs_of(content.get("catalogs"), sources)
     spec = spec_from_mapping({k: v for k, v in content.items() if k != "catalogs"}, WHERE, Path())
     must_be_a_design(spec)
-    problem, tables, design = given_design(spec, tables)
+    problem, tables, design = design_of_spec(spec, tables)
     return _Given(
         designs=[design],
         problem=problem,

@@ -23,7 +23,7 @@ from synth.kinds.asked import (
     records_of,
 )
 from synth.kinds.verify import unpack
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results import named_designs
 from synth.results.drawings import EXTRAS, can_make
 from synth.results.loading import load_front
@@ -39,7 +39,7 @@ def options_of(asked: FrontReportRequest) -> ReportOptions:
     return ReportOptions(formats=asked.formats, length=asked.length, about=About.of(asked.about))
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -62,10 +62,10 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
             named_designs(front, asked.design)
         except InputError as error:
             raise InputError(in_request("design"), error.value, error.expected, error.path) from error
-    return Posed(request={**of.to_json(), **asked.to_json()}, title=f"Report: {title}", families=families)
+    return CheckedRequest(request={**of.to_json(), **asked.to_json()}, title=f"Report: {title}", families=families)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Write the report and the sheets."""
     tell({"stage": "report", "done": 0.0, "message": ""})
     of, asked = about_front(request, FrontReportRequest)

@@ -7,14 +7,14 @@ from typing import Any
 
 from synth.model.registry import every_declaration
 from synth.question.catalogs import as_catalogs
-from synth.queue.records import Tell
+from synth.queue.records import ReportProgress
 from synth.tables.catalogs import Catalogs
 from synth.tables.schema import Column
 from synth.tables.table import Table
 from synth.units import finite_from_si
 
 
-def tables(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def tables(payload: Mapping[str, Any], tell: ReportProgress) -> dict[str, Any]:
     """All tables, as a list and with their rows, and the digest of their files.
 
     ``tables``: name, number of rows, and the families whose parts are rows of it; ``contents``: by name, with what the

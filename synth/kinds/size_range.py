@@ -13,7 +13,7 @@ from synth.kinds.asked import catalogs_of, of_files, read_json
 from synth.question.request_fields import shown_kind
 from synth.queue.job_table import BATCH, LIVE
 from synth.queue.models import Job
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.variants.size_range import size_range
 from synth.verbs.request import in_request, known_keys
 from synth.verbs.requests import OF, VERBS, SizeRangeRequest
@@ -21,7 +21,7 @@ from synth.verbs.requests import OF, VERBS, SizeRangeRequest
 MAIN = "size_range.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request: the batch must be there and done.
 
     Raises
@@ -33,12 +33,12 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     asked = SizeRangeRequest.read(stated, in_request)
     job = _batch(stated.get(OF), sources)
     families = tuple(job.content["families"])
-    return Posed(
+    return CheckedRequest(
         request={OF: job.id, **asked.to_json()}, title=f"Size range of {job.title}", families=families, bulk=True
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Choose the variants."""
     job = _batch(request[OF], sources)
     stated = job.request.get("catalogs")

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from synth.analysis.describe import described
-from synth.analysis.design_spec import given_design, must_be_a_design
+from synth.analysis.design_spec import design_of_spec, must_be_a_design
 from synth.declaration import Declaration
 from synth.errors import InputError, SeveralErrors, at, gathered
 from synth.kinds import comparison, synthesis
@@ -171,7 +171,7 @@ def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
     tables = catalogs_of(given.get("catalogs"), sources)
     asked = spec_from_mapping({key: value for key, value in given.items() if key != "catalogs"}, WHERE, Path())
     must_be_a_design(asked)
-    _, _, found = given_design(asked, tables)
+    _, _, found = design_of_spec(asked, tables)
     frame = found.frame
     return {
         "family": frame.family,
@@ -194,7 +194,7 @@ def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
 
 
 def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIND_SETTINGS) -> dict[str, Any]:
-    """Tell what is wrong with a question, all at once as far as one fault does not hide another; nothing is raised.
+    """Faults of a question, all at once as far as one fault does not hide another; nothing is raised.
 
     Parameters
     ----------

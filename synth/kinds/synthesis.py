@@ -20,7 +20,7 @@ from synth.kinds.asked import (
 )
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.calculation import CALCULATION
 from synth.results.front_record import FRONT_FILE
 from synth.results.offered import OFFERED
@@ -29,7 +29,7 @@ from synth.search.question import pose
 from synth.search.synthesize import find_front
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -41,7 +41,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     asked, settings = question_of(spec, sources)
     checked(asked, settings)
     stated = stated_spec(asked, settings)
-    return Posed(
+    return CheckedRequest(
         request=stated,
         title=titled(asked),
         families=(asked.problem.name,),
@@ -61,7 +61,7 @@ def checked(asked: Request, settings: SearchSettings) -> None:
         Rater(asked, asked.robust)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Search the designs; every other file of a front is rendered from these records."""
     asked, settings = question_of(request, sources)
     front = find_front(asked, settings, told(tell))

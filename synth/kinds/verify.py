@@ -21,7 +21,7 @@ from synth.kinds.asked import (
     read_json,
     records_of,
 )
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.front_record import FRONT_FILE, KEPT, fits
 from synth.results.verification import Verification
 from synth.verbs.requests import OF, VerifyRequest
@@ -32,7 +32,7 @@ MAIN = "verification.json"
 WHOLE = "all of the comparison"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; without ``family`` a comparison is checked as a whole.
 
     Raises
@@ -48,14 +48,14 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     else:
         front = front_in(records, of.family, check=False)
         families, title = (front.frame.family,), front.frame.title
-    return Posed(
+    return CheckedRequest(
         request={**of.to_json(), **asked.to_json()},
         title=f"Verification: {title}",
         families=families,
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Check what was saved; how far the proof is cannot be told before it ends."""
     tell({"stage": "verify", "done": 0.0, "message": ""})
     of, asked = about_front(request, VerifyRequest)

@@ -31,7 +31,7 @@ from synth.kinds.settings import KIND_SETTINGS
 from synth.model.model import Model
 from synth.order.feasibility import Status
 from synth.question.objectives import chosen_objectives
-from synth.queue.records import Posed, Record, Sources, Tell
+from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.plain import plain
 from synth.studies.whatif.run import POINTS, study_of
 from synth.studies.whatif.steps import check_steps
@@ -44,7 +44,7 @@ MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> Posed:
+def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     """Check a request; of many steps some are posed, spread evenly, and all when the work begins.
 
     Raises
@@ -62,7 +62,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> Posed:
     if count > KIND_SETTINGS.steps:
         raise InputError(f"{WHERE}: vary", f"{count} steps", f"at most {KIND_SETTINGS.steps} steps", (VARY,))
     stated = stated_spec(asked, settings)
-    return Posed(
+    return CheckedRequest(
         request={**stated, VARY: _stated_vary(beyond.vary), BREAKS: beyond.breaks},
         title=f"What if {', '.join(map(words, varied))}: {titled(asked)}",
         families=(asked.problem.name,),
@@ -105,12 +105,12 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
         if not faults:
             with gathered(faults):
                 read_vary(vary, model, chosen)
-        given |= {x.name: x.asked(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
+        given |= {x.name: x.spec_value(x.values[0]) for x in found if x.kind == "requirement" and x.name not in there}
         return {**spec, **whole, "requirements": given}, faults
     return spec, faults
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: Tell) -> dict[str, Record]:
+def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Answer all steps, and find where the best parts or counts change."""
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     beyond = WhatIfRequest.read(own, in_request)

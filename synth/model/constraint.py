@@ -19,7 +19,7 @@ from synth.model.limit_terms import MOST_TIMES
 from synth.model.program import InputValue
 from synth.order.feasibility import SLACK, SMALLEST
 
-SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
+SYMBOLS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
 
 
 @dataclass(frozen=True, kw_only=True)

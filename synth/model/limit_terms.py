@@ -75,10 +75,10 @@ class LimitTerms:
         least : float
             Smallest size that counts, in SI.
         """
-        found = [made for k in sides if (made := self._size(k)) is not None]
-        if not found:
+        sizes = [made for k in sides if (made := self._size(k)) is not None]
+        if not sizes:
             return None
-        largest = self._largest(found)
+        largest = self._largest(sizes)
         for k in sides:
             largest = self._capped(largest, k)
         return self._largest([largest, self.number(least)]) if least > SMALLEST else largest

@@ -12,7 +12,7 @@ import numpy as np
 
 from synth.declaration import Declaration, DeclarationError, Origin, Part, Refusal
 from synth.errors import InputError
-from synth.model.constraint import SIGNS, Constraint
+from synth.model.constraint import SYMBOLS, Constraint
 from synth.model.limit_terms import NEAR_ZERO, LimitTerms
 from synth.model.next_rows import next_row
 from synth.model.numbers import numeric
@@ -205,7 +205,7 @@ class Model:
         """
         declared, catalogs = self.declaration.next_rows, self.declaration.catalogs
         needed = self._unsearched("next rows", declared, variables, data)
-        return [{n: next_row(declared[n], x, catalogs) for n, x in own.items() if not np.isnan(x)} for own in needed]
+        return [{n: next_row(declared[n], x, catalogs) for n, x in each.items() if not np.isnan(x)} for each in needed]
 
     def _unsearched(
         self, what: str, named: Mapping[str, Any], variables: np.ndarray, data: Sequence[InputValue]
@@ -215,10 +215,10 @@ class Model:
             return [{} for _ in variables]
         expressions = [record.sx for record in named.values()]
         compiled = self.function(what, lambda: Program(self.inputs, expressions, self.calls).compile())
-        given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (*np.asarray(variables, dtype=float).T, *data)]
+        arguments = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (*np.asarray(variables, dtype=float).T, *data)]
         with np.errstate(all="ignore"):
-            found = compiled(given)
-        columns = [np.broadcast_to(np.ravel(x), len(variables)) for x in found]
+            results = compiled(arguments)
+        columns = [np.broadcast_to(np.ravel(x), len(variables)) for x in results]
         behind = self.function(f"guards of {what}", lambda: self._guards_of(expressions))
         held = self.evaluate(np.asarray(variables, dtype=float), data).holds if any(behind) else {}
         for k, guards in enumerate(behind):
@@ -230,11 +230,11 @@ class Model:
         """Return, per expression, the guards without which it does not exist: those of what it is computed from."""
         needs = [(q.sx, guard) for q in self.declaration.derived.values() for guard in q.needs]
         program = Program(self.inputs, [*steps, *(sx for sx, _ in needs)], self.calls)
-        own, needing = program.outputs[: len(steps)], program.outputs[len(steps) :]
+        step_nodes, needing = program.outputs[: len(steps)], program.outputs[len(steps) :]
         behind: list[list[str]] = [[] for _ in steps]
         for guard in sorted({name for _, name in needs}):
             marked = program.downstream(node for node, (_, name) in zip(needing, needs, strict=True) if name == guard)
-            for k, node in enumerate(own):
+            for k, node in enumerate(step_nodes):
                 if marked[node]:
                     behind[k].append(guard)
         return behind
@@ -396,7 +396,7 @@ class Model:
         """
         unit = self.units[quantity]
         return Constraint(
-            name=name or f"{quantity} {SIGNS[sense]} {typed_quantity(bound, unit, None)}",
+            name=name or f"{quantity} {SYMBOLS[sense]} {typed_quantity(bound, unit, None)}",
             sense=sense,
             value=self.quantity_node[quantity],
             bound=float(bound),
@@ -503,10 +503,10 @@ class Model:
         nodes = {name: k for name, k in self._terms_of.items() if k is not None}
         if not nodes:
             return {}
-        wanted = tuple(nodes.values())
-        compiled = self.function(("terms", wanted), lambda: self.program.compile(wanted))
-        found = compiled([*np.asarray(variables, dtype=float).T, *data])
-        return {name: _column(x, len(variables)) for name, x in zip(nodes, found, strict=True)}
+        term_nodes = tuple(nodes.values())
+        compiled = self.function(("terms", term_nodes), lambda: self.program.compile(term_nodes))
+        sizes = compiled([*np.asarray(variables, dtype=float).T, *data])
+        return {name: _column(x, len(variables)) for name, x in zip(nodes, sizes, strict=True)}
 
     def number(self, expression: Any, values: Mapping[str, float]) -> float:
         """Return the value of an expression of the declaration that no variable is in.
@@ -541,16 +541,16 @@ class Model:
         A model may serve a process for long, asked for ever other limits: what was not used for longest is given up.
         """
         missing = object()
-        found = self._function_cache.pop(key, missing)
-        if found is not missing:
-            self._function_cache[key] = found
-            return found
+        built = self._function_cache.pop(key, missing)
+        if built is not missing:
+            self._function_cache[key] = built
+            return built
         with held_back():
-            found = make()
+            built = make()
             while len(self._function_cache) >= MOST_FUNCTIONS:
                 self._function_cache.pop(next(iter(self._function_cache)), None)
-            self._function_cache[key] = found
-        return found
+            self._function_cache[key] = built
+        return built
 
 
 def _column(x: Any, count: int) -> np.ndarray:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRow:
-    """Return the row whose column is smallest but not below what is needed, as results tell it.
+    """Row with the smallest value of a column that is not below the needed one.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRo
     # A size that was typed in another unit than that of the table differs in its last digits.
     offered = np.where(column >= needed * (1 - MARGINS.same), column, np.inf)
     index = int(np.argmin(offered)) if len(offered) else -1
-    found = index >= 0 and bool(np.isfinite(offered[index]))
-    beside = record.beside
-    value = float(column[index]) if found else None
+    has_row = index >= 0 and bool(np.isfinite(offered[index]))
+    companion = record.beside
+    value = float(column[index]) if has_row else None
     with np.errstate(all="ignore"):
         last = float(np.fmax.reduce(column)) if len(column) else np.nan
     return NextRow(
@@ -42,26 +42,26 @@ def next_row(record: NextRowRecord, needed: float, catalogs: Catalogs) -> NextRo
         typed=record.typed,
         unit=record.unit,
         table=record.table,
-        designation=table.designations[index] if found else None,
+        designation=table.designations[index] if has_row else None,
         value=value,
         last=None if np.isnan(last) else last,
-        beside_table=None if beside is None else beside.table,
+        beside_table=None if companion is None else companion.table,
         beside=None
-        if beside is None or value is None
-        else _row_around(beside.table, beside.over, beside.up_to, value, catalogs),
+        if companion is None or value is None
+        else _row_around(companion.table, companion.over, companion.up_to, value, catalogs),
     )
 
 
-def rows_read(record: NextRowRecord, found: NextRow, catalogs: Catalogs) -> list[tuple[str, int]]:
+def rows_read(record: NextRowRecord, match: NextRow, catalogs: Catalogs) -> list[tuple[str, int]]:
     """Return rows that are enough to find the same row again: tables, and numbers of rows in them.
 
     Where no row fits it is one that does not, the largest if it is by size.
     """
     table = catalogs.table(record.table)
-    rows = [(record.table, _number_of(table, found.designation, table.number(record.column)))]
+    rows = [(record.table, _number_of(table, match.designation, table.number(record.column)))]
     if record.beside is not None:
-        beside = catalogs.table(record.beside.table)
-        rows.append((record.beside.table, _number_of(beside, found.beside, beside.number(record.beside.up_to))))
+        companion = catalogs.table(record.beside.table)
+        rows.append((record.beside.table, _number_of(companion, match.beside, companion.number(record.beside.up_to))))
     return [(name, row) for name, row in rows if row >= 0]
 
 

@@ -68,8 +68,8 @@ class DesignProblem(FamilyHooks):
 
     def option(self, name: str) -> str:
         """Option that is in force: the one given, or the default."""
-        if (given := self.options.get(name)) is not None and given not in SWITCHED:
-            return given
+        if (chosen := self.options.get(name)) is not None and chosen not in SWITCHED:
+            return chosen
         traced = next(iter(self._models.values()), None)
         declared = self.declaration(frozenset(), Catalogs()) if traced is None else traced[0].declaration
         return declared.options[name].chosen
@@ -80,49 +80,49 @@ class DesignProblem(FamilyHooks):
         return type(self)
 
     def declaration(
-        self, given: frozenset[str], catalogs: Catalogs, options: Mapping[str, str] | None = None
+        self, present: frozenset[str], catalogs: Catalogs, options: Mapping[str, str] | None = None
     ) -> Declaration:
         """Declaration of the problem, not traced into a model: for callers that need names alone.
 
         ``options``: in place of its own.
         """
-        declaration = Declaration(self.name, self.options if options is None else options, given, catalogs)
+        declaration = Declaration(self.name, self.options if options is None else options, present, catalogs)
         with held_back(), declaring(self.name), recorded() as calls:
             self.declare(declaration)
         declaration.settle_columns(calls)
         return declaration
 
-    def _where_declared(self, given: frozenset[str], catalogs: Catalogs, word: str) -> str:
+    def _where_declared(self, present: frozenset[str], catalogs: Catalogs, word: str) -> str:
         """Say with which optional requirement or option there is a name that is not declared; nothing if with none."""
-        declared = self.declaration(given, catalogs)
+        declared = self.declaration(present, catalogs)
         for requirement in declared.requirements.values():
-            if requirement.sx is None and self._declares(word, self.options, given | {requirement.name}, catalogs):
+            if requirement.sx is None and self._declares(word, self.options, present | {requirement.name}, catalogs):
                 return f"{word} is there where {requirement.name} is given"
         for option in declared.options.values():
             others = {name: label for name, label in self.options.items() if name not in (option.name, option.symbol)}
             for label in option.choices:
-                if self._declares(word, {**others, option.name: label}, given, catalogs):
+                if self._declares(word, {**others, option.name: label}, present, catalogs):
                     return f"{word} is there with {option.name}: {label}"
         return ""
 
-    def _declares(self, word: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs) -> bool:
+    def _declares(self, word: str, options: Mapping[str, str], present: frozenset[str], catalogs: Catalogs) -> bool:
         """Whether the problem declares a name with some options and optional requirements."""
-        with suppress(InputError, DeclarationError):  # what was asked beside it does not go with this option
-            return word in self.declaration(given, catalogs, options).names()
+        with suppress(InputError, DeclarationError):  # other entries of the request may not go with this option
+            return word in self.declaration(present, catalogs, options).names()
         return False
 
-    def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
+    def model(self, present: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
-        key = (given, id(catalogs), compared)
+        key = (present, id(catalogs), compared)
         known = self._models.pop(key, None)
         if known is None:
-            declaration = Declaration(self.name, self.options, given, catalogs)
+            declaration = Declaration(self.name, self.options, present, catalogs)
             with held_back(), declaring(self.name):
                 with recorded() as calls:
                     self.declare(declaration)
                 declaration.refusals += [refusal_of(comparison, declaration) for comparison in compared]
                 # The catalogues are kept with the model, so that their id stays theirs.
-                known = Model(self.name, declaration, calls, partial(self._where_declared, given, catalogs)), catalogs
+                known = Model(self.name, declaration, calls, partial(self._where_declared, present, catalogs)), catalogs
             while len(self._models) >= MOST_MODELS:
                 self._models.pop(next(iter(self._models)), None)
         self._models[key] = known

@@ -168,9 +168,9 @@ class Program:
     def downstream(self, sources: Iterable[int]) -> np.ndarray:
         """Return, for every node, whether it is one of the given nodes or depends on one."""
         marked = bytearray(len(self.nodes))  # an array takes three times as long
-        wanted = set(sources)
+        marked_sources = set(sources)
         for k, node in enumerate(self.nodes):
-            marked[k] = k in wanted or any(map(marked.__getitem__, node.args))
+            marked[k] = k in marked_sources or any(map(marked.__getitem__, node.args))
         return np.frombuffer(marked, dtype=bool)
 
     def empty_without(self, inputs: Sequence[int], node: int) -> int:
@@ -184,10 +184,10 @@ class Program:
                 node = self.node(ca.OP_ADD, (node, nothing))
         return node
 
-    def lost_without(self, given: int) -> np.ndarray:
+    def lost_without(self, position: int) -> np.ndarray:
         """Nodes that are surely not-a-number where an input (given by number) is, each."""
         lost = np.zeros(len(self.nodes), dtype=bool)
-        lost[self.input_nodes[given]] = True
+        lost[self.input_nodes[position]] = True
         for k, node in enumerate(self.nodes):
             if node.op == OP_SELECT:
                 lost[k] = lost[node.args[1]] and lost[node.args[2]]
@@ -208,11 +208,11 @@ class Program:
 
     def needed(self, outputs: Sequence[int]) -> list[int]:
         """Return the nodes needed for the given nodes, in order of evaluation."""
-        wanted = set(outputs)
+        nodes = set(outputs)
         for k in range(len(self.nodes) - 1, -1, -1):
-            if k in wanted:
-                wanted.update(self.nodes[k].args)
-        return sorted(wanted)
+            if k in nodes:
+                nodes.update(self.nodes[k].args)
+        return sorted(nodes)
 
     def compile(self, outputs: Sequence[int] | None = None) -> Callable[[Sequence[Any]], list[Any]]:
         """Return a NumPy function of a list of inputs (numbers or arrays that broadcast).
@@ -222,10 +222,10 @@ class Program:
         outputs : list of node numbers, optional
             What to compute; all outputs of the program by default.
         """
-        wanted = list(self.outputs if outputs is None else outputs)
-        order = self.needed(wanted)
+        targets = list(self.outputs if outputs is None else outputs)
+        order = self.needed(targets)
         last_use = {a: k for k in order for a in self.nodes[k].args}
-        last_use.update(dict.fromkeys(wanted, len(self.nodes)))
+        last_use.update(dict.fromkeys(targets, len(self.nodes)))
         register: dict[int, int] = {}
         free: list[int] = []
         names: dict[int, str] = {}
@@ -250,7 +250,7 @@ class Program:
             slot = register[k] = free.pop() if free else len(register)
             names[k] = f"r{slot}"
             lines.append(f"        r{slot} = {code}")
-        lines.append("        return [" + ", ".join(names[k] for k in wanted) + "]")
+        lines.append("        return [" + ", ".join(names[k] for k in targets) + "]")
         scope: dict[str, Any] = {"np": np, "specials": [f.formula for f in self.specials]}
         if any("erf(" in line for line in lines):
             from scipy.special import erf  # costly to import; few formulas name it

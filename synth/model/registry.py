@@ -62,13 +62,13 @@ def load(problem: str | type[DesignProblem] | DesignProblem, /, **options: str) 
 
 def every_family() -> dict[str, DesignProblem]:
     """Registered families by name, ready to use; a notice names those that cannot be imported."""
-    found = {}
+    problems = {}
     for name in families():
         try:
-            found[name] = load(name)
+            problems[name] = load(name)
         except InputError as error:
             notice(f"left out: {error}")
-    return found
+    return problems
 
 
 def every_declaration(catalogs: Catalogs) -> Iterator[tuple[DesignProblem, Declaration]]:

@@ -51,21 +51,21 @@ class SlotComparison:
 
 def comparisons_of(rules: Mapping[str, Any]) -> tuple[SlotComparison, ...]:
     """Return the conditions among the rules for parts, by slot, that compare slots."""
-    found = []
+    comparisons = []
     for slot, rule in rules.items():
         if isinstance(rule, str) and may_be_condition(rule):
             with at("parts", slot):
                 if parse_condition(rule).compares_slots:
-                    found.append(SlotComparison(slot, rule))
-    return tuple(found)
+                    comparisons.append(SlotComparison(slot, rule))
+    return tuple(comparisons)
 
 
-def refusal_of(asked: SlotComparison, d: Declaration) -> Refusal:
+def refusal_of(comparison: SlotComparison, d: Declaration) -> Refusal:
     """Return the refusal of all combinations for which a condition does not hold.
 
     Parameters
     ----------
-    asked : SlotComparison
+    comparison : SlotComparison
     d : Declaration
         Of the problem; the columns that are compared become columns it uses, which rows must have.
 
@@ -74,10 +74,10 @@ def refusal_of(asked: SlotComparison, d: Declaration) -> Refusal:
     InputError
         A slot or column is unknown, or what is compared is not of one kind.
     """
-    with at("parts", asked.slot):
-        condition = parse_condition(asked.text)
-        holds = _ConditionReader(condition, asked.slot, d).read(condition.joint())
-    return Refusal(f"parts: {asked.slot}", ca.logic_not(holds), f"parts with {asked.text}")
+    with at("parts", comparison.slot):
+        condition = parse_condition(comparison.text)
+        holds = _ConditionReader(condition, comparison.slot, d).read(condition.joint())
+    return Refusal(f"parts: {comparison.slot}", ca.logic_not(holds), f"parts with {comparison.text}")
 
 
 class _ConditionReader:
@@ -106,28 +106,28 @@ class _ConditionReader:
         if not column.numeric and test.op not in ("==", "!=", "in"):
             right = f"== or != or in for {test.column}, which is a column of text"
             raise self.condition.wrong(test.position, f"{test.column} {test.op}", right)
-        left = getattr(part, name) if column.numeric else part.code(name)
-        found = [self._compared(test, left, column, value) for value in test.values]
-        result = found[0]
-        for other in found[1:]:
+        operand = getattr(part, name) if column.numeric else part.code(name)
+        results = [self._compared(test, operand, column, value) for value in test.values]
+        result = results[0]
+        for other in results[1:]:
             result = ca.logic_or(result, other)
         return result
 
-    def _compared(self, test: Test, left: Any, column: Any, value: Value) -> Any:
+    def _compared(self, test: Test, operand: Any, column: Any, value: Value) -> Any:
         compare = _COMPARE["==" if test.op == "in" else test.op]
         if not value.column:
-            return compare(left, self._constant(test, column, value))
+            return compare(operand, self._constant(test, column, value))
         part, name = self._column(value.text, value.position)
         other = self.d.catalogs.table(part.table).column(name)
         if column.numeric != other.numeric:
             kind = "numbers" if column.numeric else "text"
             raise self.condition.wrong(value.position, value.text, f"a column of {kind}, as {test.column} is")
         if not column.numeric:
-            return compare(left, part.code(name))
+            return compare(operand, part.code(name))
         if column.scale.kind != other.scale.kind:
             right = f"a column that measures what {column.heading} does; {value.text} is in {other.unit}"
             raise self.condition.wrong(value.position, value.text, right)
-        return compare(left, getattr(part, name))
+        return compare(operand, getattr(part, name))
 
     def _constant(self, test: Test, column: Any, value: Value) -> float:
         if column.numeric:

@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.declaration import Choice, Count, Part
 from synth.errors import InputError, at
-from synth.model.constraint import SIGNS, Constraint
+from synth.model.constraint import SYMBOLS, Constraint
 from synth.model.model import Model
 from synth.order.margins import MARGINS
 from synth.question.count_domain import shown_set
@@ -212,7 +212,7 @@ def _values_of(count: Count, limits: UserLimits) -> np.ndarray:
     if len(values):
         return values
     low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
-    asked = [f"{SIGNS[x.sense]} {typed_number(x.bound)}" for x in bounding] + [
+    asked = [f"{SYMBOLS[x.sense]} {typed_number(x.bound)}" for x in bounding] + [
         f"in {shown_set(steps)}" for steps in sets
     ]
     asked += [f"== {typed_number(limits.fixed[count.name])}"] if pinned else []

@@ -174,7 +174,7 @@ class Request:
             "limits": stated(self.limits),
             "fix": stated(self.fix),
             "parts": self.rules(),
-            "catalogs": self.catalogs.stated(),
+            "catalogs": self.catalogs.all_files(),
             "weights": dict(self.weights),
             "robust": self.problem.restated.get("robust") if self.robust is None else self.robust.block(),
         }

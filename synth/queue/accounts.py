@@ -57,7 +57,7 @@ class TenantLimits:
     @classmethod
     def of(cls, kept: Mapping[str, Any]) -> TenantLimits:
         """Return the limits that a tenant is kept with; what other versions know besides is theirs."""
-        return cls(**{own.name: kept.get(own.name) for own in fields(cls)})
+        return cls(**{limit.name: kept.get(limit.name) for limit in fields(cls)})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,11 +163,11 @@ class Accounts:
 
     def tenants(self) -> list[TenantEntry]:
         """Return all tenants, in the order in which they were made."""
-        asked = sa.select(Tenant.name, Tenant.limits, Tenant.created).order_by(Tenant.id)
+        query = sa.select(Tenant.name, Tenant.limits, Tenant.created).order_by(Tenant.id)
         with self.engine.connect() as connection:
             return [
                 TenantEntry(name=name, limits=TenantLimits.of(limits), created=created)
-                for name, limits, created in connection.execute(asked)
+                for name, limits, created in connection.execute(query)
             ]
 
     def limit(self, name: str, changes: Mapping[str, float | None]) -> TenantLimits:
@@ -226,9 +226,9 @@ class Accounts:
         if not _can_be_shown(name):
             right = f"a name of at most {NAME} letters in one line, which does not begin with a blank"
             raise InputError("name", name, right, ("name",))
-        wanted = set(scopes)
-        if not wanted or not wanted <= set(SCOPES):
-            shown = ",".join(sorted(wanted)) or None
+        requested = set(scopes)
+        if not requested or not requested <= set(SCOPES):
+            shown = ",".join(sorted(requested)) or None
             raise InputError("scopes", shown, f"one or more of {', '.join(SCOPES)}", ("scopes",))
         value = BEGINNING + secrets.token_urlsafe(RANDOM)
         prefix = _prefix(value)
@@ -237,7 +237,7 @@ class Accounts:
             "name": name,
             "prefix": prefix,
             "hash": _hash(value),
-            "scopes": " ".join(scope for scope in SCOPES if scope in wanted),
+            "scopes": " ".join(scope for scope in SCOPES if scope in requested),
             "created": moment(),
             "expires": None if days is None else moment() + 86400.0 * days,
         }
@@ -247,7 +247,7 @@ class Accounts:
 
     def tokens(self) -> list[TokenEntry]:
         """Return all tokens that there are, or were."""
-        asked = (
+        query = (
             sa.select(
                 Token.id,
                 Token.name,
@@ -263,7 +263,7 @@ class Accounts:
             .order_by(Token.id)
         )
         with self.engine.connect() as connection:
-            rows = connection.execute(asked).all()
+            rows = connection.execute(query).all()
         return [
             TokenEntry(
                 id=number,
@@ -305,11 +305,11 @@ class Accounts:
         """Return who shows a token; None where it is wrong, revoked or too old."""
         if not value.startswith(BEGINNING) or len(value) > LONGEST_TOKEN:
             return None
-        wanted = _hash(value)
+        digest = _hash(value)
         with self.engine.connect() as connection:
-            asked = _principals().add_columns(Token.hash).where(Token.prefix == _prefix(value), *_valid())
-            for row in connection.execute(asked):
-                if hmac.compare_digest(row.hash, wanted):
+            query = _principals().add_columns(Token.hash).where(Token.prefix == _prefix(value), *_valid())
+            for row in connection.execute(query):
+                if hmac.compare_digest(row.hash, digest):
                     return _principal(row)
         return None
 
@@ -333,12 +333,12 @@ class Accounts:
         """Return who a browser is; None where it is nobody, or nobody any more."""
         if len(cookie) > LONGEST_TOKEN:
             return None
-        wanted = _hash(cookie)
-        asked = _principals().join(BrowserSession, BrowserSession.token == Token.id)
+        digest = _hash(cookie)
+        query = _principals().join(BrowserSession, BrowserSession.token == Token.id)
         with self.engine.connect() as connection:
-            valid = (BrowserSession.hash == wanted, BrowserSession.expires > moment(), *_valid())
-            row = connection.execute(asked.where(*valid)).one_or_none()
-        return None if row is None else replace(_principal(row), session=wanted)
+            valid = (BrowserSession.hash == digest, BrowserSession.expires > moment(), *_valid())
+            row = connection.execute(query.where(*valid)).one_or_none()
+        return None if row is None else replace(_principal(row), session=digest)
 
     def lapsed(self, principals: Collection[Principal]) -> set[Principal]:
         """Accounts that would not be let in again: their token has ended, or they were or have signed out."""
@@ -371,11 +371,11 @@ class Accounts:
             There is none, or several.
         """
         letters = beginning.removeprefix(BEGINNING)
-        found = [t for t in self.tokens() if str(t.id) == beginning or (letters and t.prefix.startswith(letters))]
-        exact = [t for t in found if str(t.id) == beginning]
-        if len(exact or found) != 1:
+        matches = [t for t in self.tokens() if str(t.id) == beginning or (letters and t.prefix.startswith(letters))]
+        exact = [t for t in matches if str(t.id) == beginning]
+        if len(exact or matches) != 1:
             raise InputError("TOKEN", beginning, "the number of a token, or its first letters, as token list shows")
-        return (exact or found)[0]
+        return (exact or matches)[0]
 
 
 def _can_be_shown(name: str) -> bool:

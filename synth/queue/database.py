@@ -27,8 +27,8 @@ from synth.system.operating_system import private_file, private_folder
 from synth.text.plain_text import one_line
 
 HEAD = "2"  # the last of the migrations
-WHOLE = "a job database that is whole"
-BESIDE = ("-wal", "-shm")  # endings of what SQLite keeps beside a file
+INTACT = "a job database that is whole"
+SIDE_FILES = ("-wal", "-shm")  # endings of what SQLite keeps beside a file
 DISK_FULL = "53100"  # state that PostgreSQL tells where it has no room
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
 
@@ -45,7 +45,7 @@ def digest(value: Any) -> str:
 
 def way_back(file: str) -> str:
     """Instructions for replacing a SQLite file by its backup."""
-    old = ", ".join(f"{file}{ending}" for ending in ("", *BESIDE))
+    old = ", ".join(f"{file}{ending}" for ending in ("", *SIDE_FILES))
     return f"to go back to a backup, end all that uses it, move {old} away, and copy the backup to {file}"
 
 
@@ -58,7 +58,7 @@ class DamagedError(InputError):
     """
 
     def __init__(self, file: str, reason: str) -> None:
-        super().__init__("--database", file, f"{WHOLE} ({reason}); {way_back(file)}")
+        super().__init__("--database", file, f"{INTACT} ({reason}); {way_back(file)}")
         self.reason = reason
 
     def __reduce__(self) -> tuple[type[DamagedError], tuple[str, str]]:  # type: ignore[override]
@@ -75,9 +75,9 @@ def refuse_damaged(engine: sa.Engine) -> None:
     """
     if engine.dialect.name == "sqlite":
         with engine.connect() as connection:
-            told = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
-        if told != "ok":
-            raise DamagedError(str(engine.url.database), one_line(told))
+            verdict = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
+        if verdict != "ok":
+            raise DamagedError(str(engine.url.database), one_line(verdict))
 
 
 # ---- opening --------------------------------------------------------------------------------------------------------
@@ -122,11 +122,11 @@ def engine_for(url: str | sa.URL, patience: float, overflow: int = STORE.overflo
             json_deserializer=_ReadBack(shown),
         )
     except (ImportError, NoSuchModuleError) as error:
-        wanted = "an installed driver: pip install 'clutchsynth[postgres]'"
-        raise InputError("--database", shown, wanted) from error
+        expected = "an installed driver: pip install 'clutchsynth[postgres]'"
+        raise InputError("--database", shown, expected) from error
     if kind == "sqlite":
         sa.event.listen(engine, "connect", lambda connection, _: _prepare_sqlite(connection, patience))
-        sa.event.listen(engine, "handle_error", _tell_fault)
+        sa.event.listen(engine, "handle_error", _report_fault)
     return engine
 
 
@@ -140,11 +140,11 @@ class _ReadBack:
         try:
             return json.loads(text)
         except (ValueError, RecursionError) as error:
-            raise InputError("--database", self.shown, f"{WHOLE} (a cell that cannot be read)") from error
+            raise InputError("--database", self.shown, f"{INTACT} (a cell that cannot be read)") from error
 
 
-def _tell_fault(context: sa.engine.ExceptionContext) -> None:
-    """Tell what is wrong with a SQLite file where waiting does not help: no room, damaged, not ours.
+def _report_fault(context: sa.engine.ExceptionContext) -> None:
+    """Raise an error for a SQLite file where waiting does not help: no room, damaged, not ours.
 
     Raises
     ------
@@ -256,14 +256,14 @@ def version_of(engine: sa.Engine) -> str | None:
 def _version_on(connection: sa.Connection) -> str | None:
     if not sa.inspect(connection).has_table(VERSION_TABLE):
         return None
-    found = connection.execute(sa.text(f"SELECT version_num FROM {VERSION_TABLE}")).scalar()
-    return None if found is None else str(found)
+    version = connection.execute(sa.text(f"SELECT version_num FROM {VERSION_TABLE}")).scalar()
+    return None if version is None else str(version)
 
 
 def _refuse_empty(engine: sa.Engine, shown: str) -> None:
     """Refuse a database without tables of ours: somebody has emptied it, or means another one."""
     if version_of(engine) is None:
-        raise InputError("--database", shown, f"{WHOLE} (there are no jobs in it)")
+        raise InputError("--database", shown, f"{INTACT} (there are no jobs in it)")
 
 
 def _find_file(file: Path, create: bool) -> None:
@@ -273,7 +273,7 @@ def _find_file(file: Path, create: bool) -> None:
     if file.exists() and not file.is_file():
         raise InputError("--database", str(file), "a job database; this is no regular file")
     private_folder(file.parent)
-    for name in (file, *(file.with_name(f"{file.name}{ending}") for ending in BESIDE)):
+    for name in (file, *(file.with_name(f"{file.name}{ending}") for ending in SIDE_FILES)):
         if name == file or name.exists():
             private_file(name)
 
@@ -314,8 +314,8 @@ class Database:
         except (DBAPIError, OSError) as error:
             self.engine.dispose()
             reason = str(getattr(error, "orig", error)).strip().splitlines()
-            wanted = f"a database that can be opened ({reason[0] if reason else type(error).__name__})"
-            raise InputError("--database", self.url, wanted) from error
+            expected = f"a database that can be opened ({reason[0] if reason else type(error).__name__})"
+            raise InputError("--database", self.url, expected) from error
 
     def version(self) -> str | None:
         """Return of which version the tables are, as the database says now; None where there are none."""

@@ -13,7 +13,7 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy.orm import Session
 
-from synth.queue.job_table import BATCH, DONE, LIVE, OPEN, ROWS, RUNNING, RUNNING_LIMIT, Ending, JobTable, tell_on
+from synth.queue.job_table import BATCH, DONE, LIVE, OPEN, ROWS, RUNNING, RUNNING_LIMIT, Ending, JobTable, insert_event
 from synth.queue.models import (
     Job,
     RowQuestion,
@@ -44,17 +44,17 @@ class JobQueue(JobTable):
     def claim(self, job: str, owner: str, most: int, lease: float | None = None) -> list[Claim]:
         """Take units that are open, or whose owner has not renewed its lease; for so many seconds, or as set."""
         # PostgreSQL passes over what others are just taking; SQLite has one writer at a time and ignores the clause.
-        wanted = (
+        claimable = (
             sa.select(WorkUnit.id)
             .where(WorkUnit.job == job, _free())
             .order_by(WorkUnit.id)
             .limit(most)
             .with_for_update(skip_locked=True)
-            .cte("wanted")
+            .cte("claimable")
         )
         take = (
             sa.update(WorkUnit)
-            .where(WorkUnit.id.in_(sa.select(wanted.c.id)))
+            .where(WorkUnit.id.in_(sa.select(claimable.c.id)))
             .values(state=RUNNING, owner=owner, lease=self._until(lease), token=WorkUnit.token + 1)
             .returning(WorkUnit.id, WorkUnit.token, WorkUnit.attempts, WorkUnit.task)
             .execution_options(synchronize_session=False)
@@ -63,18 +63,18 @@ class JobQueue(JobTable):
             # First what changes the job: of a statement WITH an update in it, SQLite begins no transaction.
             if not self._begin_on(connection, job, owner):
                 return []
-            taken = sorted((unit, token, attempts, task) for unit, token, attempts, task in connection.execute(take))
-            if not taken:
+            claimed = sorted((unit, token, attempts, task) for unit, token, attempts, task in connection.execute(take))
+            if not claimed:
                 connection.rollback()
                 return []
-            asked = connection.execute(
+            questions = connection.execute(
                 sa.select(RowQuestion.unit, RowQuestion.key, RowQuestion.content)
-                .where(RowQuestion.unit.in_([unit[0] for unit in taken]))
+                .where(RowQuestion.unit.in_([unit[0] for unit in claimed]))
                 .order_by(RowQuestion.position, RowQuestion.key)
             ).all()
         return [
-            Claim(unit, token, attempts, {key: content for of, key, content in asked if of == unit}, task)
-            for unit, token, attempts, task in taken
+            Claim(unit, token, attempts, {key: content for of, key, content in questions if of == unit}, task)
+            for unit, token, attempts, task in claimed
         ]
 
     @staticmethod
@@ -85,7 +85,7 @@ class JobQueue(JobTable):
             state=RUNNING, started=sa.func.coalesce(Job.started, moment()), served=moment(), updated=moment()
         )
         if connection.execute(first).rowcount == 1:
-            tell_on(connection, job, "started", owner, {"state": RUNNING})
+            insert_event(connection, job, "started", owner, {"state": RUNNING})
             return True
         return connection.execute(of_job.where(Job.state == RUNNING).values(served=moment())).rowcount == 1
 
@@ -108,20 +108,20 @@ class JobQueue(JobTable):
         for job in self._in_turn(code, bulk):
             claims = self.claim(job, owner, 1, lease)
             if claims:
-                found = self.job(job)
-                if found is not None:
-                    return found, claims[0]
+                record = self.job(job)
+                if record is not None:
+                    return record, claims[0]
         return None
 
     def _in_turn(self, code: str, bulk: bool) -> list[str]:
         """Return the jobs that have units to be taken, the next first."""
-        has_some = sa.exists().where(WorkUnit.job == Job.id, _free())
-        asked = sa.select(Job.id, Job.tenant, Job.priority, Job.served, Job.created, moment()).where(
-            Job.state.in_(LIVE), Job.code == code, has_some
+        has_free = sa.exists().where(WorkUnit.job == Job.id, _free())
+        query = sa.select(Job.id, Job.tenant, Job.priority, Job.served, Job.created, moment()).where(
+            Job.state.in_(LIVE), Job.code == code, has_free
         )
         with self.engine.connect() as connection:
-            found = connection.execute(asked).all()
-            if not found:
+            rows = connection.execute(query).all()
+            if not rows:
                 return []
             under_way = {
                 tenant: int(count)
@@ -134,7 +134,7 @@ class JobQueue(JobTable):
             }
             limits = {name: limit for name, limit in connection.execute(sa.select(Tenant.id, Tenant.limits))}
         queue = []
-        for job, tenant, priority, served, created, now in found:
+        for job, tenant, priority, served, created, now in rows:
             most = limits.get(tenant, {}).get(RUNNING_LIMIT)
             if most is not None and under_way.get(tenant, 0) >= most:
                 continue
@@ -146,9 +146,9 @@ class JobQueue(JobTable):
     def interactive_waits(self, code: str) -> bool:
         """True if a unit is open that somebody waits for."""
         has_open = sa.exists().where(WorkUnit.job == Job.id, WorkUnit.state == OPEN)
-        asked = sa.select(sa.exists().where(Job.state.in_(LIVE), Job.code == code, Job.priority > 0, has_open))
+        query = sa.select(sa.exists().where(Job.state.in_(LIVE), Job.code == code, Job.priority > 0, has_open))
         with self.engine.connect() as connection:
-            return bool(connection.scalar(asked))
+            return bool(connection.scalar(query))
 
     def _until(self, lease: float | None) -> sa.ColumnElement[float]:
         return moment() + (self.settings.lease if lease is None else lease)
@@ -200,7 +200,7 @@ class JobQueue(JobTable):
             )
             if held.rowcount == 1:
                 what = f" of {len(claim.questions)} questions" if claim.questions else ""
-                tell_on(connection, job, "failed", f"attempt {claim.attempts + 1}{what}: {error}")
+                insert_event(connection, job, "failed", f"attempt {claim.attempts + 1}{what}: {error}")
         return bool(held.rowcount == 1)
 
     def complete(self, job: str, claim: Claim, owner: str, ending: Ending) -> bool:
@@ -222,8 +222,8 @@ class JobQueue(JobTable):
             connection.rollback()
         return False
 
-    def wanted(self, jobs: Iterable[str]) -> set[str]:
-        """Jobs among some that have not ended."""
+    def unfinished(self, jobs: Iterable[str]) -> set[str]:
+        """Those of the jobs that have not ended."""
         with self.engine.connect() as connection:
             return set(connection.scalars(sa.select(Job.id).where(Job.id.in_(list(jobs)), Job.state.in_(LIVE))))
 
@@ -240,8 +240,8 @@ class JobQueue(JobTable):
             counted = connection.execute(
                 sa.select(WorkUnit.state, sa.func.count()).where(WorkUnit.job == job).group_by(WorkUnit.state)
             )
-            found = {state: count for state, count in counted}
-        return int(found.get(OPEN, 0)), int(found.get(RUNNING, 0))
+            counts = {state: count for state, count in counted}
+        return int(counts.get(OPEN, 0)), int(counts.get(RUNNING, 0))
 
     # -- workers -------------------------------------------------------------------------------
 
@@ -271,7 +271,7 @@ class JobQueue(JobTable):
         """
         living = sa.select(WorkerSign.code).where(WorkerSign.seen > moment() - within)
         with self.engine.begin() as connection:
-            taken = connection.execute(
+            adopted = connection.execute(
                 sa.update(Job)
                 .where(
                     Job.state.in_(LIVE),
@@ -281,7 +281,7 @@ class JobQueue(JobTable):
                 )
                 .values(code=code)
             )
-        return int(taken.rowcount)
+        return int(adopted.rowcount)
 
 
 def held_by(claim: Claim, owner: str) -> tuple[Any, ...]:

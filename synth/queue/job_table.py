@@ -31,7 +31,7 @@ from synth.queue.records import Record
 
 OPEN, RUNNING, DONE, CANCELLED, FAILED, STOPPED = "open", "running", "done", "cancelled", "failed", "stopped"
 LIVE = (OPEN, RUNNING)  # states of a job that somebody has to work at
-WHOLE_JOB, PLAN, ROWS = "job", "plan", "rows"  # tasks of units
+JOB_TASK, PLAN, ROWS = "job", "plan", "rows"  # tasks of units
 BATCH, SIZE_RANGE = "batch", "size_range"  # kinds that the store itself knows of: their answers stand in tables
 LOCAL = 1  # the tenant of the command line, and of a service without tokens
 LETTERS = "0123456789abcdefghjkmnpqrstvwxyz"  # of ids: none that is read as another
@@ -48,7 +48,7 @@ class NewJob:
     ----------
     kind, title : str
     request : mapping
-        What is asked, as it is kept.
+        The request as it is kept.
     fingerprint, code : str
         Of what decides the results, and of the programs that may work at it.
     tenant : int
@@ -77,7 +77,7 @@ class NewJob:
     fingerprint: str
     code: str | None
     tenant: int = LOCAL
-    task: str = WHOLE_JOB
+    task: str = JOB_TASK
     priority: int = 1
     content: Mapping[str, Any] = field(default_factory=dict)
     idempotency: str | None = None
@@ -91,7 +91,7 @@ class NewJob:
 
 @dataclass(frozen=True, kw_only=True)
 class Ending:
-    """How a job ended: its state, its records, and what lists tell of it."""
+    """How a job ended: its state, its records, and its summary for lists."""
 
     state: str
     outcome: str | None = None
@@ -102,7 +102,7 @@ class Ending:
 
 @dataclass(frozen=True)
 class Happening:
-    """An event as others are told of it."""
+    """An event as subscribers receive it."""
 
     id: int
     job: str
@@ -112,7 +112,7 @@ class Happening:
     data: Mapping[str, Any] | None
 
 
-class KeyTakenError(Exception):
+class KeyInUseError(Exception):
     """The idempotency key was used for another request."""
 
 
@@ -143,8 +143,8 @@ class JobTable(Database):
     def job_like(self, kind: str, fingerprint: str, tenant: int = LOCAL) -> Job | None:
         """Return the job of a kind that asks just this; None where there is none."""
         with Session(self.engine, expire_on_commit=False) as session:
-            wanted = (Job.tenant == tenant, Job.kind == kind, Job.fingerprint == fingerprint)
-            return session.scalar(sa.select(Job).where(*wanted))
+            where = (Job.tenant == tenant, Job.kind == kind, Job.fingerprint == fingerprint)
+            return session.scalar(sa.select(Job).where(*where))
 
     def jobs(self) -> list[Job]:
         """Return all jobs, the latest first."""
@@ -178,30 +178,30 @@ class JobTable(Database):
             ``created`` and ``id`` of the last job of the page before.
         most : int
         """
-        wanted: list[Any] = [*_of(tenant)]
+        where: list[Any] = [*_of(tenant)]
         if states:
-            wanted.append(Job.state.in_(states))
+            where.append(Job.state.in_(states))
         if kind is not None:
-            wanted.append(Job.kind == kind)
+            where.append(Job.kind == kind)
         if family is not None:
             named = sa.cast(Job.content["families"], sa.Text)
-            wanted.append(named.contains(encoded(family), autoescape=True))
+            where.append(named.contains(encoded(family), autoescape=True))
         if parent is not None:
-            wanted.append(Job.parent == parent)
+            where.append(Job.parent == parent)
         if follows is not None:
             other = aliased(Job)
             there = sa.exists().where(other.id == Job.parent)  # what followed from a removed job stands by itself
-            wanted.append(there if follows else ~there)
+            where.append(there if follows else ~there)
         if pinned is not None:
-            wanted.append(Job.pinned.is_(pinned))
+            where.append(Job.pinned.is_(pinned))
         if text:
-            wanted.append(sa.or_(Job.title.icontains(text, autoescape=True), Job.id.startswith(text, autoescape=True)))
+            where.append(sa.or_(Job.title.icontains(text, autoescape=True), Job.id.startswith(text, autoescape=True)))
         if before is not None:
             created, name = before
-            wanted.append(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
+            where.append(sa.or_(Job.created < created, sa.and_(Job.created == created, Job.id < name)))
         with Session(self.engine, expire_on_commit=False) as session:
-            asked = sa.select(Job).where(*wanted).order_by(Job.created.desc(), Job.id.desc()).limit(most)
-            return list(session.scalars(asked))
+            query = sa.select(Job).where(*where).order_by(Job.created.desc(), Job.id.desc()).limit(most)
+            return list(session.scalars(query))
 
     def submit(self, new: NewJob) -> tuple[str, bool]:
         """Write a job; return its id, and whether it is a new one.
@@ -210,7 +210,7 @@ class JobTable(Database):
 
         Raises
         ------
-        KeyTakenError
+        KeyInUseError
             The key was used for another request.
         QueueFullError
             The tenant has as many open jobs as it may have.
@@ -250,7 +250,7 @@ class JobTable(Database):
                 connection.execute(sa.insert(WorkUnit).values(**unit))
                 for record in new.kept:
                     self._keep_on(connection, name, record)
-                tell_on(connection, name, "created", new.title)
+                insert_event(connection, name, "created", new.title)
         except (IntegrityError, QueueFullError):  # somebody may have said the same at the same time
             known = self._known(new)
             if known is None:
@@ -263,13 +263,13 @@ class JobTable(Database):
 
         Raises
         ------
-        KeyTakenError
+        KeyInUseError
             The key was used for a request with another body.
         """
         with Session(self.engine) as session:
             same = session.scalar(sa.select(Job).where(Job.tenant == tenant, Job.idempotency == key))
             if same is not None and same.content.get(BODY) != body:
-                raise KeyTakenError
+                raise KeyInUseError
             return None if same is None else same.id
 
     def _known(self, new: NewJob) -> str | None:
@@ -280,8 +280,8 @@ class JobTable(Database):
                 return same
         with Session(self.engine) as session:
             if new.kind in (BATCH, SIZE_RANGE):
-                wanted = (Job.tenant == new.tenant, Job.kind == new.kind, Job.fingerprint == new.fingerprint)
-                return session.scalar(sa.select(Job.id).where(*wanted))
+                conditions = (Job.tenant == new.tenant, Job.kind == new.kind, Job.fingerprint == new.fingerprint)
+                return session.scalar(sa.select(Job.id).where(*conditions))
         return None
 
     @staticmethod
@@ -294,8 +294,8 @@ class JobTable(Database):
         held = sa.update(Tenant).where(Tenant.id == tenant).values(created=Tenant.created).returning(Tenant.limits)
         most = (connection.scalar(held) or {}).get(OPEN_LIMIT)
         if most is not None:
-            asked = sa.select(sa.func.count()).select_from(Job).where(Job.tenant == tenant, Job.state.in_(LIVE))
-            if int(connection.scalar(asked) or 0) >= most:
+            query = sa.select(sa.func.count()).select_from(Job).where(Job.tenant == tenant, Job.state.in_(LIVE))
+            if int(connection.scalar(query) or 0) >= most:
                 raise QueueFullError(int(most))
 
     def change(self, job: str, **columns: Any) -> None:
@@ -312,7 +312,7 @@ class JobTable(Database):
         with self.engine.begin() as connection:
             again = {"state": OPEN, "ended": None, "error": None, "updated": moment()}
             connection.execute(sa.update(Job).where(Job.id == job).values(**again))
-            tell_on(connection, job, kind, text)
+            insert_event(connection, job, kind, text)
 
     def resume(self, job: str, tenant: int, code: str) -> bool:
         """Let a job that was cancelled or stopped, or has failed, go on; return False where it is in another state.
@@ -339,13 +339,13 @@ class JobTable(Database):
             if connection.execute(sa.update(Job).where(*ended).values(**again)).rowcount != 1:
                 return False
             without_rows = sa.exists().where(Job.id == WorkUnit.job, Job.rows == 0)
-            begun_anew = sa.or_(WorkUnit.task == WHOLE_JOB, sa.and_(WorkUnit.task == PLAN, without_rows))
+            begun_anew = sa.or_(WorkUnit.task == JOB_TASK, sa.and_(WorkUnit.task == PLAN, without_rows))
             fresh = {"state": OPEN, "owner": None, "lease": None, "attempts": 0}
             connection.execute(sa.update(WorkUnit).where(WorkUnit.job == job, begun_anew).values(**fresh))
-            tell_on(connection, job, "resumed", "", {"state": OPEN})
+            insert_event(connection, job, "resumed", "", {"state": OPEN})
         return True
 
-    def rest(self, job: str) -> None:
+    def requeue(self, job: str) -> None:
         """Note that a job waits again, where nobody works at it any more."""
         at_work = sa.exists().where(WorkUnit.job == job, WorkUnit.state == RUNNING)
         with self.engine.begin() as connection:
@@ -364,7 +364,7 @@ class JobTable(Database):
                 .values(state=state, updated=moment(), ended=moment(), expires=_unused())
             )
             if changed.rowcount == 1:
-                tell_on(connection, job, kind, text, {"state": state})
+                insert_event(connection, job, kind, text, {"state": state})
         return bool(changed.rowcount == 1)
 
     def _end_on(self, connection: sa.Connection, job: str, ending: Ending) -> bool:
@@ -386,7 +386,7 @@ class JobTable(Database):
         for record in ending.records:
             self._keep_on(connection, job, record)
         text = "" if ending.error is None else str(ending.error.get("message", ""))
-        tell_on(connection, job, ending.state, text, {"state": ending.state, "outcome": ending.outcome})
+        insert_event(connection, job, ending.state, text, {"state": ending.state, "outcome": ending.outcome})
         return True
 
     def delete(self, job: str) -> bool:
@@ -435,40 +435,40 @@ class JobTable(Database):
 
     def records(self, job: str, names: Sequence[str] = ()) -> dict[str, Record]:
         """Return the files of a job by name: all, or those named that there are."""
-        asked = sa.select(JobRecord.name, JobRecord.media, JobRecord.content).where(JobRecord.job == job)
+        query = sa.select(JobRecord.name, JobRecord.media, JobRecord.content).where(JobRecord.job == job)
         if names:
-            asked = asked.where(JobRecord.name.in_(names))
+            query = query.where(JobRecord.name.in_(names))
         with self.engine.connect() as connection:
             return {
                 name: Record(name=name, media=media, content=gzip.decompress(content))
-                for name, media, content in connection.execute(asked.order_by(JobRecord.name))
+                for name, media, content in connection.execute(query.order_by(JobRecord.name))
             }
 
     # -- events --------------------------------------------------------------------------------
 
-    def tell(self, job: str, kind: str, text: str = "", data: Mapping[str, Any] | None = None) -> None:
+    def add_event(self, job: str, kind: str, text: str = "", data: Mapping[str, Any] | None = None) -> None:
         """Add an event."""
         with self.engine.begin() as connection:
-            tell_on(connection, job, kind, text, data)
+            insert_event(connection, job, kind, text, data)
 
     def events(self, job: str, most: int = 1000) -> list[tuple[float, str, str]]:
         """Return the latest events of a job, oldest first: time, kind, text."""
         with self.engine.begin() as connection:
-            found = connection.execute(
+            rows = connection.execute(
                 sa.select(Event.time, Event.kind, Event.text)
                 .where(Event.job == job)
                 .order_by(Event.id.desc())
                 .limit(most)
             )
-            return [(time, kind, text) for time, kind, text in found][::-1]
+            return [(time, kind, text) for time, kind, text in rows][::-1]
 
     def happenings(self, after: int, *, job: str | None = None, most: int = 1000) -> list[Happening]:
         """Return events of all jobs, or of one, with higher numbers than this one."""
-        asked = sa.select(Event.id, Event.job, Event.time, Event.kind, Event.text, Event.data).where(Event.id > after)
+        query = sa.select(Event.id, Event.job, Event.time, Event.kind, Event.text, Event.data).where(Event.id > after)
         if job is not None:
-            asked = asked.where(Event.job == job)
+            query = query.where(Event.job == job)
         with self.engine.connect() as connection:
-            return [Happening(*row) for row in connection.execute(asked.order_by(Event.id).limit(most))]
+            return [Happening(*row) for row in connection.execute(query.order_by(Event.id).limit(most))]
 
     def last_event(self) -> int:
         """Return the number of the latest event; 0 before there are any."""
@@ -495,7 +495,7 @@ class JobTable(Database):
             connection.execute(sa.delete(Job).where(Job.id.in_(gone)))
             connection.execute(sa.delete(Upload).where(Upload.expires < moment()))
             connection.execute(sa.delete(WorkerSign).where(WorkerSign.seen < moment() - self.settings.forgotten))
-        self.shrink(self.settings.given_back)
+        self.shrink(self.settings.pages_released)
         return len(gone)
 
     def census(self) -> dict[str, Any]:
@@ -525,10 +525,12 @@ def body_digest(body: Any) -> str:
     return digest(body)
 
 
-def tell_on(connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, Any] | None = None) -> None:
-    """Add an event in the transaction of what it tells of."""
-    told = None if data is None else dict(data)
-    connection.execute(sa.insert(Event).values(job=job, time=moment(), kind=kind, text=text, data=told))
+def insert_event(
+    connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, Any] | None = None
+) -> None:
+    """Add an event in the transaction of its cause."""
+    content = None if data is None else dict(data)
+    connection.execute(sa.insert(Event).values(job=job, time=moment(), kind=kind, text=text, data=content))
 
 
 def _of(tenant: int | None) -> tuple[Any, ...]:

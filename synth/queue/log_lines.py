@@ -19,12 +19,12 @@ from typing import Any, TextIO
 SWITCH = "CLUTCHSYNTH_JSON_LINES"  # a variable: processes that a service starts know by it whose they are
 BEGINNING = "cs_"  # of every token: programs that look for secrets in texts know them by it
 TOKENS = re.compile(rf"{BEGINNING}[\w-]{{20,}}")  # also in a path, where somebody has put one by mistake
-SAID = "said"  # the event of a text that a program has printed
+PRINTED = "said"  # the event of a line that a process has printed
 
 
-def log_line(event: str, **told: Any) -> str:
+def log_line(event: str, **details: Any) -> str:
     """Return a line of the log, without the tokens that may stand in it."""
-    line = json.dumps({"time": round(time.time(), 3), "event": event, **told}, default=str)
+    line = json.dumps({"time": round(time.time(), 3), "event": event, **details}, default=str)
     return TOKENS.sub(f"{BEGINNING}...", line)
 
 
@@ -44,9 +44,9 @@ class JsonLines:
         """Hand on what is a line by now; threads say theirs apart from each other."""
         thread = threading.get_ident()
         with self._guard:
-            *lines, rest = (self._begun.pop(thread, "") + text).split("\n")
-            if rest:
-                self._begun[thread] = rest
+            *lines, unfinished = (self._begun.pop(thread, "") + text).split("\n")
+            if unfinished:
+                self._begun[thread] = unfinished
             self._stream.writelines(f"{_as_json(line)}\n" for line in lines if line.strip())
         return len(text)
 
@@ -71,7 +71,7 @@ def _as_json(line: str) -> str:
             return line
     except (ValueError, RecursionError):
         pass
-    return log_line(SAID, process=os.getpid(), text=line)
+    return log_line(PRINTED, process=os.getpid(), text=line)
 
 
 @contextmanager

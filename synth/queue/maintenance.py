@@ -13,11 +13,11 @@ import sqlalchemy as sa
 from sqlalchemy.exc import DBAPIError
 
 from synth.errors import InputError
-from synth.queue.database import HEAD, WHOLE, DamagedError, Database, engine_for, version_of
+from synth.queue.database import HEAD, INTACT, DamagedError, Database, engine_for, version_of
 from synth.queue.settings import STORE
 from synth.system.operating_system import private_file, put_in_place
 
-SHOWN = 5  # faults of a damaged file that are told
+SHOWN = 5  # faults of a damaged file that are listed
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def examine(url: str) -> Finding:
         return Finding(shown, None, (damaged.reason,))
     except (DBAPIError, OSError) as error:
         reason = str(getattr(error, "orig", error)).strip().split("\n")[0]
-        raise InputError("--database", shown, f"{WHOLE} ({reason})") from error
+        raise InputError("--database", shown, f"{INTACT} ({reason})") from error
     finally:
         engine.dispose()
 
@@ -67,9 +67,9 @@ def _faults(engine: sa.Engine) -> tuple[str, ...]:
     if engine.dialect.name != "sqlite":
         return ()
     with engine.connect() as connection:
-        told = [str(row[0]) for row in connection.exec_driver_sql(f"PRAGMA integrity_check({SHOWN})")]
+        bad = [str(row[0]) for row in connection.exec_driver_sql(f"PRAGMA integrity_check({SHOWN})")]
         loose = connection.exec_driver_sql("PRAGMA foreign_key_check").fetchmany(SHOWN)
-    return (*(text for text in told if text != "ok"), *(f"{row[0]}: row {row[1]} belongs to nothing" for row in loose))
+    return (*(text for text in bad if text != "ok"), *(f"{row[0]}: row {row[1]} belongs to nothing" for row in loose))
 
 
 def bring_up(url: str) -> tuple[str | None, str]:
@@ -118,11 +118,11 @@ def _copy_file(engine: sa.Engine, file: Path) -> None:
         connection.exec_driver_sql("VACUUM INTO ?", (str(file),))
     copy = sqlite3.connect(file)
     try:
-        told = copy.execute("PRAGMA integrity_check").fetchone()[0]
+        verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
     finally:
         copy.close()
-    if told != "ok":
-        raise InputError("FILE", str(file), f"a disk that keeps what is written ({told})")
+    if verdict != "ok":
+        raise InputError("FILE", str(file), f"a disk that keeps what is written ({verdict})")
 
 
 def _dump(engine: sa.Engine, file: Path) -> None:

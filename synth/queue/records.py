@@ -12,7 +12,7 @@ from synth.errors import shortened
 from synth.tables.table_text import TableText
 from synth.text.plain_text import one_line
 
-Tell = Callable[[Mapping[str, Any]], None]  # told how far the work is, in mappings that JSON can hold
+ReportProgress = Callable[[Mapping[str, Any]], None]  # called with the progress, in mappings that JSON can hold
 
 MEDIA = {
     "json": "application/json",
@@ -74,7 +74,7 @@ class Sources:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Posed:
+class CheckedRequest:
     """A request that was checked.
 
     Parameters
@@ -138,12 +138,12 @@ def mentioned(request: Any) -> Mentioned:
     """
     if not isinstance(request, Mapping):
         return Mentioned(tables=(), jobs=())
-    stated, job, file = request.get("catalogs"), request.get("of"), request.get("upload")
-    found = dict[str, None]()
-    for value in stated.values() if isinstance(stated, Mapping) else ():
+    catalogs, job, file = request.get("catalogs"), request.get("of"), request.get("upload")
+    tables = dict[str, None]()
+    for value in catalogs.values() if isinstance(catalogs, Mapping) else ():
         entries = value if isinstance(value, (list, tuple)) else [value]
-        found |= dict.fromkeys(entry for entry in entries if isinstance(entry, str) and "@" in entry)
-    return Mentioned(tables=tuple(found), jobs=_named(job), files=_named(file))
+        tables |= dict.fromkeys(entry for entry in entries if isinstance(entry, str) and "@" in entry)
+    return Mentioned(tables=tuple(tables), jobs=_named(job), files=_named(file))
 
 
 def _named(value: Any) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ class StoreSettings:
         In s, after which bulk work that nobody has served counts as work that somebody waits for.
     forgotten : float
         In s, after which a worker that has given no sign of life is listed no more.
-    given_back : int
+    pages_released : int
         Pages of a SQLite file, of 4 kB mostly, that are given back at a time after jobs were removed: others wait for
         as long, some hundredths of a second.
     """
@@ -35,7 +35,7 @@ class StoreSettings:
     overflow: int = 45
     starving: float = 60.0
     forgotten: float = 86400.0
-    given_back: int = 5000
+    pages_released: int = 5000
 
 
 STORE = StoreSettings()

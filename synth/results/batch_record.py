@@ -131,10 +131,10 @@ class BatchRecord:
     @property
     def counts(self) -> dict[str, int]:
         """Rows by status, in the order of ``STATUSES``."""
-        found = dict.fromkeys(STATUSES, 0)
+        by_status = dict.fromkeys(STATUSES, 0)
         for row in self.rows:
-            found[row.status] = found.get(row.status, 0) + 1
-        return {status: count for status, count in found.items() if count}
+            by_status[row.status] = by_status.get(row.status, 0) + 1
+        return {status: count for status, count in by_status.items() if count}
 
     @property
     def answered(self) -> int:

@@ -84,8 +84,8 @@ class NamedQuantity:
     def word(self, number: float) -> str | None:
         """Meaning of a number: the label of a choice, or a text that formulas ask for."""
         if self.kind == "choice":
-            whole = float(number).is_integer() and 0 <= number < len(self.labels)
-            return self.labels[int(number)] if whole else None
+            is_label = float(number).is_integer() and 0 <= number < len(self.labels)
+            return self.labels[int(number)] if is_label else None
         if not self.is_text:
             return None
         return next((text or "nothing" for text in self.labels if text_code(text) == number), None)
@@ -154,13 +154,13 @@ class LimitVerdict:
     value, limit : float
         Both sides in SI, as formulas give them, whatever guards say.
     void : bool
-        Whether an optional column has no value, so that nothing can be told.
+        Whether an optional column has no value, so that the limit is undecided.
     failed : tuple of str
         Guards that fail without which its sides do not exist: they alone tell why.
     holds : bool
         Also where it is void, or where guards have failed.
     used : float or None
-        Share of the limit that is used; None where nothing can be told.
+        Share of the limit that is used; None where it is undecided.
     """
 
     value: float
@@ -249,8 +249,8 @@ class Calculation:
             void = any(math.isnan(raw[name]) for name in x.optional)
             failed = tuple(guard for guard in x.needs if not held[guard])
             held[x.name] = held[x.name] or void or bool(failed)
-            told = not void and not failed and not math.isnan(missed[x.name])
-            used = float(utilisation(*sides[x.name], x.sense)) if told else None
+            decidable = not void and not failed and not math.isnan(missed[x.name])
+            used = float(utilisation(*sides[x.name], x.sense)) if decidable else None
             value, limit = sides[x.name]
             verdicts[x.name] = LimitVerdict(value, limit, void, failed, held[x.name], used)
         return CalculatedDesign(values, verdicts)
@@ -263,15 +263,15 @@ class Calculation:
         InputError
             A recorded value differs: the design was computed by other formulas, or was changed.
         """
-        found = self.outcome(self.inputs(design))
+        outcome = self.outcome(self.inputs(design))
         for name, recorded in (*design.values.items(), *design.steps.items()):
-            if name in found.values:
-                self._compare(name, recorded, found.values[name])
-        for name, verdict in found.verdicts.items():
+            if name in outcome.values:
+                self._compare(name, recorded, outcome.values[name])
+        for name, verdict in outcome.verdicts.items():
             if name in design.limits and not verdict.void and not verdict.failed:
-                for recorded, own in zip(design.limits[name], (verdict.value, verdict.limit), strict=True):
-                    self._compare(f"limit {name}", recorded, own)
-        return found
+                for recorded, recomputed in zip(design.limits[name], (verdict.value, verdict.limit), strict=True):
+                    self._compare(f"limit {name}", recorded, recomputed)
+        return outcome
 
     def values(self, design: Design) -> Mapping[str, float]:
         """Return every quantity of a design in SI, computed anew and compared with its record.
@@ -283,13 +283,13 @@ class Calculation:
         """
         return self.of_design(design).values
 
-    def _compare(self, name: str, recorded: float, own: float) -> None:
-        if math.isnan(recorded) and math.isnan(own):
+    def _compare(self, name: str, recorded: float, recomputed: float) -> None:
+        if math.isnan(recorded) and math.isnan(recomputed):
             return
-        if recorded == own or abs(recorded - own) <= AGREES * max(abs(recorded), abs(own)):
+        if recorded == recomputed or abs(recorded - recomputed) <= AGREES * max(abs(recorded), abs(recomputed)):
             return
-        smaller = min(abs(recorded), abs(own))
-        differs = f"differs by {percent(abs(recorded - own) / smaller)}" if smaller else "differs"
+        smaller = min(abs(recorded), abs(recomputed))
+        differs = f"differs by {percent(abs(recorded - recomputed) / smaller)}" if smaller else "differs"
         right = f"a value as its formula gives it ({name} {differs}): run it again, or use the version that computed it"
         raise InputError(f"design: {name}", finite(recorded), right)
 
@@ -298,18 +298,18 @@ class Calculation:
     @cached_property
     def content(self) -> dict[str, Any]:
         """The content of a calculation.json."""
-        told: dict[str, Any] = {
+        record: dict[str, Any] = {
             "format": CALCULATION_FORMAT,
             "family": self.family,
             "title": self.title,
             "sources": list(self.sources),
             "options": dict(self.options),
-            "quantities": [_told(q) for q in self.quantities.values()],
-            "limits": [_told(x) for x in self.limits],
-            "remarks": [_told(x) for x in self.remarks],
+            "quantities": [_non_default_fields(q) for q in self.quantities.values()],
+            "limits": [_non_default_fields(x) for x in self.limits],
+            "remarks": [_non_default_fields(x) for x in self.remarks],
         }
-        told["digest"] = digest_of(told)
-        return told
+        record["digest"] = digest_of(record)
+        return record
 
     @property
     def digest(self) -> str:
@@ -375,12 +375,12 @@ def load_calculation(folder: Path, digest: str) -> Calculation:
         It is missing, was changed, or belongs to another front.
     """
     path = folder / CALCULATION
-    found = Calculation.from_json(read_json(path, "calculation", RIGHT), f"calculation {path}")
-    if found.digest != digest:
+    calculation = Calculation.from_json(read_json(path, "calculation", RIGHT), f"calculation {path}")
+    if calculation.digest != digest:
         raise InputError(
-            f"calculation {path}", found.digest[:12], f"{RIGHT} with this front; it belongs to another one"
+            f"calculation {path}", calculation.digest[:12], f"{RIGHT} with this front; it belongs to another one"
         )
-    return found
+    return calculation
 
 
 def _input(q: NamedQuantity, design: Design) -> float:
@@ -410,27 +410,27 @@ def part_value(row: Mapping[str, Any], columns: Iterable[str]) -> float:
     columns : list of str
         Names as models use them.
     """
-    found = (cell_value(row, column) for column in columns)
-    return next((value for value in found if not math.isnan(value)), math.nan)
+    cells = (cell_value(row, column) for column in columns)
+    return next((value for value in cells if not math.isnan(value)), math.nan)
 
 
-def _told(record: Any) -> dict[str, Any]:
+def _non_default_fields(record: Any) -> dict[str, Any]:
     """Fields of a record that differ from the usual ones."""
     usual = {f.name: f.default for f in type(record).__dataclass_fields__.values()}
-    told: dict[str, Any] = {}
+    kept: dict[str, Any] = {}
     for name, value in vars(record).items():
         if value != usual[name] and name in usual:
-            told[name] = [finite(x) for x in value] if name == "bounds" else list(value) if _many(value) else value
-    return told
+            kept[name] = [finite(x) for x in value] if name == "bounds" else list(value) if _is_tuple(value) else value
+    return kept
 
 
-def _many(value: Any) -> bool:
+def _is_tuple(value: Any) -> bool:
     return isinstance(value, tuple)
 
 
-def _read(kind: type[Any], told: Mapping[str, Any]) -> Any:
-    """Return a record that was told; JSON knows lists in place of tuples."""
-    fields = dict(told)
+def _read(kind: type[Any], entry: Mapping[str, Any]) -> Any:
+    """Record of an entry; JSON knows lists in place of tuples."""
+    fields = dict(entry)
     for name in ("needs", "optional", "columns", "labels"):
         if name in fields:
             fields[name] = tuple(fields[name])

@@ -19,15 +19,15 @@ def in_words(amounts: Mapping[str, float], units: Mapping[str, str]) -> str:
     >>> in_words({"lift": 2e-6}, {"lift": "mm"})
     ' (differences below 0.002 mm in lift do not count)'
     """
-    told = []
+    amounts_shown = []
     for name, amount in amounts.items():
         if amount == 0:
             continue
         unit = parse_unit(units.get(name, "-"))
         # A difference of temperatures is one in kelvin.
         word = "K" if unit.offset else unit_text(units.get(name, "-"))
-        told.append(f"{number_text(amount / float(unit.ratio), 3)} {word}".rstrip() + f" in {words(name)}")
-    return f" (differences below {', '.join(told)} do not count)" if told else ""
+        amounts_shown.append(f"{number_text(amount / float(unit.ratio), 3)} {word}".rstrip() + f" in {words(name)}")
+    return f" (differences below {', '.join(amounts_shown)} do not count)" if amounts_shown else ""
 
 
 def all_of(combinations: int) -> str:

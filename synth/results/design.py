@@ -34,10 +34,10 @@ class PartRow(Mapping[str, Any]):
         self.units = units
 
     @classmethod
-    def read(cls, told: Mapping[str, Any]) -> PartRow:
+    def read(cls, entry: Mapping[str, Any]) -> PartRow:
         """Entry of a file."""
-        cells = {name: x for name, x in told.items() if name not in ("table", "hash", "units")}
-        return cls(told["table"], told["hash"], cells, dict(told.get("units", {})))
+        cells = {name: x for name, x in entry.items() if name not in ("table", "hash", "units")}
+        return cls(entry["table"], entry["hash"], cells, dict(entry.get("units", {})))
 
     def record(self) -> dict[str, Any]:
         """Entries of files."""
@@ -166,8 +166,8 @@ class Design:
     def names(self) -> set[str]:
         """Return the names that sentences about it may have: of quantities, limits, requirements, slots and so on."""
         frame = self.frame
-        stated = {*frame.requirement_values, *frame.not_asked, *frame.options}
-        return {*frame.units, *frame.limit_units, *stated, *self.parts, *self.choices}
+        inputs = {*frame.requirement_values, *frame.not_asked, *frame.options}
+        return {*frame.units, *frame.limit_units, *inputs, *self.parts, *self.choices}
 
     @property
     def bare_advice(self) -> list[str]:

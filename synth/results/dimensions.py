@@ -82,9 +82,9 @@ def constant_in(number: float, constants: Iterable[NamedQuantity]) -> Fold | Non
     folds = []
     for c, power in product(known, (1, -1)):
         assert c.value is not None
-        found = fraction_of(size / abs(c.value) ** power)
-        if found and found.over * found.under <= SIMPLE:
-            folds.append(Fold(found.over, found.pi, found.under, c.name, power))
+        ratio = fraction_of(size / abs(c.value) ** power)
+        if ratio and ratio.over * ratio.under <= SIMPLE:
+            folds.append(Fold(ratio.over, ratio.pi, ratio.under, c.name, power))
     # A round constant is found in many a number: what is simplest was written.
     return min(folds, key=lambda f: (f.over * f.under, abs(f.pi), f.power < 0), default=None)
 
@@ -98,8 +98,8 @@ def unit_for(dimension: Dimension) -> str:
     """Return a unit of a dimension, as people read it where there is one, otherwise in SI; nothing for odd powers."""
     if any(x.denominator > 1 for x in dimension):
         return ""
-    whole = tuple(int(x) for x in dimension)
-    return UNIT_OF.get(whole, "") or si_text(whole)
+    exponents = tuple(int(x) for x in dimension)
+    return UNIT_OF.get(exponents, "") or si_text(exponents)
 
 
 class _Open(Exception):
@@ -117,10 +117,10 @@ def dimension_of(tree: Expression, known: Mapping[str, NamedQuantity]) -> Dimens
         any that a sum asks for, and none in a product.
     """
     try:
-        found = _Dimensions(known).of(tree)
+        dimension = _Dimensions(known).of(tree)
     except _Open:
         return None
-    return found or NONE
+    return dimension or NONE
 
 
 class _Dimensions:
@@ -166,11 +166,11 @@ class _Dimensions:
         return tuple(map(Fraction, parse_unit(q.unit).dimension))
 
     def _common(self, trees: Sequence[Expression]) -> Dimension | None:
-        found = set(map(self.of, trees)) - {None}
-        told = found - {ANY}
-        if len(told) > 1:
+        dimensions = set(map(self.of, trees)) - {None}
+        definite = dimensions - {ANY}
+        if len(definite) > 1:
             raise _Open
-        return next(iter(told or found), None)
+        return next(iter(definite or dimensions), None)
 
     def _product(self, over: Sequence[Expression], under: Sequence[Expression]) -> Dimension | None:
         total, any_known = list(NONE), False
@@ -185,26 +185,26 @@ class _Dimensions:
         return tuple(total) if any_known else None
 
     def _power(self, base: Expression, exponent: Expression) -> Dimension | None:
-        own = self.of(base)
-        if not own or own == NONE:
+        of_base = self.of(base)
+        if not of_base or of_base == NONE:
             if (self.of(exponent) or NONE) != NONE:
                 raise _Open
-            return own
+            return of_base
         if exponent[0] != "n":
             raise _Open
         times = Fraction(exponent[1]).limit_denominator(1000)
-        return tuple(x * times for x in own)
+        return tuple(x * times for x in of_base)
 
     def _function(self, name: str, arguments: Sequence[Expression]) -> Dimension | None:
         function = function_of(name)
         if Trait.KEEPS_UNIT in function.traits:
             return self._common(arguments)
         if function.exponent is not None:
-            own = self.of(arguments[0])
-            return tuple(x * Fraction(function.exponent) for x in own) if own else own
+            of_argument = self.of(arguments[0])
+            return tuple(x * Fraction(function.exponent) for x in of_argument) if of_argument else of_argument
         if name == "sign":
             return NONE
-        own = self._common(arguments)
-        if name != "atan2" and own and own != NONE:
+        of_argument = self._common(arguments)
+        if name != "atan2" and of_argument and of_argument != NONE:
             raise _Open
         return NONE

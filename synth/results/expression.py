@@ -224,12 +224,12 @@ def _raised(base: Expression, exponent: float) -> Expression:
 
 def _together(numbers: list[float]) -> list[float]:
     """Return numbers of a product as one where that is exact, otherwise as they are written."""
-    whole = [x for x in numbers if x.is_integer() and x < 2**20]
-    product = math.prod(whole)
-    rest = [x for x in numbers if x not in whole]
+    integers = [x for x in numbers if x.is_integer() and x < 2**20]
+    product = math.prod(integers)
+    others = [x for x in numbers if x not in integers]
     if product >= 2**53:
         return numbers
-    return ([float(product)] if whole else []) + rest
+    return ([float(product)] if integers else []) + others
 
 
 def simplified_sum(terms: list[tuple[Expression, int]]) -> Expression:

@@ -121,10 +121,10 @@ class ParetoFront:
             made = {name: derived(name, make) for name, make in makers.items()}
         else:  # those that were saved before there were such files have none
             made = {name: make() for name, make in makers.items() if name.removesuffix(".json") in self.kept}
-        found = {name: content for name, content in made.items() if content}
-        digests = {name.removesuffix(".json"): str(content["digest"]) for name, content in found.items()}
-        record = {FRONT_FILE: self.record_files(digests, folder)[FRONT_FILE]} if found else {}
-        return {**record, **{name: compact_json(content) for name, content in found.items()}}
+        available = {name: content for name, content in made.items() if content}
+        digests = {name.removesuffix(".json"): str(content["digest"]) for name, content in available.items()}
+        record = {FRONT_FILE: self.record_files(digests, folder)[FRONT_FILE]} if available else {}
+        return {**record, **{name: compact_json(content) for name, content in available.items()}}
 
     @property
     def kept(self) -> dict[str, str]:
@@ -157,18 +157,18 @@ class ParetoFront:
         default where the front was read from.
         """
         place = self.folder if folder is None else folder
-        own = self if place is None else self.placed(place)
-        return own._record_files(self.kept if digests is None else digests)
+        placed = self if place is None else self.placed(place)
+        return placed._record_files(self.kept if digests is None else digests)
 
     def _record_files(self, digests: Mapping[str, str]) -> dict[str, str]:
         """Return the files with tables as they are named here."""
         width = max(2, len(str(len(self.designs))))
-        found = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, digests))}
+        files = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, digests))}
         if any(design.robust for design in self.designs):
-            found["robust.csv"] = csv_text(*limits_table(self.designs))
+            files["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
-            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
-        return found
+            files[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
+        return files
 
     def verify(self, problem: Any = None, catalogs: Any = None, time_limit: float = 120.0) -> Verification:
         """Check the front without help of the search: the record, every design, and the claim of the certificate.
@@ -421,11 +421,11 @@ def named_designs(front: ParetoFront, words: Iterable[Any]) -> list[Design]:
 
 
 def foremost(front: ParetoFront, count: int) -> list[Design]:
-    """Return the designs that are told first: rank 1, the knee, the best of each objective, then by rank."""
-    wanted = list(front.designs[:1]) + [d for d in front.designs if KNEE in d.note]
+    """Designs by importance: rank 1, the knee, the best of each objective, then by rank."""
+    first = list(front.designs[:1]) + [d for d in front.designs if KNEE in d.note]
     for name, sense in front.frame.objectives.items():
         if front.designs:
             sign = 1 if sense == "min" else -1
-            wanted.append(min(front.designs, key=lambda d: (sign * d.objectives[name], d.rank or 0)))
-    unique = list({d.rank: d for d in (*wanted, *front.designs)}.values())[:count]
+            first.append(min(front.designs, key=lambda d: (sign * d.objectives[name], d.rank or 0)))
+    unique = list({d.rank: d for d in (*first, *front.designs)}.values())[:count]
     return sorted(unique, key=lambda d: d.rank or 0)

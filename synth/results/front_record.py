@@ -42,10 +42,10 @@ NOT_THE_RESULT = ("digest", "result", "statistics", *KEPT)
 
 
 def result_digest(content: Mapping[str, Any]) -> str:
-    """Return the checksum of what was asked and found, without what differs from one search for it to the next."""
-    told = {name: value for name, value in content.items() if name not in NOT_THE_RESULT}
-    told["restated"] = {name: value for name, value in told.get("restated", {}).items() if name != "catalogs"}
-    return digest_of(told)
+    """Checksum of question and result, without entries that differ between equal searches."""
+    result = {name: value for name, value in content.items() if name not in NOT_THE_RESULT}
+    result["restated"] = {name: value for name, value in result.get("restated", {}).items() if name != "catalogs"}
+    return digest_of(result)
 
 
 def design_record(design: Design) -> dict[str, Any]:

@@ -33,19 +33,19 @@ class FrontOfFamilies(Protocol):
 class FrontFiles(Protocol):
     """Files of the report of a front, or of one design that was checked."""
 
-    def __call__(self, asked: ReportRequest) -> Made: ...
+    def __call__(self, request: ReportRequest) -> Made: ...
 
 
 class ComparisonFiles(Protocol):
     """Files of the report of several families."""
 
-    def __call__(self, asked: ComparisonRequest) -> Made: ...
+    def __call__(self, request: ComparisonRequest) -> Made: ...
 
 
 class BatchFiles(Protocol):
     """Files of the report of a batch."""
 
-    def __call__(self, asked: BatchReportRequest) -> Made: ...
+    def __call__(self, request: BatchReportRequest) -> Made: ...
 
 
 class FrontTable(Protocol):
@@ -59,7 +59,7 @@ class FrontTable(Protocol):
 class CommonFrontTable(Protocol):
     """Prints the common front of several families."""
 
-    def __call__(self, found: FrontOfFamilies, console: Console, every: bool = False) -> None: ...
+    def __call__(self, front: FrontOfFamilies, console: Console, every: bool = False) -> None: ...
 
 
 class TerminalPlot(Protocol):
@@ -123,14 +123,14 @@ class ExplorerRecord(Protocol):
     """Record of a front that the explorer shows, as JSON holds it."""
 
     def __call__(
-        self, asked: ReportRequest, files: Mapping[int, Mapping[str, str]] | None = None
+        self, request: ReportRequest, files: Mapping[int, Mapping[str, str]] | None = None
     ) -> dict[str, Any]: ...
 
 
 class ExplorerComparison(Protocol):
     """Record of the common front of several families that the explorer shows, as JSON holds it."""
 
-    def __call__(self, asked: ComparisonRequest) -> dict[str, Any]: ...
+    def __call__(self, request: ComparisonRequest) -> dict[str, Any]: ...
 
 
 class ExplorerFrame(Protocol):

@@ -51,10 +51,10 @@ def rows_kept(folder: Path | None) -> dict[str, dict[str, dict[str, Any]]]:
     with suppress(InputError, AttributeError, KeyError, TypeError):
         if folder is not None and (folder / FRONT_FILE).is_file():
             _, content = _read(folder / FRONT_FILE)
-            found = dict[str, dict[str, dict[str, Any]]]()
+            rows = dict[str, dict[str, dict[str, Any]]]()
             for row in content["parts"].values():
-                found.setdefault(str(row["table"]), {})[str(row["designation"])] = dict(row)
-            return found
+                rows.setdefault(str(row["table"]), {})[str(row["designation"])] = dict(row)
+            return rows
     return {}
 
 

@@ -54,14 +54,14 @@ def notebook_html(
     >>> notebook_html("A <title>")
     '<div><p><b>A &lt;title&gt;</b></p></div>'
     """
-    told = []
+    paragraphs = []
     for number, sentence in enumerate(x for x in sentences if x):
         colour = f' style="color:{LEVELS[level]}"' if not number and level else ""
-        told.append(f"<p{colour}>{escape(sentence)}</p>")
+        paragraphs.append(f"<p{colour}>{escape(sentence)}</p>")
     table = _table(columns, rows) if columns and rows else ""
     more = f"<p>{len(rows) - MOST_ROWS} more rows</p>" if len(rows) > MOST_ROWS else ""
     picture = f'<div style="max-width:40em;background:#fff">{drawing}</div>' if drawing else ""
-    return f"<div><p><b>{escape(title)}</b></p>{''.join(told)}{picture}{table}{more}</div>"
+    return f"<div><p><b>{escape(title)}</b></p>{''.join(paragraphs)}{picture}{table}{more}</div>"
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:

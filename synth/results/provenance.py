@@ -39,7 +39,7 @@ class Fingerprint:
     computation: str
 
     @property
-    def whole(self) -> str:
+    def combined(self) -> str:
         """The hash of both."""
         return hash_of([self.question, self.computation])
 
@@ -64,9 +64,9 @@ def code_digest() -> str:
 
 def package_folder() -> Path:
     """Return the folder of the engine's package, wherever in it this module stands."""
-    found = importlib.util.find_spec(PACKAGE)
-    assert found is not None
-    return Path(str(found.origin)).parent
+    spec = importlib.util.find_spec(PACKAGE)
+    assert spec is not None
+    return Path(str(spec.origin)).parent
 
 
 def problem_digest(problems: Iterable[type[Any]]) -> str:

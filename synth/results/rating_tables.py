@@ -50,18 +50,18 @@ def yield_text(share: float) -> str:
 
 def rating_row(design: Design) -> list[Any]:
     """Cells under ``COLUMNS``; empty for a design that was not rated."""
-    told = design.robust
-    if not told:
+    rating = design.robust
+    if not rating:
         return [None] * len(COLUMNS)
     return [
-        told["verdict"],
-        told["proof"],
-        told["yield"],
-        told["yield_low"],
-        told["yield_high"],
-        told["worst_limit"],
-        told["worst_utilisation"],
-        shown_at(told["worst_at"], told["units"]),
+        rating["verdict"],
+        rating["proof"],
+        rating["yield"],
+        rating["yield_low"],
+        rating["yield_high"],
+        rating["worst_limit"],
+        rating["worst_utilisation"],
+        shown_at(rating["worst_at"], rating["units"]),
     ]
 
 
@@ -72,20 +72,20 @@ def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]
     columns += [f"worst at: {header(name, unit)}" for name, unit in units.items()]
     rows: list[list[Any]] = []
     for design in designs:
-        for name, told in (design.robust.get("limits") or {}).items():
+        for name, verdict in (design.robust.get("limits") or {}).items():
             unit = design.frame.limit_units[name]
-            sides = [finite_from_si(told[k], unit, None) for k in ("value", "limit")]
-            at = [finite_from_si(told["at"][n], u, None) if n in told["at"] else None for n, u in units.items()]
+            sides = [finite_from_si(verdict[k], unit, None) for k in ("value", "limit")]
+            at = [finite_from_si(verdict["at"][n], u, None) if n in verdict["at"] else None for n, u in units.items()]
             rows.append(
                 [
                     design.rank,
                     name,
-                    told["verdict"],
-                    told["proof"],
+                    verdict["verdict"],
+                    verdict["proof"],
                     *sides,
                     unit,
-                    told["utilisation"],
-                    told["residual"],
+                    verdict["utilisation"],
+                    verdict["residual"],
                     *at,
                 ]
             )
@@ -97,8 +97,8 @@ def robust_sentence(designs: Iterable[Design]) -> str:
     rated = [d.robust for d in designs if d.robust]
     if not rated:
         return "no design was rated"
-    holding = sum(told["holds"] is True for told in rated)
-    unknown = sum(told["holds"] is None for told in rated)
+    holding = sum(rating["holds"] is True for rating in rated)
+    unknown = sum(rating["holds"] is None for rating in rated)
     of = "1 design" if len(rated) == 1 else f"{len(rated)} designs"
     searched = f"no violation was found, from the corners and {rated[0]['samples']} samples on, and none is excluded"
     if len(rated) == 1 and not holding:
@@ -110,7 +110,7 @@ def robust_sentence(designs: Iterable[Design]) -> str:
     return f"{sentence}; not shown of {unknown}: {searched}" if unknown else sentence
 
 
-def taken_off(count: int) -> str:
+def removed_sentence(count: int) -> str:
     """Return in words how many designs are missing because they do not stand the range."""
     designs = "1 design was" if count == 1 else f"{count} designs were"
     return f"{designs} taken off: not all limits hold over the whole range"

@@ -36,7 +36,7 @@ LABELS = {
 
 @dataclass(frozen=True)
 class About:
-    """The head of a report; what is not told stays empty, a date is never made up.
+    """The head of a report; missing entries stay empty, a date is never made up.
 
     Parameters
     ----------
@@ -58,16 +58,16 @@ class About:
     logo: str = ""
 
     def facts(self) -> tuple[tuple[str, str], ...]:
-        """Return label and words of what is told."""
+        """Labels and words of the entries."""
         return tuple((label, getattr(self, name)) for name, label in LABELS.items() if getattr(self, name))
 
     @staticmethod
-    def of(told: Any, folder: Path | None = None) -> About:
+    def of(about: Any, folder: Path | None = None) -> About:
         """About block from a mapping; empty for None.
 
         Parameters
         ----------
-        told : mapping, About or None
+        about : mapping, About or None
             The entries by name; ``logo`` is a file.
         folder : Path, optional
             Where a logo is looked for, by default the folder that one works in.
@@ -77,15 +77,15 @@ class About:
         InputError
             An entry is unknown, is no text or is too long, or the logo is no picture.
         """
-        if told is None:
+        if about is None:
             return About()
-        if isinstance(told, About):
-            return told
-        if not isinstance(told, Mapping):
-            raise InputError("about", told, "a mapping, for example {'project': 'Hoist 7', 'author': 'A. Meyer'}", ())
+        if isinstance(about, About):
+            return about
+        if not isinstance(about, Mapping):
+            raise InputError("about", about, "a mapping, for example {'project': 'Hoist 7', 'author': 'A. Meyer'}", ())
         known = [f.name for f in fields(About)]
         values: dict[str, str] = {}
-        for key, value in told.items():
+        for key, value in about.items():
             if key not in known:
                 raise InputError("about", str(key), f"one of {', '.join(known)}", ("about", str(key)))
             if value is not None and not isinstance(value, (str, date)):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.analysis.designs import design_of, rows_beside, told_by
+from synth.analysis.designs import design_of, design_records, lookup_rows
 from synth.model.model import Evaluation
 from synth.question.selection import part_row
 from synth.results import Design, Frame, PartRow
@@ -39,11 +39,11 @@ def complete_designs(
     """
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     # Questions that are searched together have their model and limits in common.
-    calculated = told_by(form.instance, result, points, range(len(candidates)))
+    calculated = design_records(form.instance, result, points, range(len(candidates)))
     known: dict[tuple[str, int], PartRow] = {}
     data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
     derived = [
-        {"steps": DesignSteps(steps), "next_rows": rows, "rows": rows_beside(form.model, rows)}
+        {"steps": DesignSteps(steps), "next_rows": rows, "rows": lookup_rows(form.model, rows)}
         for steps, rows in zip(form.model.steps(points, data), form.model.next_rows(points, data), strict=True)
     ]
     designs = []

@@ -26,7 +26,7 @@ from starlette.responses import Response
 
 from synth.errors import ExtraNeededError, InputError
 from synth.queue.database import DISK_FULL
-from synth.queue.job_table import KeyTakenError, QueueFullError
+from synth.queue.job_table import KeyInUseError, QueueFullError
 from synth.service.addresses import Addresses
 from synth.service.small_work import BusyError, LateError
 from synth.service.wording import fault_of
@@ -223,7 +223,7 @@ def register_errors(
     told(RequestValidationError, _of_validation)
     told(InputError, _of_input)
     told(ExtraNeededError, lambda error: ServiceError(501, _lacking(error)))
-    told(KeyTakenError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
+    told(KeyInUseError, lambda _: ServiceError(409, "the Idempotency-Key was used for another request", "key_taken"))
     told(QueueFullError, lambda error: ServiceError(429, _full(error), "queue_full", headers=again(retry_after)))
     told(EngineTimeoutError, later("this takes longer than it may; please ask for less, or ask it as a job"))
     told(LateError, later("this takes longer than usual and goes on here; please ask the same again"))

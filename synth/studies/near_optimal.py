@@ -96,7 +96,7 @@ class NearEquals:
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text; ``folder``: where they will stand."""
-        told = {
+        record = {
             "family": self.reference.frame.family,
             "within": self.within,
             "found": self.found,
@@ -114,11 +114,11 @@ class NearEquals:
                 )
             ],
         }
-        found = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": record_text(told)}
+        files = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": record_text(record)}
         for number, design in enumerate([self.reference, *self.designs]):
-            own = design if folder is None else design.placed(folder)
-            found[f"design_{number:02d}.yaml"] = own.yaml()
-        return found
+            placed = design if folder is None else design.placed(folder)
+            files[f"design_{number:02d}.yaml"] = placed.yaml()
+        return files
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder.
@@ -130,9 +130,9 @@ class NearEquals:
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         objectives = list(self.reference.frame.objectives)
         columns = ["number", "differs in", "differences", *(f"change: {n} [%]" for n in objectives)]
-        own, frame = self.reference, self.reference.frame
-        columns += design_columns(frame, own.choices, own.parts)
-        rows: list[list[Any]] = [[0, 0, "the chosen design", *(0.0 for _ in objectives), *design_row(frame, own)]]
+        reference, frame = self.reference, self.reference.frame
+        columns += design_columns(frame, reference.choices, reference.parts)
+        rows: list[list[Any]] = [[0, 0, "the chosen design", *(0.0 for _ in objectives), *design_row(frame, reference)]]
         for number, (design, change, other) in enumerate(
             zip(self.designs, self.changes, self.differences, strict=True), start=1
         ):
@@ -237,16 +237,16 @@ def read_share(within: Any) -> float:
 class _Near:
     """The rule of the tree: every combination that holds a design within the cutoffs.
 
-    ``found`` holds, per combination, the design that is least worse than the chosen one, and by how much.
+    ``best`` holds, per combination, the design that is least worse than the chosen one, and by how much.
     """
 
     proves = False
 
-    def __init__(self, traded: int, own: np.ndarray, cutoffs: np.ndarray, sizes: np.ndarray, tie: float) -> None:
+    def __init__(self, traded: int, base: np.ndarray, cutoffs: np.ndarray, sizes: np.ndarray, tie: float) -> None:
         self.columns, self.tie = list(range(traded)), tie
         self.tolerance, self.fixed_cutoffs = sizes, cutoffs
-        self.own = own
-        self.found: dict[int, tuple[float, Candidate]] = {}
+        self.base = base
+        self.best: dict[int, tuple[float, Candidate]] = {}
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return the cutoffs, the same for every box."""
@@ -256,8 +256,8 @@ class _Near:
         """Possible distance of a box within the cutoffs."""
         with np.errstate(all="ignore"):
             distance = (self.fixed_cutoffs[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
-        room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
-        return room
+        gain: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
+        return gain
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many combinations are new."""
@@ -268,15 +268,15 @@ class _Near:
         new = 0
         for row in order[first]:
             k, combination = kept[row], int(combinations[kept[row]])
-            known = self.found.get(combination)
+            known = self.best.get(combination)
             new += known is None
             if known is None or worse[row] < known[0]:
-                self.found[combination] = float(worse[row]), Candidate(combination, variables[k].copy(), phi[k])
+                self.best[combination] = float(worse[row]), Candidate(combination, variables[k].copy(), phi[k])
         return new
 
     def worse(self, phi: np.ndarray) -> np.ndarray:
         """Return by how much designs are worse than the chosen one, as a share of what is allowed."""
-        worse: np.ndarray = ((phi[:, self.columns] - self.own[self.columns]) / self.tolerance).max(axis=1)
+        worse: np.ndarray = ((phi[:, self.columns] - self.base[self.columns]) / self.tolerance).max(axis=1)
         return worse
 
     def leading(self, archive: Archive) -> list[Candidate]:
@@ -301,7 +301,7 @@ class _Enumeration:
         self.instance, self.reference, self.front, self.share = instance, reference, front, share
         self.chosen = dict(front.frame.objectives)
         self.m = len(self.chosen)
-        self.own = instance.combinations.number(reference)
+        self.number = instance.combinations.number(reference)
         self.form = Formulation(instance, goals_of(instance, self.chosen), self.m)
         self.rng = np.random.default_rng(settings.seed)
         self.progress, self.stage = progress, "enumerate"
@@ -314,19 +314,19 @@ class _Enumeration:
 
     def _rule(self, front: ParetoFront) -> _Near:
         form, m = self.form, self.m
-        signs = np.array([g.sign for g in form.goals[:m]], dtype=float)
-        values = np.array([[d.values[n] for n in self.chosen] for d in [self.reference, *front.designs]]) * signs
+        directions = np.array([g.sign for g in form.goals[:m]], dtype=float)
+        values = np.array([[d.values[n] for n in self.chosen] for d in [self.reference, *front.designs]]) * directions
         if not np.isfinite(values[0]).all():
             raise InputError("design", self.reference.rank, "a design whose objectives all exist")
         span = np.ptp(values, axis=0)
         size = np.where(values[0] != 0, np.abs(values[0]), span)
-        own = np.full(len(form.goals), np.inf)
-        own[:m] = form.objectives.phi_of(values[:1])[0]
+        reference_phi = np.full(len(form.goals), np.inf)
+        reference_phi[:m] = form.objectives.phi_of(values[:1])[0]
         slack = np.where(form.objectives.log[:m], np.log1p(self.share), self.share * size / form.objectives.scales[:m])
         cutoffs = np.full(len(form.goals), np.inf)
-        cutoffs[:m] = own[:m] + slack
+        cutoffs[:m] = reference_phi[:m] + slack
         tie = form.tuning.tolerances.tie
-        return _Near(m, own, cutoffs, np.maximum(slack, tie), tie)
+        return _Near(m, reference_phi, cutoffs, np.maximum(slack, tie), tie)
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
@@ -335,7 +335,7 @@ class _Enumeration:
                     "stage": self.stage,
                     "done": 0.0 if self.stage == "enumerate" else 1.0,
                     "combinations": self.instance.combinations.count,
-                    "incumbents": len(self.near.found),
+                    "incumbents": len(self.near.best),
                     "message": f"{open_boxes} boxes open" if open_boxes else "",
                 }
             )
@@ -361,20 +361,20 @@ class _Enumeration:
             except (Stopped, KeyboardInterrupt) as stop:
                 interrupted = interrupted or (stop.reason if isinstance(stop, Stopped) else "interrupted")
                 designs.append(members[combination][1])
-        return self._told(designs, len(members), complete and not interrupted, interrupted)
+        return self._result(designs, len(members), complete and not interrupted, interrupted)
 
     def _enumerate(self) -> bool:
-        """Look at everything; tell whether every combination is decided."""
+        """Search all boxes; return whether every combination is decided."""
         form, near, batch_size = self.form, self.near, self.limits.batch
         heuristics = PrimalHeuristics(form, near, self.rng, every_goal=False)
         cutoffs = near.fixed_cutoffs[: form.bounded] + near.tie
         stack = [form.boxes.lean(form.boxes.root())]
         while stack:
             boxes = stack.pop()
-            batch, rest = boxes.take(slice(0, batch_size)), boxes.take(slice(batch_size, None))
-            stack += [rest] if len(rest) else []
+            batch, waiting = boxes.take(slice(0, batch_size)), boxes.take(slice(batch_size, None))
+            stack += [waiting] if len(waiting) else []
             self.clock.check([batch, *stack])
-            if self.looked > self.limits.boxes or len(near.found) > self.limits.most:
+            if self.looked > self.limits.boxes or len(near.best) > self.limits.most:
                 return False
             self.looked += len(batch)
             batch = form.boxes.contract(batch, cutoffs)
@@ -385,18 +385,18 @@ class _Enumeration:
             batch = self._open(batch)
             batch, small = form.boxes.split(batch)
             if len(small):
-                left = self._open(unresolved_small(form, small, near, heuristics))
-                self.undecided.update(form.boxes.cells.all_members(left.cell, self.limits.most).tolist())
+                undecided = self._open(unresolved_small(form, small, near, heuristics))
+                self.undecided.update(form.boxes.cells.all_members(undecided.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
-        return not self.undecided - set(near.found)
+        return not self.undecided - set(near.best)
 
     def _open(self, boxes: Boxes) -> Boxes:
         """Return the boxes that are not of a combination that is known to belong."""
         single = np.flatnonzero(self.form.boxes.cells.single(boxes.cell))
         keep = np.ones(len(boxes), dtype=bool)
         numbers = self.form.boxes.combination(boxes.take(single))
-        keep[single] = [int(c) not in self.near.found for c in numbers]
+        keep[single] = [int(c) not in self.near.best for c in numbers]
         return boxes.take(keep)
 
     def _try(self, boxes: Boxes) -> None:
@@ -408,8 +408,8 @@ class _Enumeration:
         rows = [rows[int(k)] for k in np.sort(first)]
         self.tried.update(int(numbers[k]) for k in rows)
         for start in range(0, len(rows), self.limits.problems):
-            some = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
-            self._solve(numbers[some], form.boxes.inside(boxes.take(some), 0.5))
+            chosen = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
+            self._solve(numbers[chosen], form.boxes.inside(boxes.take(chosen), 0.5))
         # Boxes of combinations tried before have become smaller since.
         for share in (form.tuning.heuristics.primal.inside, 0.5):
             points = form.makeable.nearest(form.boxes.inside(boxes, share))
@@ -422,7 +422,7 @@ class _Enumeration:
             return
         count, goals = len(combinations), len(form.goals)
         slopes, cutoffs = np.zeros((count, goals)), np.full((count, goals), np.inf)
-        slopes[:, :m], cutoffs[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
+        slopes[:, :m], cutoffs[:, :m] = near.tolerance / near.tolerance.max(), near.base[:m]
         tasks = Tasks(np.zeros((count, goals)), slopes, cutoffs, form.objectives.scales, t_weight=1.0)
         answer = form.continuous.solve_batch(tasks, combinations, start)
         if not form.gridded.any():
@@ -442,8 +442,8 @@ class _Enumeration:
             chosen = self.rng.choice(len(low), self.limits.rounded, replace=False)
             low, high = low[chosen], high[chosen]
         cell = form.boxes.box_of(combination).cell
-        whole = form.boxes.leaves(np.full(len(low), combination), low, high)
-        around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
+        leaves = form.boxes.leaves(np.full(len(low), combination), low, high)
+        around = replace(leaves, cell=np.repeat(cell, len(low), axis=0))
         around = form.boxes.contract(form.boxes.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
         for share in (form.tuning.heuristics.primal.inside, 0.5):
             points = form.makeable.nearest(form.boxes.inside(around, share))
@@ -458,30 +458,30 @@ class _Enumeration:
     def _members(self) -> dict[int, tuple[float, Candidate]]:
         """Return all combinations that belong, without the chosen one: rows that are equal in all that counts too."""
         form, result = self.form, dict[int, tuple[float, Candidate]]()
-        for combination, (worse, candidate) in self.near.found.items():
+        for combination, (worse, candidate) in self.near.best.items():
             for other in form.boxes.cells.members(form.boxes.box_of(combination).cell[0], self.limits.most):
                 result[int(other)] = worse, replace(candidate, combination=int(other))
-        result.pop(self.own, None)
+        result.pop(self.number, None)
         return dict(sorted(result.items()))
 
     def _spread(self, members: Mapping[int, tuple[float, Candidate]], count: int) -> list[int]:
-        """Return combinations as different as possible: always the one that differs in most from those taken."""
+        """Return combinations as different as possible: always the one that differs most from those chosen before."""
         numbers = np.array(list(members), dtype=np.int64)
         codec = self.instance.combinations
         digits = np.stack(codec.digits(numbers), axis=1) if codec.radix else np.zeros((len(numbers), 0))
-        own = np.array([int(d[0]) for d in codec.digits(np.array([self.own]))])
+        reference_digits = np.array([int(d[0]) for d in codec.digits(np.array([self.number]))])
         worse = np.array([w for w, _ in members.values()])
-        least = np.sum(digits != own, axis=1)
+        least = np.sum(digits != reference_digits, axis=1)
         total = np.zeros(len(numbers), dtype=np.int64)
-        taken: list[int] = []
-        while len(taken) < min(count, len(numbers)):
-            open_ones = np.setdiff1d(np.arange(len(numbers)), taken)
+        chosen: list[int] = []
+        while len(chosen) < min(count, len(numbers)):
+            open_ones = np.setdiff1d(np.arange(len(numbers)), chosen)
             order = np.lexsort((worse[open_ones], -total[open_ones], -least[open_ones]))
             best = int(open_ones[order[0]])
-            taken.append(best)
+            chosen.append(best)
             apart = np.sum(digits != digits[best], axis=1)
             least, total = np.minimum(least, apart), total + apart
-        return [int(numbers[k]) for k in taken]
+        return [int(numbers[k]) for k in chosen]
 
     def _settled(self, combination: int, known: Candidate, hurried: bool) -> Candidate:
         """Return the design of a combination that is least worse, as good as its parts allow, ties settled."""
@@ -491,7 +491,7 @@ class _Enumeration:
         gap = self.limits.settling_gap
         slack = np.where(form.objectives.log[:m], -np.log1p(-gap), gap / self.share * near.tolerance)
         cutoffs = near.fixed_cutoffs.copy()
-        cutoffs[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
+        cutoffs[:m] = near.base[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
         rule = EpsilonCover(range(m), slack, cutoffs, form.new_archive(range(m)))
         rule.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         branch_and_bound(
@@ -505,7 +505,7 @@ class _Enumeration:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _told(self, candidates: Sequence[Candidate], found: int, complete: bool, interrupted: str) -> NearEquals:
+    def _result(self, candidates: Sequence[Candidate], count: int, complete: bool, interrupted: str) -> NearEquals:
         form = self.form
         points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
         numbers = np.array([c.combination for c in candidates], dtype=np.int64)
@@ -531,10 +531,10 @@ class _Enumeration:
             designs.append(design)
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})
             differences.append(self._differences(c.combination))
-        left = (
+        undecided = (
             None
-            if self.looked > self.limits.boxes or found > self.limits.most or interrupted
-            else len(self.undecided - set(self.near.found))
+            if self.looked > self.limits.boxes or count > self.limits.most or interrupted
+            else len(self.undecided - set(self.near.best))
         )
         statistics = {
             "combinations": self.instance.combinations.count,
@@ -546,9 +546,9 @@ class _Enumeration:
             self.reference,
             designs,
             self.share,
-            found,
+            count,
             complete,
-            left,
+            undecided,
             changes,
             differences,
             [self._rank(design) for design in designs],
@@ -564,13 +564,13 @@ class _Enumeration:
 
     def _differences(self, combination: int) -> tuple[str, ...]:
         """Differences from the chosen design."""
-        own, its = self.instance.combinations.describe(self.own), self.instance.combinations.describe(combination)
+        mine, its = (self.instance.combinations.describe(self.number), self.instance.combinations.describe(combination))
         words = []
         for slot, (table, row) in its[0].items():
-            if own[0][slot][1] != row:
+            if mine[0][slot][1] != row:
                 words.append(f"{slot} {table.designations[row]}")
-        words += [f"{n} {typed_number(v)}" for n, v in its[1].items() if own[1][n] != v]
-        words += [f"{n} {v}" for n, v in its[2].items() if own[2][n] != v]
+        words += [f"{n} {typed_number(v)}" for n, v in its[1].items() if mine[1][n] != v]
+        words += [f"{n} {v}" for n, v in its[2].items() if mine[2][n] != v]
         return tuple(words)
 
 

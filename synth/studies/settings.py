@@ -52,7 +52,7 @@ class PriceLimits:
         Combinations that are all tried; of more, those that differ in one part and those on the front.
     fine : float
         Share of the step: for prices that bend within it.
-    share, room : float
+    share, slack : float
         By how much a price and a re-solve may differ: a share of the price, and per cent per per cent.
     parents : int
         Of the combinations tried, the best, of which again one part is exchanged.
@@ -71,7 +71,7 @@ class PriceLimits:
     all: int = 512
     fine: float = 0.1
     share: float = 0.03
-    room: float = 0.003
+    slack: float = 0.003
     parents: int = 8
     reach: float = 10.0
     looser: float = 5.0
@@ -126,12 +126,12 @@ class ComparisonLimits:
     ----------
     rounds : int
         In which every family looks for designs that beat those of the others; mostly two or three are enough.
-    first_look : float
+    first_pass : float
         In s, of each family before any goes on to its end: most are done by then, and all others have designs.
     """
 
     rounds: int = 6
-    first_look: float = 10.0
+    first_pass: float = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)

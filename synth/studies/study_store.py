@@ -53,9 +53,9 @@ class StudyStore:
     def of(cls, folder: Path | None, fingerprints: Sequence[str]) -> StudyStore:
         """Return the store of a study whose steps have these fingerprints: its folder, or one beside another study."""
         here = cls(folder)
-        wanted = {f"step {number}": own for number, own in enumerate(fingerprints, start=1)}
+        expected = {f"step {number}": fingerprint for number, fingerprint in enumerate(fingerprints, start=1)}
         kept = {key: entry for key, entry in here.record.items() if STEP.fullmatch(key) and isinstance(entry, dict)}
-        if folder is None or all(wanted.get(key) == entry.get("fingerprint") for key, entry in kept.items()):
+        if folder is None or all(expected.get(key) == entry.get("fingerprint") for key, entry in kept.items()):
             return here
         return cls(folder / f"stopped_{joined(fingerprints)[:8]}", here)
 

@@ -75,7 +75,7 @@ def _shipped_schema(path: Path, stamp: int) -> Schema:
     return load_schema(path)
 
 
-def _own_files(folder: Path) -> dict[str, Path]:
+def _user_files(folder: Path) -> dict[str, Path]:
     """Return the tables of a user's folder by name.
 
     Raises
@@ -83,18 +83,18 @@ def _own_files(folder: Path) -> dict[str, Path]:
     InputError
         A table stands there twice.
     """
-    found = _csv_files(folder)
+    files = _csv_files(folder)
     for path in sorted(p for p in folder.iterdir() if is_workbook(p) and not p.name.startswith(OPEN)):
         name = table_name(path)
-        if name in found:
-            right = f"one file of each table; there is {found[name].name} as well"
+        if name in files:
+            right = f"one file of each table; there is {files[name].name} as well"
             raise InputError("catalogs", str(path), right, ("catalogs",))
-        found[name] = path
-    return found
+        files[name] = path
+    return files
 
 
-def read_as_stated(spec: Any, base: Path, encoding: str | None, visible: bool) -> Any:
-    """Return tables of a user's own, as a spec names them, with how files are read that do not say so themselves.
+def with_reading_options(spec: Any, base: Path, encoding: str | None, visible: bool) -> Any:
+    """User tables as a spec names them, with encoding and visibility for files that do not name theirs.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def read_as_stated(spec: Any, base: Path, encoding: str | None, visible: bool) -
         Whether hidden and filtered rows of workbooks are left out.
     """
     if isinstance(spec, (str, Path)) and (base / spec).is_dir():
-        spec = {name: str(path) for name, path in _own_files((base / spec).resolve()).items()}
+        spec = {name: str(path) for name, path in _user_files((base / spec).resolve()).items()}
     if not isinstance(spec, Mapping):
         return spec
 
@@ -158,7 +158,7 @@ class Catalogs:
 
     Attributes
     ----------
-    own : tuple of str
+    user_tables : tuple of str
         Tables of `spec`.
     added : tuple of str
         Tables of `spec` that no shipped table is called.
@@ -186,12 +186,12 @@ class Catalogs:
                     raise InputError(f"table {name}", str(path), f"one shipped table of a name ({self._shipped[name]})")
                 self._shipped[name] = path
         self._spec = self._read_spec(spec)
-        self.own = tuple(sorted(self._spec))
+        self.user_tables = tuple(sorted(self._spec))
         self.added = tuple(sorted(set(self._spec) - set(self._shipped)))
         self._cache: dict[str, Table] = {}
 
-    def _path(self, given: str | Path) -> Path:
-        return self._base / given
+    def _path(self, path: str | Path) -> Path:
+        return self._base / path
 
     def _read_spec(self, spec: object) -> dict[str, tuple[bool, list[Any]]]:
         """Table name to (extend the shipped rows?, sources)."""
@@ -201,7 +201,7 @@ class Catalogs:
         if isinstance(spec, (str, Path)):
             folder = self._path(spec)
             try:
-                files = _own_files(folder) if folder.is_dir() else None
+                files = _user_files(folder) if folder.is_dir() else None
             except InputError:
                 raise
             except (OSError, ValueError):
@@ -209,12 +209,12 @@ class Catalogs:
             if files is None:
                 raise InputError("catalogs", str(spec), "a folder that exists", ("catalogs",))
             if not files:
-                wanted = "a folder with CSV files (or .xlsx) named like the tables they replace"
-                raise InputError("catalogs", str(spec), wanted, ("catalogs",))
+                expected = "a folder with CSV files (or .xlsx) named like the tables they replace"
+                raise InputError("catalogs", str(spec), expected, ("catalogs",))
             return {name: (False, [path]) for name, path in files.items()}
         if not isinstance(spec, Mapping):
             raise InputError("catalogs", spec, right, ("catalogs",))
-        found: dict[str, tuple[bool, list[Any]]] = {}
+        sources: dict[str, tuple[bool, list[Any]]] = {}
         for name, value in spec.items():
             if not isinstance(name, str):
                 raise InputError("catalogs", name, "the name of a table", ("catalogs", str(name)))
@@ -227,13 +227,13 @@ class Catalogs:
                         raise InputError(
                             where, name, f"a shipped table to extend, {perhaps_meant(name, self._shipped)}"
                         )
-                    found[name] = (True, list(value[1:]))
+                    sources[name] = (True, list(value[1:]))
                 else:
-                    found[name] = (False, [value])
-                for source in found[name][1]:
+                    sources[name] = (False, [value])
+                for source in sources[name][1]:
                     if not isinstance(source, (str, Path, TableText)) and not is_frame(source):
                         raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
-        return found
+        return sources
 
     def files(self) -> dict[str, Any]:
         """Return the user's own tables that can be named, as a spec states them: absolute paths, and references."""
@@ -252,24 +252,24 @@ class Catalogs:
 
         Of a file that cannot be read nothing is told: whoever asks for its table learns what is wrong.
         """
-        found: dict[str, None] = {}
+        sentences: dict[str, None] = {}
         for name in self._spec:
             with suppress(InputError):
-                found.update(dict.fromkeys(self.table(name).readings))
-        return tuple(found)
+                sentences.update(dict.fromkeys(self.table(name).readings))
+        return tuple(sentences)
 
     def away(self) -> dict[str, str]:
         """Return the user's own tables of which a file is away, so that rows kept stand in for it: name -> file."""
-        found = {}
+        missing = {}
         for name, (_, sources) in self._spec.items():
             gone = [str(s) for s in sources if isinstance(s, (str, Path)) and self._is_away(name, s)]
             if gone:
-                found[name] = ", ".join(gone)
-        return found
+                missing[name] = ", ".join(gone)
+        return missing
 
     def differences(self) -> tuple[str, ...]:
         """Differences from a record: files that are away, and rows that have changed."""
-        found = [
+        sentences = [
             f"table {name}: {file} is not there; the rows kept with the designs are taken"
             for name, file in self.away().items()
         ]
@@ -278,19 +278,19 @@ class Catalogs:
             hashes = dict(zip(table.designations, table.hashes, strict=False))
             for row in self._kept[name]:
                 designation = str(row["designation"])
-                told = f"table {name}: row {designation}"
+                row_named = f"table {name}: row {designation}"
                 if designation not in hashes:
-                    found.append(f"{told} is gone since the designs were saved")
+                    sentences.append(f"{row_named} is gone since the designs were saved")
                 elif hashes[designation] != row["hash"]:
                     changes = "; ".join(_changes(table, table.row_index(designation), row))
-                    found.append(f"{told} has changed since the designs were saved: {changes}")
-        return tuple(sorted(found))
+                    sentences.append(f"{row_named} has changed since the designs were saved: {changes}")
+        return tuple(sorted(sentences))
 
     def _is_away(self, name: str, source: str | Path) -> bool:
         """Whether rows kept stand in for a file."""
         return bool(self._kept.get(name)) and not split_sheet(self._path(source))[0].is_file()
 
-    def stated(self) -> dict[str, Any]:
+    def all_files(self) -> dict[str, Any]:
         """Return the user's own tables as :meth:`files`, all of them.
 
         Raises
@@ -325,8 +325,8 @@ class Catalogs:
         path = self._shipped.get(name)
         if path is None:
             return None
-        beside = path.with_name(name + SCHEMA_SUFFIX)
-        return _shipped_schema(beside, _stamp(beside))
+        schema_file = path.with_name(name + SCHEMA_SUFFIX)
+        return _shipped_schema(schema_file, _stamp(schema_file))
 
     def table(self, name: str) -> Table:
         """Give a table as this set of catalogues has it.
@@ -379,9 +379,9 @@ class Catalogs:
             table = table_of_rows(rows, schema, name, str(source))
         elif isinstance(source, (str, Path)):
             path = self._path(source)
-            own = path.with_name(table_name(path) + SCHEMA_SUFFIX)
-            if own.is_file():
-                described = load_schema(own)
+            schema_file = path.with_name(table_name(path) + SCHEMA_SUFFIX)
+            if schema_file.is_file():
+                described = load_schema(schema_file)
                 schema = described if schema is None else schema.extended(described)
             table = load_table(path, schema, name=name, shipped=False)
         elif isinstance(source, TableText):

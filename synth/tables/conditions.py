@@ -194,10 +194,10 @@ class Condition:
             column = table.column(node.column)
         except InputError as error:
             raise self.wrong(node.position, node.column, error.expected) from None
-        found = self._test(node, column, table)
+        passing = self._test(node, column, table)
         if of_empty is None:
-            return found
-        return np.where(table.empty(column.name), of_empty, found)
+            return passing
+        return np.where(table.empty(column.name), of_empty, passing)
 
     def _test(self, node: Test | ListItem, column: Column, table: Table) -> BoolArray:
         """Rows whose cell in a column of the table passes one test."""
@@ -206,7 +206,7 @@ class Condition:
                 right = f"a column of text after 'in'; {column.name} has numbers, compare them with == or <"
                 raise self.wrong(node.position, node.column, right)
             items = [{item.strip() for item in cell.split(";")} for cell in table.text(column.name)]
-            return np.array([node.item in some for some in items], dtype=np.bool_)
+            return np.array([node.item in members for members in items], dtype=np.bool_)
         return self._numbers(node, table) if column.numeric else self._texts(node, table)
 
     def _numbers(self, test: Test, table: Table) -> BoolArray:
@@ -229,13 +229,13 @@ class Condition:
         if test.op not in ("==", "!=", "in"):
             right = f"== or != or in for {test.column}, which is a column of text"
             raise self.wrong(test.position, f"{test.column} {test.op}", right)
-        wanted = {value.text for value in test.values}
-        found = np.array([cell in wanted for cell in table.text(test.column)], dtype=np.bool_)
-        return ~found if test.op == "!=" else found
+        texts = {value.text for value in test.values}
+        equal = np.array([cell in texts for cell in table.text(test.column)], dtype=np.bool_)
+        return ~equal if test.op == "!=" else equal
 
-    def wrong(self, position: int, found: str, expected: str) -> InputError:
+    def wrong(self, position: int, got: str, expected: str) -> InputError:
         """Return the error that points at a place of the condition."""
-        return _error(self.text, position, found, expected)
+        return _error(self.text, position, got, expected)
 
 
 def _compares_slots(node: Node) -> bool:
@@ -246,8 +246,8 @@ def _compares_slots(node: Node) -> bool:
     return isinstance(node, Test) and node.compares_slots
 
 
-def _error(text: str, position: int, found: str, expected: str) -> InputError:
-    at = f"at {found!r} (character {position + 1})" if found else f"at its end (character {position + 1})"
+def _error(text: str, position: int, got: str, expected: str) -> InputError:
+    at = f"at {got!r} (character {position + 1})" if got else f"at its end (character {position + 1})"
     return InputError(f"condition {at}", text, expected)
 
 
@@ -267,8 +267,8 @@ def _tokens(text: str) -> list[_Token]:
     return tokens
 
 
-def _hint(rest: str) -> str:
-    if rest[0] in "'\"":
+def _hint(remaining: str) -> str:
+    if remaining[0] in "'\"":
         return "a closing quote"
     hints = {
         "=": "== to compare",
@@ -280,9 +280,9 @@ def _hint(rest: str) -> str:
         "/": _QUOTED,
     }
     for start, right in hints.items():
-        if rest.startswith(start):
+        if remaining.startswith(start):
             return right
-    if re.match(r"[+-]|\.?[0-9]", rest):
+    if re.match(r"[+-]|\.?[0-9]", remaining):
         return f"a number such as 0.4, or {_QUOTED}"
     return "a column, one of == != < <= > >= in, and a number or a text in quotes"
 
@@ -385,8 +385,8 @@ class _Parser:
             return Test(first.text, operator.text, (self.value(first.kind == "path"),), first.position)
         negated = self.take("not")
         if self.take("in"):
-            found = Test(first.text, "in", self.values(), first.position)
-            return Negation(found) if negated else found
+            node = Test(first.text, "in", self.values(), first.position)
+            return Negation(node) if negated else node
         raise self.wrong("one of == != < <= > >= in after a column")
 
     def membership(self) -> Node:
@@ -399,8 +399,8 @@ class _Parser:
             raise self.wrong("a column after 'in'")
         self.next += 1
         self.columns.add(column.text)
-        found = ListItem(item.text, column.text, column.position)
-        return Negation(found) if negated else found
+        node = ListItem(item.text, column.text, column.position)
+        return Negation(node) if negated else node
 
     def values(self) -> tuple[Value, ...]:
         if not self.take("("):
@@ -412,10 +412,10 @@ class _Parser:
             raise self.wrong("a comma or a closing bracket")
         return tuple(values)
 
-    def value(self, beside_slot: bool = False) -> Value:
-        """Read a value; beside a column of another slot it may be a column of this one."""
+    def value(self, after_slot: bool = False) -> Value:
+        """Read a value; after a column of another slot it may be a column of this one."""
         token = self.token
-        if token.kind == "name" and beside_slot:
+        if token.kind == "name" and after_slot:
             self.next += 1
             self.columns.add(token.text)
             return Value(token.text, False, token.position, column=True)

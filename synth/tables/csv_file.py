@@ -22,13 +22,13 @@ def read_csv_file(path: Path, plain: bool = False) -> CsvFile:
 
 def read_csv_bytes(raw: bytes, name: str, plain: bool = False, encoding: str = "") -> CsvFile:
     """Content of the bytes of a file; ``name`` is that of the file, for messages."""
-    found = delimited_text(raw, name, encoding)
-    if plain and found.sentence():
+    text = delimited_text(raw, name, encoding)
+    if plain and text.sentence():
         right = "columns separated by commas, decimal points, UTF-8"
-        raise InputError(f"{name}, line 1", found.sentence().removeprefix(f"{name}: "), right)
-    if not any(line.strip() for line in found.written_lines()):
+        raise InputError(f"{name}, line 1", text.sentence().removeprefix(f"{name}: "), right)
+    if not any(line.strip() for line in text.written_lines()):
         raise InputError(name, "an empty file", "a header row and at least one row below it")
-    return CsvFile(found)
+    return CsvFile(text)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ class DelimitedText:
         Number in the file of its first line, behind the one that names the delimiter.
     numbers : WrittenNumbers
         Which columns have decimal commas.
-    stated : bool
+    declared : bool
         Whether a line names the delimiter.
     """
 
@@ -51,7 +51,7 @@ class DelimitedText:
     delimiter: str = ","
     first: int = 1
     numbers: WrittenNumbers = PLAIN_NUMBERS
-    stated: bool = False
+    declared: bool = False
 
     def lines(self) -> Iterator[tuple[int, list[str]]]:
         """Return number in the file and cells of every line, numbers with decimal points.
@@ -66,15 +66,15 @@ class DelimitedText:
 
     def sentence(self) -> str:
         """Recognised dialect, in a sentence; empty where the text is written as expected."""
-        told = []
-        if self.delimiter != "," or self.stated:
-            says = " as its first line says" if self.stated else ""
-            told.append(f"{DELIMITERS[self.delimiter]} between the columns{says}")
+        remarks = []
+        if self.delimiter != "," or self.declared:
+            origin = " as its first line says" if self.declared else ""
+            remarks.append(f"{DELIMITERS[self.delimiter]} between the columns{origin}")
         if not self.encoding.startswith("utf-8"):
-            told.append(f"text in {NAMES.get(self.encoding, self.encoding)}")
+            remarks.append(f"text in {NAMES.get(self.encoding, self.encoding)}")
         if self.numbers.titles:
-            told.append(self.numbers.sentence())
-        return f"{self.name}: {', '.join(told)}" if told else ""
+            remarks.append(self.numbers.sentence())
+        return f"{self.name}: {', '.join(remarks)}" if remarks else ""
 
     def written_lines(self) -> Iterator[str]:
         """Yield its lines as they are written, with their ends.
@@ -149,17 +149,17 @@ def delimited_file(source: ByteSource, name: str, encoding: str = "") -> Delimit
     """
     plain = DelimitedText(name, source, _encoding(source, name, encoding))
     head = next(plain.written_lines(), "")
-    stated = re.fullmatch(r"(\"?)sep=(.)\1\r?\n", head, re.IGNORECASE)  # how Excel is told, and tells
-    if stated:
-        if stated[2] not in DELIMITERS:
-            raise InputError(f"{name}, line 1", stated[0].strip(), "sep=; or sep=, or a tab")
-        found = replace(plain, delimiter=stated[2], first=2, stated=True)
+    declaration = re.fullmatch(r"(\"?)sep=(.)\1\r?\n", head, re.IGNORECASE)  # a line of Excel
+    if declaration:
+        if declaration[2] not in DELIMITERS:
+            raise InputError(f"{name}, line 1", declaration[0].strip(), "sep=; or sep=, or a tab")
+        text = replace(plain, delimiter=declaration[2], first=2, declared=True)
     else:
-        found = replace(plain, delimiter=_delimiter(head, plain))
-    return found if found.delimiter == "," else _with_commas(found)
+        text = replace(plain, delimiter=_delimiter(head, plain))
+    return text if text.delimiter == "," else _with_commas(text)
 
 
-def _encoding(source: ByteSource, name: str, stated: str) -> str:
+def _encoding(source: ByteSource, name: str, named: str) -> str:
     """Return the encoding of a file, by its mark or its lines that are not ASCII: others are the same in any encoding.
 
     Raises
@@ -171,7 +171,7 @@ def _encoding(source: ByteSource, name: str, stated: str) -> str:
     with source() as file:
         start = file.readline(PIECE)
         for mark, encoding in MARKS:
-            if not stated and start.startswith(mark):
+            if not named and start.startswith(mark):
                 return encoding
         piece = start
         while piece and kept < TELLING:
@@ -179,7 +179,7 @@ def _encoding(source: ByteSource, name: str, stated: str) -> str:
             telling.write(piece if not plain else b"\n" if piece.endswith(b"\n") else b"")
             kept += 0 if plain else len(piece)
             piece = file.readline(PIECE)
-    return decoded(telling.getvalue(), name, stated)[1]
+    return decoded(telling.getvalue(), name, named)[1]
 
 
 def first_lines(raw: bytes, name: str, most: int, encoding: str = "") -> bytes:
@@ -222,7 +222,7 @@ def _delimiter(head: str, written: DelimitedText) -> str:
     return max(present, key=fit)  # of those that are as good the first, a comma
 
 
-def _with_commas(found: DelimitedText) -> DelimitedText:
+def _with_commas(text: DelimitedText) -> DelimitedText:
     """Recognise the columns whose numbers have decimal commas.
 
     Raises
@@ -230,10 +230,10 @@ def _with_commas(found: DelimitedText) -> DelimitedText:
     InputError
         A column has nothing but numbers that can be read in two ways.
     """
-    written = found._written()
+    written = text._written()
     _, header = next(written, (1, []))
     columns = [NumberColumn() for _ in header]
     for line, cells in written:
         for column, cell in zip(columns, cells, strict=False):
             column.add(line, cell)
-    return replace(found, numbers=written_numbers(header, columns, found.name))
+    return replace(text, numbers=written_numbers(header, columns, text.name))

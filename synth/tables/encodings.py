@@ -29,12 +29,12 @@ APART = re.compile(
 )
 INSIDE = re.compile(r"[^\W\d_][€“”„…«»®©™±÷¬¦¶§][^\W\d_]")  # signs that stand within no word
 KANA_OR_KANJI = re.compile("[\u3041-\u30fa\u4e00-\u9fff]")
-JAPANESE_SIGNS = re.compile("[\u3000-\u30ff\u4e00-\u9fff\uff01-\uff5e\u2103\u03b1-\u03c9°±×÷μ]*")
+JAPANESE_CHARACTERS = re.compile("[\u3000-\u30ff\u4e00-\u9fff\uff01-\uff5e\u2103\u03b1-\u03c9°±×÷μ]*")
 KANA = re.compile("[\u3041-\u30fa]")
 RARE = b"\x99"  # where the characters of Shift-JIS begin that no table of parts needs
 
 
-def decoded(raw: bytes, name: str, stated: str = "") -> tuple[str, str]:
+def decoded(raw: bytes, name: str, named: str = "") -> tuple[str, str]:
     """Return the text of a file without its byte order mark, and its encoding.
 
     Parameters
@@ -42,16 +42,16 @@ def decoded(raw: bytes, name: str, stated: str = "") -> tuple[str, str]:
     raw : bytes
     name : str
         How messages call the file.
-    stated : str
+    named : str
         The encoding that somebody has named; nothing: it is recognised.
 
     Raises
     ------
     InputError
-        It is no text, not in the encoding stated, or may be in several.
+        It is no text, not in the encoding named, or may be in several.
     """
-    if stated:
-        return _in_encoding(raw, name, stated)
+    if named:
+        return _in_encoding(raw, name, named)
     for mark, encoding in MARKS:
         if raw.startswith(mark):
             try:
@@ -76,14 +76,14 @@ def known_encoding(name: str, field: str) -> str:
         There is none.
     """
     try:
-        "".encode(found := codecs.lookup(name).name)  # those that turn bytes into bytes refuse it
+        "".encode(python_name := codecs.lookup(name).name)  # those that turn bytes into bytes refuse it
     except (LookupError, ValueError):
         raise InputError(field, name, "an encoding of text, such as cp1250, cp1252, shift_jis or utf-8") from None
-    return found
+    return python_name
 
 
-def _in_encoding(raw: bytes, name: str, stated: str) -> tuple[str, str]:
-    encoding = known_encoding(stated, "--encoding")
+def _in_encoding(raw: bytes, name: str, named: str) -> tuple[str, str]:
+    encoding = known_encoding(named, "--encoding")
     try:
         return raw.decode(encoding).removeprefix("\ufeff"), encoding
     except UnicodeDecodeError as error:
@@ -134,7 +134,7 @@ def _is_japanese(raw: bytes) -> bool:
         text = "".join(letter for letter in raw.decode(JAPANESE) if letter > "\x7f")
     except UnicodeDecodeError:
         return False
-    if not JAPANESE_SIGNS.fullmatch(text) or not KANA_OR_KANJI.search(text):
+    if not JAPANESE_CHARACTERS.fullmatch(text) or not KANA_OR_KANJI.search(text):
         return False
     return KANA.search(text) is not None or all(letter.encode(JAPANESE) < RARE for letter in text)
 

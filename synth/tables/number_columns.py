@@ -105,8 +105,8 @@ class WrittenNumbers:
 
     def sentence(self) -> str:
         """Return in which columns decimal commas are; nothing where there are none."""
-        rest = len(self.titles) - TITLES
-        more = f" and {rest} more" if rest > 0 else ""
+        further = len(self.titles) - TITLES
+        more = f" and {further} more" if further > 0 else ""
         return f"decimal commas in {', '.join(self.titles[:TITLES])}{more}" if self.titles else ""
 
 

@@ -57,21 +57,21 @@ class _Field:
 
 def _strict_fields(head: Sequence[str], schema: Schema, where: str) -> list[_Field]:
     """Check the header of a shipped table: the schema's, in its order."""
-    wanted = [column.heading for column in schema.columns]
-    for i, (found, right) in enumerate(zip(head, wanted, strict=False)):
-        if found != right:
-            name = split_header(found)[0] if "[" in found and "]" in found else found
+    headings = [column.heading for column in schema.columns]
+    for i, (heading, right) in enumerate(zip(head, headings, strict=False)):
+        if heading != right:
+            name = split_header(heading)[0] if "[" in heading and "]" in heading else heading
             if schema.get(name) is None:
                 hint = f"the column {right!r} in place {i + 1}; the schema has no {name!r}"
             elif name == schema.columns[i].name:
                 hint = f"the unit of the schema: {right}"
             else:
                 hint = f"the order of the schema, with {right!r} in place {i + 1}"
-            raise InputError(f"{where}, line 1, column {name}", found, hint)
-    if len(head) > len(wanted):
-        raise InputError(f"{where}, line 1", head[len(wanted)], "no column that the schema does not have")
-    if len(head) < len(wanted):
-        raise InputError(f"{where}, line 1, column {schema.columns[len(head)].name}", None, wanted[len(head)])
+            raise InputError(f"{where}, line 1, column {name}", heading, hint)
+    if len(head) > len(headings):
+        raise InputError(f"{where}, line 1", head[len(headings)], "no column that the schema does not have")
+    if len(head) < len(headings):
+        raise InputError(f"{where}, line 1, column {schema.columns[len(head)].name}", None, headings[len(head)])
     return [_Field(column, column.scale, i) for i, column in enumerate(schema.columns)]
 
 
@@ -225,10 +225,10 @@ def _build(
             if word not in CONFIDENCE:
                 raise InputError(f"{label}, column confidence", word, f"one of {', '.join(CONFIDENCE)}")
     else:
-        for given, default in (("source", origin), ("confidence", "user")):
-            texts = data.get(given, ("",) * len(rows))
-            data[given] = tuple(str(text) or default for text in texts)
-            columns.setdefault(given, Column(given, "text"))
+        for title, default in (("source", origin), ("confidence", "user")):
+            texts = data.get(title, ("",) * len(rows))
+            data[title] = tuple(str(text) or default for text in texts)
+            columns.setdefault(title, Column(title, "text"))
     return Table(name, columns, data, labels, origin, np.full(len(rows), not strict))
 
 
@@ -277,9 +277,9 @@ def load_table(
     path = Path(path)
     name = table_name(path) if name is None else name
     if schema is None:
-        beside = path.with_name(table_name(path) + SCHEMA_SUFFIX)
-        if shipped or beside.is_file():
-            schema = beside
+        schema_file = path.with_name(table_name(path) + SCHEMA_SUFFIX)
+        if shipped or schema_file.is_file():
+            schema = schema_file
     if schema is not None and not isinstance(schema, Schema):
         schema = load_schema(schema)
     if not shipped and is_workbook(path):
@@ -312,9 +312,9 @@ def csv_of_file(path: Path) -> str:
 def _table_of_sheet(path: Path, schema: Schema | None, name: str) -> Table:
     """Read a user's table from a workbook: the sheet that is named, or the first that has what is needed."""
     sheet, ((_, head), *rows) = _lines_of_sheet(path, schema)
-    wide = max((len(cells) for _, cells in rows), default=0)
+    width = max((len(cells) for _, cells in rows), default=0)
     place = f"{sheet.name}, sheet {sheet.title}"
-    head = head + [""] * (wide - len(head))
+    head = head + [""] * (width - len(head))
     return _table_of(head, rows, schema, name, place, False, sheet.sentence(), typed=True)
 
 
@@ -343,10 +343,10 @@ def _lines_of_sheet(path: Path, schema: Schema | None) -> tuple[Sheet, list[tupl
 
 def _holds_header(schema: Schema | None) -> Callable[[Sequence[str]], bool]:
     """Test whether cells are the header of a table: by its designations, or the columns of its data."""
-    wanted = {DESIGNATION}
+    required = {DESIGNATION}
     if schema is not None and schema.get(DESIGNATION) is None:
-        wanted = {column.name for column in schema.columns}
-    return lambda cells: bool({title.partition("[")[0].strip() for title in cells} & wanted)
+        required = {column.name for column in schema.columns}
+    return lambda cells: bool({title.partition("[")[0].strip() for title in cells} & required)
 
 
 def _flag_or_text(cell: object) -> str:
@@ -392,11 +392,11 @@ def table_of_rows(rows: Sequence[Mapping[str, Any]], schema: Schema | None, name
     name, origin : str
         Of the table, and of the file it was read from.
     """
-    told = [{column: cell for column, cell in row.items() if column not in OF_RECORD} for row in rows]
+    stored = [{column: cell for column, cell in row.items() if column not in OF_RECORD} for row in rows]
     columns, data = dict[str, Column](), dict[str, Any]()
     units = {column: unit for row in rows for column, unit in row.get("units", {}).items()}
-    for column in dict.fromkeys(column for row in told for column in row):
-        cells = [row.get(column) for row in told]
+    for column in dict.fromkeys(column for row in stored for column in row):
+        cells = [row.get(column) for row in stored]
         known = [cell for cell in cells if cell is not None]
         if not known:
             continue  # as if the table had no such column
@@ -404,8 +404,8 @@ def table_of_rows(rows: Sequence[Mapping[str, Any]], schema: Schema | None, name
         numeric = not isinstance(known[0], str)
         columns[column] = described or Column(column, "number" if numeric else "text", units.get(column))
         data[column] = np.array(cells, dtype=float) if numeric else tuple("" if c is None else str(c) for c in cells)
-    labels = [f"{origin}, row {row['designation']}" for row in told]
-    return Table(name, columns, data, labels, origin, np.ones(len(told), dtype=bool))
+    labels = [f"{origin}, row {row['designation']}" for row in stored]
+    return Table(name, columns, data, labels, origin, np.ones(len(stored), dtype=bool))
 
 
 def _table_of(

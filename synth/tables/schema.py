@@ -167,10 +167,10 @@ def _schema_column(cell: dict[str, str], where: str) -> Column:
             raise InputError(f"{where}, column unit", cell["unit"], error.expected) from None
     limits: list[float | None] = []
     for side in ("minimum", "maximum"):
-        given = cell[side]
-        if given and cell["type"] == "text":
-            raise InputError(f"{where}, column {side}", given, "an empty cell for a column of text")
-        limits.append(float(check_number(given, f"{where}, column {side}")) if given else None)
+        limit_text = cell[side]
+        if limit_text and cell["type"] == "text":
+            raise InputError(f"{where}, column {side}", limit_text, "an empty cell for a column of text")
+        limits.append(float(check_number(limit_text, f"{where}, column {side}")) if limit_text else None)
     low, high = limits
     if low is not None and high is not None and not low < high:
         raise InputError(f"{where}, column minimum", low, f"less than the maximum {typed_number(high)}")

@@ -142,10 +142,10 @@ class Table:
         InputError
             There is none; close names are listed.
         """
-        found = self._find(name)
-        if found is None:
+        key = self._find(name)
+        if key is None:
             raise InputError(f"table {self.name}", name, f"a column of this table, {perhaps_meant(name, self.columns)}")
-        return self.columns[found]
+        return self.columns[key]
 
     def number(self, column: str) -> FloatArray:
         """SI values of a column of numbers.
@@ -176,8 +176,8 @@ class Table:
             name, _, other = column.partition(ELSE)
             known = self.number(name) if self.has(name) else np.full(len(self), np.nan)
             return np.where(np.isnan(known), float(other), known)
-        found = self.column(column)
-        cells = self._data[found.name]
+        match = self.column(column)
+        cells = self._data[match.name]
         if not isinstance(cells, np.ndarray):
             raise InputError(f"table {self.name}", column, "a column of numbers; this one is text")
         return cells
@@ -200,8 +200,8 @@ class Table:
         InputError
             No such column, or a column of numbers.
         """
-        found = self.column(column)
-        cells = self._data[found.name]
+        match = self.column(column)
+        cells = self._data[match.name]
         if isinstance(cells, np.ndarray):
             raise InputError(f"table {self.name}", column, "a column of text; this one has numbers")
         return cells

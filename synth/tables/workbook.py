@@ -28,7 +28,7 @@ ROW = re.compile(rb"<((?:\w+:)?row)\s([^>]*?)(?:/>|>.*?</\1>)", re.DOTALL)
 TRUE = (b"1", b"true")
 LEAVE_OUT = f"--visible-rows, or #{VISIBLE} behind the name, leaves them out"
 ATTRIBUTES = re.compile(rb"(\w+)=[\"']([^\"']*)[\"']")
-SHOWN = 6  # rows that are told by number
+SHOWN = 6  # rows that are listed by number
 LOOKED_AT = 20  # lines above which a table may begin in vain
 FORMULA = re.compile(rb"<f[ >/]")
 TEXT_RESULT = "str"  # the kind of a formula's value that is text, also where that is empty
@@ -67,8 +67,7 @@ def cell_text(value: Any) -> str:
     if isinstance(value, float):
         return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     if isinstance(value, datetime.datetime):
-        whole = value.time() == datetime.time()
-        return value.date().isoformat() if whole else value.isoformat(" ", "seconds")
+        return value.date().isoformat() if value.time() == datetime.time() else value.isoformat(" ", "seconds")
     return str(value)
 
 
@@ -94,7 +93,7 @@ class Sheet:
         Whether the sheet itself is hidden.
     hidden : tuple of int
         Rows with something in them that are hidden, by hand or by a filter.
-    left_out : bool
+    omitted : bool
         Whether hidden rows are left out.
     numbers : WrittenNumbers
         How the numbers are written that stand as text.
@@ -110,7 +109,7 @@ class Sheet:
     several: bool
     unseen: bool = False
     hidden: tuple[int, ...] = ()
-    left_out: bool = False
+    omitted: bool = False
     numbers: WrittenNumbers = PLAIN_NUMBERS
     most: int | None = None
 
@@ -130,20 +129,20 @@ class Sheet:
     def sentence(self) -> str:
         """Recognised dialect, in a sentence; empty where there is one way to read the sheet."""
         sheet = f"{'hidden ' if self.unseen else ''}sheet {self.title}"
-        told = [sheet] if self.several or self.unseen or self.hidden else []
+        remarks = [sheet] if self.several or self.unseen or self.hidden else []
         if self.hidden:
-            some = ", ".join(map(str, self.hidden[:SHOWN])) + (", ..." if len(self.hidden) > SHOWN else "")
+            listed = ", ".join(map(str, self.hidden[:SHOWN])) + (", ..." if len(self.hidden) > SHOWN else "")
             rows = counted(len(self.hidden), "hidden or filtered row")
-            told.append(f"without {rows} ({some})" if self.left_out else f"with {rows} ({some}; {LEAVE_OUT})")
+            remarks.append(f"without {rows} ({listed})" if self.omitted else f"with {rows} ({listed}; {LEAVE_OUT})")
         if self.numbers.titles:
-            told.append(self.numbers.sentence())
-        return f"{self.name}: {', '.join(told)}" if told else ""
+            remarks.append(self.numbers.sentence())
+        return f"{self.name}: {', '.join(remarks)}" if remarks else ""
 
     def values(self) -> Iterator[tuple[int, tuple[Any, ...]]]:
         """Return number and values of every line that is read."""
         with _book(self.raw, self.name, self.named_by) as book:
             rows = book.worksheets[self.position].iter_rows(values_only=True, max_row=self.most)
-            yield from enumerate(_whole(rows, self.name, self.named_by), start=1)
+            yield from enumerate(_checked_rows(rows, self.name, self.named_by), start=1)
 
     def recognised(self, visible: bool = False) -> Sheet:
         """Return the sheet with how its numbers are written, and its hidden rows; ``visible``: these are left out.
@@ -157,16 +156,16 @@ class Sheet:
         if merged:
             right = "one cell for each value: unmerge them, and fill in all that they stood for"
             raise InputError(f"{self.name}, sheet {self.title}", Described(f"merged cells, {merged}"), right)
-        found = self
+        sheet = self
         if visible and hidden:
-            found = replace(self, raw=without_hidden_rows(self.raw, self.name, self.named_by), left_out=True)
-        found._check_formulas()
+            sheet = replace(self, raw=without_hidden_rows(self.raw, self.name, self.named_by), omitted=True)
+        sheet._check_formulas()
         columns: list[NumberColumn] = []
         header: list[str] = []
         filled = list[int]()
         if hidden:
             filled = [k for k, cells in self.values() if k in hidden and any(c not in (None, "") for c in cells)]
-        for number, cells in found.values():
+        for number, cells in sheet.values():
             if number == 1:
                 header = [cell_text(cell) for cell in cells]
                 columns = [NumberColumn() for _ in header]
@@ -177,15 +176,15 @@ class Sheet:
                 elif isinstance(cell, (int, float)):
                     column.add_number()
         numbers = written_numbers(header, columns, f"{self.name}, sheet {self.title}")
-        return replace(found, numbers=numbers, hidden=tuple(filled))
+        return replace(sheet, numbers=numbers, hidden=tuple(filled))
 
     def _layout(self) -> tuple[set[int], str]:
         """Hidden rows, and some merged cells: readers that go line by line do not see them."""
         with _book(self.raw, self.name, self.named_by) as book:
             place = book.worksheets[self.position]._worksheet_path
         hidden, line = set[int](), 0
-        for tag, stated in _whole(_tags(self.raw, place), self.name, self.named_by):
-            attributes = dict(ATTRIBUTES.findall(stated))
+        for tag, tag_text in _checked_rows(_tags(self.raw, place), self.name, self.named_by):
+            attributes = dict(ATTRIBUTES.findall(tag_text))
             if tag == b"mergeCell":
                 return hidden, attributes.get(b"ref", b"").decode("ascii", "replace")
             line = int(attributes.get(b"r", line + 1))
@@ -202,7 +201,7 @@ class Sheet:
             _book(self.raw, self.name, self.named_by, True) as formulas,
         ):
             sheets = (book.worksheets[self.position].iter_rows(max_row=self.most) for book in (values, formulas))
-            pairs = zip(*(_whole(rows, self.name, self.named_by) for rows in sheets), strict=False)
+            pairs = zip(*(_checked_rows(rows, self.name, self.named_by) for rows in sheets), strict=False)
             for number, (cells, written) in enumerate(pairs, start=1):
                 for cell, formula in zip(cells, written, strict=False):
                     if cell.value is None and formula.value is not None and cell.data_type != TEXT_RESULT:
@@ -246,23 +245,23 @@ def sheet_of(
         It cannot be read, there is no such sheet, or its numbers can be read in two ways.
     """
     named = table_file(path)
-    file, wanted = named.path, named.sheet
+    file, title = named.path, named.sheet
     raw, name = read_bytes(file, field, right, most_bytes), name or file.name
     with _book(raw, name, field) as book:
         titles = [sheet.title for sheet in book.worksheets]
         if not titles:
             raise InputError(field, name, "a workbook with a sheet in it")
-        if wanted and wanted not in titles:
-            raise InputError(field, f"{name}#{wanted}", f"a sheet that it has: {', '.join(titles)}")
+        if title and title not in titles:
+            raise InputError(field, f"{name}#{title}", f"a sheet that it has: {', '.join(titles)}")
         unseen = [sheet.sheet_state != "visible" for sheet in book.worksheets]
         order = sorted(range(len(titles)), key=unseen.__getitem__)
-        position = titles.index(wanted) if wanted else order[0]
-        if not wanted and len(titles) > 1:
+        position = titles.index(title) if title else order[0]
+        if not title and len(titles) > 1:
             sheets = ((k, book.worksheets[k].iter_rows(values_only=True)) for k in order)
-            heads = ((k, next(_whole(rows, name, field), ())) for k, rows in sheets)
+            heads = ((k, next(_checked_rows(rows, name, field), ())) for k, rows in sheets)
             position = next((k for k, head in heads if fits([cell_text(cell) for cell in head])), order[0])
-    found = Sheet(name, field, raw, titles[position], position, len(titles) > 1, unseen[position], most=most)
-    return found.recognised(named.visible)
+    chosen = Sheet(name, field, raw, titles[position], position, len(titles) > 1, unseen[position], most=most)
+    return chosen.recognised(named.visible)
 
 
 def without_hidden_rows(raw: bytes, name: str, field: str) -> bytes:
@@ -308,7 +307,7 @@ def table_elsewhere(path: Path, field: str, fits: Callable[[list[str]], bool], n
         first = book.worksheets[0].title
         for sheet in book.worksheets:
             if named.sheet in ("", sheet.title):
-                rows = _whole(sheet.iter_rows(values_only=True, max_row=LOOKED_AT), name, field)
+                rows = _checked_rows(sheet.iter_rows(values_only=True, max_row=LOOKED_AT), name, field)
                 for number, cells in enumerate(rows, start=1):
                     if fits([cell_text(cell) for cell in cells]):
                         return header_first(number, "" if named.sheet or sheet.title == first else sheet.title)
@@ -355,7 +354,7 @@ def _book(raw: bytes, name: str, field: str, formulas: bool = False) -> Iterator
         book.close()
 
 
-def _whole(rows: Iterator[Any], name: str, field: str) -> Iterator[Any]:
+def _checked_rows(rows: Iterator[Any], name: str, field: str) -> Iterator[Any]:
     """Yield the rows of a sheet, which is read as it is gone through: only now what is broken in it shows.
 
     Raises

@@ -237,7 +237,7 @@ def list_jobs(
         with store:
             store.release_dead()
             for job in store.jobs():
-                store.rest(job.id)
+                store.requeue(job.id)
             found += [(job, store.account(job.id)) for job in store.jobs()]
     print_jobs(found)
 
@@ -250,7 +250,7 @@ def show(job: JobName, database: Database = None) -> None:
     store, found = _find(job, database)
     with store:
         store.release_dead(found.id)
-        store.rest(found.id)
+        store.requeue(found.id)
         found = store.job(found.id) or found
         print_job(found, store.account(found.id), store.open_units(found.id), store.events(found.id, 20))
 

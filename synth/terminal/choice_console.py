@@ -150,7 +150,7 @@ def _plain_common_front(found: Comparison, console: Console, every: bool) -> Non
 
 def how_long(families: Sequence[str], time_limit: float | None) -> str:
     """Time that a comparison takes, and what stops it."""
-    look, count = COMPARING.first_look, len(families)
+    look, count = COMPARING.first_pass, len(families)
     if time_limit is not None and time_limit <= count * look:
         spent = f"They share {typed_number(time_limit)} s"
     else:

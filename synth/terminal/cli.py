@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from synth.analysis.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
+from synth.analysis.design_spec import design_of_spec, must_be_a_design, must_be_a_question, must_be_one_family
 from synth.errors import DeclarationError, InputError, RefusedError, derived
 from synth.folders.csv_style import csv_style
 from synth.folders.files import frame_csv
@@ -360,7 +360,7 @@ def check(
     must_be_a_design(asked)
     claim_output(folder)
     with blamed_on(asked.file):
-        problem, catalogs, result = given_design(asked)
+        problem, catalogs, result = design_of_spec(asked)
         tell_readings(catalogs)
         details = described(problem, catalogs)
     found = None
@@ -406,7 +406,7 @@ def simulate(
         if [other for other, _ in pairs].count(name) > 1:
             raise InputError("--set", name, "each setting once")
     with blamed_on(asked.file):
-        problem, catalogs, result = given_design(asked)
+        problem, catalogs, result = design_of_spec(asked)
     tell_readings(catalogs)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
@@ -446,7 +446,7 @@ def curves(
             frames = curves_of(problem, asked.requirements, catalogs=catalogs)
         else:
             must_be_a_design(asked)
-            problem, catalogs, result = given_design(asked)
+            problem, catalogs, result = design_of_spec(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
         tell_readings(catalogs)
     files = {} if folder is None else frame_files(frames)

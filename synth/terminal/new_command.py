@@ -36,7 +36,7 @@ def new(
 ) -> None:
     """Write a commented spec to start from; in a terminal what is needed and not said is asked for."""
     from synth.analysis.describe import described
-    from synth.analysis.spec_template import needed, spec_template, stated_value
+    from synth.analysis.spec_template import checked_value, needed, spec_template
     from synth.model.registry import load
 
     if file is not None and file.exists():
@@ -49,7 +49,7 @@ def new(
         own = by_symbol.get(name, name)
         if own not in rows:
             raise InputError("NAME=VALUE", name, f"a requirement of {family}: {', '.join(rows)}")
-        values[own] = stated_value(rows[own], value)
+        values[own] = checked_value(rows[own], value)
     if sys.stdin.isatty() and sys.stdout.isatty():
         for row in needed(rows.values()):
             if row["name"] not in values:
@@ -69,7 +69,7 @@ def new(
 
 def _answer(row: Mapping[str, Any]) -> str:
     """Ask for a value until it is one; nothing leaves it to be filled in."""
-    from synth.analysis.spec_template import stated_value
+    from synth.analysis.spec_template import checked_value
 
     shown = f"{row['name']} ({row['symbol']}) in {row['unit']}: {row['text']}"
     while True:
@@ -77,6 +77,6 @@ def _answer(row: Mapping[str, Any]) -> str:
         if not text:
             return ""
         try:
-            return stated_value(row, text)
+            return checked_value(row, text)
         except InputError as error:
             tell(str(error))

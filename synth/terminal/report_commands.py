@@ -173,7 +173,7 @@ def _of_front(source: Path, target: Path, design: str, full: int, how: ReportOpt
 
 def _of_design(source: Path, target: Path, how: ReportOptions, quiet: bool) -> WrittenReport:
     """Write the sheet of a design that stands in a file."""
-    from synth.analysis.design_spec import given_design, must_be_a_design
+    from synth.analysis.design_spec import design_of_spec, must_be_a_design
     from synth.analysis.reporting import report_design
     from synth.question.instance import Instance
     from synth.question.request import Request
@@ -181,7 +181,7 @@ def _of_design(source: Path, target: Path, how: ReportOptions, quiet: bool) -> W
 
     spec = read_spec(source)
     must_be_a_design(spec)
-    problem, catalogs, design = given_design(spec)
+    problem, catalogs, design = design_of_spec(spec)
     if not quiet:
         tell_readings(catalogs)
     instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)

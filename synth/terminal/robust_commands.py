@@ -97,13 +97,13 @@ def _designs(source: Path, quiet: bool) -> tuple[ParetoFront | Design, Any, Any,
 
         front = load_front(source)
         return front, None, None, dict(front.frame.restated.get("robust") or {})
-    from synth.analysis.design_spec import given_design, must_be_a_design
+    from synth.analysis.design_spec import design_of_spec, must_be_a_design
     from synth.question.spec import read_spec
 
     asked = read_spec(source)
     must_be_a_design(asked)
     with blamed_on(asked.file):
-        problem, catalogs, design = given_design(asked)
+        problem, catalogs, design = design_of_spec(asked)
     if not quiet:
         tell_readings(catalogs)
     return design, problem, catalogs, dict(asked.robust)

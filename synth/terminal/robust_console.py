@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from synth.question.uncertainty import LIMITS
 from synth.results import Design
-from synth.results.rating_tables import robust_sentence, shown_at, taken_off, yield_text
+from synth.results.rating_tables import removed_sentence, robust_sentence, shown_at, yield_text
 from synth.terminal.console import plain_table, print_wrapped
 from synth.text.numbers import used_share
 
@@ -43,7 +43,7 @@ def print_robust(front: ParetoFront, console: Console) -> None:
         console.print()
         print_wrapped(console, robust_sentence(front.designs))
     if gone:
-        console.print(taken_off(gone))
+        console.print(removed_sentence(gone))
     if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
         console.print("what is proven below counts for all designs that keep their limits over the whole range")
 

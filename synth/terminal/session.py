@@ -76,9 +76,9 @@ def own_tables(catalogs: Any, base: Path, encoding: str | None, visible: bool) -
     """Return own tables, as flags or a spec name them, with how other flags say that their files are read."""
     if catalogs is None or not (encoding or visible):
         return catalogs
-    from synth.tables.catalogs import read_as_stated  # NumPy comes with it; --help does without
+    from synth.tables.catalogs import with_reading_options  # NumPy comes with it; --help does without
 
-    return read_as_stated(catalogs, base, encoding, visible)
+    return with_reading_options(catalogs, base, encoding, visible)
 
 
 def pair(flag: str, text: str) -> tuple[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.question.uncertainty import RATE
-from synth.results.rating_tables import robust_sentence, taken_off, yield_text
+from synth.results.rating_tables import removed_sentence, robust_sentence, yield_text
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.terminal.console import in_common, made_of, named_file, plain_table, print_wrapped
 from synth.text.numbers import column_texts
@@ -147,7 +147,7 @@ def _robust(study: Study) -> list[str]:
     lines = [robust_sentence(designs)] if any(d.robust for d in designs) else []
     gone = sum(f.statistics["robust"].get("taken_off", 0) for f in study.fronts if "robust" in f.settings)
     if gone:
-        lines.append(taken_off(gone))
+        lines.append(removed_sentence(gone))
     return lines
 
 

@@ -155,7 +155,7 @@ def size_range(
     SizeRangeRequest.read({"variants": variants, "candidates": candidates, "gap": gap, "time_limit": time_limit})
     started = time.monotonic()
     if isinstance(source, BatchResult):
-        database, job, catalogs, user_problem = source.database, source.job, source.catalogs, source.own
+        database, job, catalogs, user_problem = source.database, source.job, source.catalogs, source.user_family
     else:
         catalogs = user_problem = None
     with opened_batch(source, database) as store:

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.restate import asked_again, problem_of, table_differences
+from synth.analysis.restate import problem_of, rebuilt_question, table_differences
 from synth.errors import InputError
 from synth.folders.csv_style import STYLES
 from synth.folders.files import read_bytes
@@ -117,7 +117,7 @@ def checked(
         resolved, tables = problem_of(front, problem, catalogs, kept=True)
         check.compare_tables(*table_differences(front, tables))
         try:
-            check.ask(asked_again(front, resolved, tables))
+            check.ask(rebuilt_question(front, resolved, tables))
         except InputError as error:
             check.find(f"the question of the record cannot be asked: {error}")
             return check

@@ -26,7 +26,7 @@ from synth.text.numbers import typed_number
 from synth.workers.engine_tasks import task_of
 from synth.workers.settings import WORK, EngineSettings
 
-READY, TOLD, ANSWERED, REFUSED, FAILED = "ready", "told", "answered", "refused", "failed"
+READY, PROGRESS, ANSWERED, REFUSED, FAILED = "ready", "progress", "answered", "refused", "failed"
 
 
 class EngineTimeoutError(Exception):
@@ -45,14 +45,14 @@ class Failure:
     ----------
     kind : str
         The name of the error.
-    told : str
-        What it says; that may be what somebody has asked.
+    message : str
+        What it says; it may repeat parts of a request.
     where : tuple of str
         Where it was raised, innermost first.
     """
 
     kind: str
-    told: str
+    message: str
     where: tuple[str, ...]
 
 
@@ -65,7 +65,7 @@ class EngineFailedError(Exception):
     """
 
     def __init__(self, failure: Failure) -> None:
-        super().__init__(failure.told)
+        super().__init__(failure.message)
         self.failure = failure
 
 
@@ -148,7 +148,7 @@ class EngineProcess:
 
     def _hear_within(self, budget: _Budget) -> Message | None:
         """Message that the process sends next; None where its budget is spent before."""
-        while (message := self.hear(self.settings.look)) is None:
+        while (message := self.hear(self.settings.poll)) is None:
             if budget.is_spent():
                 return None
         return message
@@ -181,7 +181,7 @@ class EngineProcess:
             if message is None:
                 self.end()
                 raise EngineTimeoutError(f"{task}: more than {typed_number(limit)} s of a processor")
-            if message.kind != TOLD:
+            if message.kind != PROGRESS:
                 return answer_of(message)
 
     def ended(self) -> str:
@@ -371,29 +371,29 @@ def _serve(pipe: Connection, settings: EngineSettings) -> None:
     begin_to_serve()
     give_way(settings.nice)
     bound_memory(settings.addresses)  # the supervisor looks at what is really used
-    asked: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(pipe, asked), name="lifeline", daemon=True).start()
+    tasks: queue.SimpleQueue[tuple[str, Any]] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(pipe, tasks), name="lifeline", daemon=True).start()
     from synth.workers.engine_work import warm_up
 
-    say = _Speaker(pipe, settings.tell)
+    say = _Speaker(pipe, settings.report_pause)
     say(READY, warm_up())
     while True:
-        task, payload = asked.get()
+        task, payload = tasks.get()
         try:
-            say(ANSWERED, task_of(task)(payload, say.tell))
+            say(ANSWERED, task_of(task)(payload, say.report))
         except InputError as refusal:
             say(REFUSED, refusal)
         except (Exception, SystemExit, KeyboardInterrupt) as error:
-            from synth.batches.solve import told_of
+            from synth.batches.solve import error_text
 
-            say(FAILED, Failure(type(error).__name__, told_of(error), tuple(where_raised(error))))
+            say(FAILED, Failure(type(error).__name__, error_text(error), tuple(where_raised(error))))
 
 
-def _listen(pipe: Connection, asked: queue.SimpleQueue[tuple[str, Any]]) -> None:
+def _listen(pipe: Connection, tasks: queue.SimpleQueue[tuple[str, Any]]) -> None:
     """Take what is asked while something else may be computed; end the process with the one that has started it."""
     while True:
         try:
-            asked.put(pipe.recv())
+            tasks.put(pipe.recv())
         except (EOFError, OSError):
             os._exit(1)
 
@@ -402,7 +402,7 @@ class _Speaker:
     """Says things to the other side; how far something is not more often than anybody can read."""
 
     def __init__(self, pipe: Connection, pause: float) -> None:
-        self._pipe, self._pause, self._told = pipe, pause, 0.0
+        self._pipe, self._pause, self._last_report = pipe, pause, 0.0
 
     def __call__(self, kind: str, content: Any) -> None:
         try:
@@ -410,8 +410,8 @@ class _Speaker:
         except OSError:
             os._exit(1)
 
-    def tell(self, state: Mapping[str, Any]) -> None:
+    def report(self, state: Mapping[str, Any]) -> None:
         now = time.monotonic()
-        if now - self._told >= self._pause:
-            self._told = now
-            self(TOLD, dict(state))
+        if now - self._last_report >= self._pause:
+            self._last_report = now
+            self(PROGRESS, dict(state))

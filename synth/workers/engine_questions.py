@@ -15,38 +15,38 @@ from synth.model.registry import load
 from synth.queue.job_table import BATCH
 from synth.queue.records import Record
 from synth.results.provenance import code_digest, problem_digest
-from synth.workers.engine_tasks import Tell
+from synth.workers.engine_tasks import ReportProgress
 from synth.workers.engine_work import program_fingerprint
 
 
-def families(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def families(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Return all families, and the digest of the code that says so."""
     return {"families": small.families(), "code": code_digest()}
 
 
-def declaration(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def declaration(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Declaration of a family, and the digest of its code; None for an unknown family."""
     if payload["family"] not in registered():
         return {"declaration": None, "code": code_digest()}
     return {"declaration": small.declaration(payload["family"], payload["options"]), "code": code_digest()}
 
 
-def examples(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def examples(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Return the examples of all families, and the digest of the code that they come with."""
     return {"examples": small.examples(), "code": code_digest()}
 
 
-def check(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Tell what is wrong with a question."""
+def check(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
+    """Faults of a question."""
     return small.check(payload["request"], payload["sources"])
 
 
-def evaluate(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Return one design that was stated, evaluated."""
+def evaluate(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
+    """Evaluation of one design."""
     return small.evaluate(payload["request"], payload["sources"])
 
 
-def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def changed(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Hashes that decide answers and have changed since a batch was begun, and the fingerprint of programs now.
 
     Raises
@@ -56,7 +56,7 @@ def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """
     content = payload["content"]
     kept = content.get("hashes") or {}
-    found: list[str] = []
+    differing: list[str] = []
     if kept:
         now = {
             "code": code_digest(),
@@ -64,18 +64,18 @@ def changed(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
             "families": problem_digest([type(load(name)) for name in content["families"]]),
             "tables": catalogs_of(content.get("catalogs"), payload["sources"]).digest(),
         }
-        found = [name for name, text in now.items() if kept.get(name) != text]
-    return {"changed": found, "code": program_fingerprint()}
+        differing = [name for name, text in now.items() if kept.get(name) != text]
+    return {"changed": differing, "code": program_fingerprint()}
 
 
-def files(payload: Mapping[str, Any], tell: Tell) -> dict[str, int | None]:
+def files(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, int | None]:
     """Return the names of the files of a job that can be had here, with their sizes where these are known."""
     if payload["kind"] == BATCH:
         return dict.fromkeys(batch.files_to_have())
     return files_to_have(payload["kind"], payload["records"])
 
 
-def render(payload: Mapping[str, Any], tell: Tell) -> Record | None:
+def render(payload: Mapping[str, Any], report: ReportProgress) -> Record | None:
     """Return a file of a job; None where it has none of that name.
 
     Raises
@@ -87,7 +87,7 @@ def render(payload: Mapping[str, Any], tell: Tell) -> Record | None:
     """
     try:
         if payload["kind"] == BATCH:
-            return batch.files(payload, tell)
+            return batch.files(payload, report)
         return rendered(payload["kind"], payload["records"], payload["name"], payload["options"], payload["sources"])
     except UnknownFileError:
         return None

@@ -11,8 +11,8 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-Tell = Callable[[Mapping[str, Any]], None]
-Task = Callable[[Any, Tell], Any]
+ReportProgress = Callable[[Mapping[str, Any]], None]
+Task = Callable[[Any, ReportProgress], Any]
 
 ROWS_TASK, PLAN_TASK, WORK_TASK, READ_TASK = "rows", "plan", "work", "read"
 CHECK_ROWS_TASK, BATCH_FILE_TASK = "check_rows", "batch_file"
@@ -55,5 +55,5 @@ def task_of(name: str) -> Task:
         There is no such task.
     """
     module, _, function = TASKS[name].partition(":")
-    found: Task = getattr(import_module(module), function)
-    return found
+    task: Task = getattr(import_module(module), function)
+    return task

@@ -12,7 +12,7 @@ from synth.kinds.asked import catalogs_of
 from synth.model.registry import every_family
 from synth.queue.records import Sources
 from synth.results.provenance import computing_digest, hash_of, problem_digest
-from synth.workers.engine_tasks import Tell
+from synth.workers.engine_tasks import ReportProgress
 
 
 def warm_up() -> str:
@@ -32,23 +32,23 @@ def program_fingerprint() -> str:
     return hash_of([computing_digest(), problem_digest(registered)])
 
 
-def rows(payload: Mapping[str, Any], tell: Tell) -> dict[str, dict[str, Any]]:
+def rows(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, dict[str, Any]]:
     """Answer some rows of a batch: as :func:`synth.batches.solve.solve_unit`."""
-    asked = payload["request"]  # none, of a batch that the command line has made: its tables are files
-    catalogs = catalogs_of(asked.get("catalogs"), _sources(payload)) if asked else payload["catalogs"]
-    return solve_unit({**payload, "catalogs": catalogs, "code": computing_digest(), "tell": tell})
+    request = payload["request"]  # none, of a batch that the command line has made: its tables are files
+    catalogs = catalogs_of(request.get("catalogs"), _sources(payload)) if request else payload["catalogs"]
+    return solve_unit({**payload, "catalogs": catalogs, "code": computing_digest(), "tell": report})
 
 
-def work(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+def work(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Do what a job of one unit asks for: its records, and the facts of them."""
     module = kind(payload["kind"]).load()
-    records = module.work(payload["request"], _sources(payload), tell)
+    records = module.work(payload["request"], _sources(payload), report)
     facts = module.summary({name: record.content for name, record in records.items()})
     return {"records": list(records.values()), "summary": facts}
 
 
-def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
-    """Check a request; return it as it is stored, and what is told of it.
+def read(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
+    """Check a request; return it as it is stored, with its metadata.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     chosen, sources = kind(payload["kind"]), _sources(payload)
     module, request = chosen.load(), payload["request"]
     try:
-        posed = module.read(request, sources)
+        checked = module.read(request, sources)
     except InputError as fault:
         if not chosen.checked or not isinstance(request, Mapping):
             raise
@@ -67,20 +67,20 @@ def read(payload: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         spec, more = module.beside(request, sources) if chosen.keys else (request, [])
         raise all_faults(spec, sources, fault, chosen.keys, more) from fault
     return {
-        "request": dict(posed.request),
-        "title": posed.title,
-        "families": list(posed.families),
-        "bulk": posed.bulk,
-        "tables": dict(posed.tables),
-        "text": posed.text,
+        "request": dict(checked.request),
+        "title": checked.title,
+        "families": list(checked.families),
+        "bulk": checked.bulk,
+        "tables": dict(checked.tables),
+        "text": checked.text,
         "code": program_fingerprint(),
-        "fingerprint": posed.fingerprint or hash_of([payload["kind"], posed.text, dict(posed.tables)]),
-        "kept": list(posed.kept),
-        "steps": posed.steps,
-        "rows": posed.rows,
+        "fingerprint": checked.fingerprint or hash_of([payload["kind"], checked.text, dict(checked.tables)]),
+        "kept": list(checked.kept),
+        "steps": checked.steps,
+        "rows": checked.rows,
     }
 
 
 def _sources(payload: Mapping[str, Any]) -> Sources:
-    found: Sources = payload["sources"]
-    return found
+    sources: Sources = payload["sources"]
+    return sources

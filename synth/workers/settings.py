@@ -30,9 +30,9 @@ class EngineSettings:
         waits for its turn, one that waits for ever is stuck.
     stirs : float
         Share of the limit that it must have had by then, to have as long again.
-    look : float
-        In s, between two looks at how much processor time it has had.
-    tell : float
+    poll : float
+        In s, between two readings of how much processor time it has had.
+    report_pause : float
         In s, between two reports of how far it is.
     """
 
@@ -44,8 +44,8 @@ class EngineSettings:
     start: float = 60.0
     stuck: float = 10.0
     stirs: float = 0.01
-    look: float = 0.2
-    tell: float = 0.25
+    poll: float = 0.2
+    report_pause: float = 0.25
 
 
 # Somebody waits for the answer: no search of a worker comes before it.
@@ -63,7 +63,7 @@ class WorkerSettings:
     watch : float
         In s, between two looks at whether what is computed is still wanted.
     weigh : float
-        In s, between two looks at how much memory it takes.
+        In s, between two readings of how much memory it takes.
     lease : float
         In s, that a claim lasts without a sign of life: so long a job waits whose machine has gone.
     sign : float

@@ -26,13 +26,13 @@ from synth.queue.job_table import FAILED, PLAN, ROWS, STOPPED, Ending
 from synth.queue.models import Job
 from synth.queue.owners import new_owner
 from synth.queue.records import TABLE, Record
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.system.operating_system import resident
 from synth.text.numbers import typed_number
 from synth.workers.engine_process import (
     ANSWERED,
+    PROGRESS,
     REFUSED,
-    TOLD,
     EngineCrashedError,
     EnginePool,
     EngineProcess,
@@ -96,7 +96,7 @@ class Worker:
         say: Callable[[str], None] = lambda sentence: None,
     ) -> None:
         self.store, self.settings, self.say = store, settings, say
-        self.shelf = Shelf(store)
+        self.tenant_files = TenantFiles(store)
         self.owner = new_owner()
         self.slots = slots
         self.spares = EnginePool(slots + spare, settings.engine)
@@ -138,14 +138,14 @@ class Worker:
                 continue
             self.code = engine.code
             try:
-                found = self.store.claim_next(self.owner, engine.code, lease=self.settings.worker.lease)
+                claimed = self.store.claim_next(self.owner, engine.code, lease=self.settings.worker.lease)
             except (DBAPIError, OSError):
                 self.stopping.wait(self.settings.worker.weigh)
                 continue
-            if found is None:
+            if claimed is None:
                 self.stopping.wait(self.settings.worker.poll)
                 continue
-            task = self.tasks[number] = UnitAtWork(*found, engine)
+            task = self.tasks[number] = UnitAtWork(*claimed, engine)
             try:
                 usable = self._do(task)
             except Exception as error:  # the unit is taken again when its lease ends; the slot must go on
@@ -195,7 +195,7 @@ class Worker:
         """Return the name of a task, and what it is asked."""
         job = task.job
         payload: dict[str, Any] = {"job": job.id, "kind": job.kind, "request": job.request}
-        payload["sources"] = self.shelf.sources(job.tenant, job.request)
+        payload["sources"] = self.tenant_files.sources(job.tenant, job.request)
         if task.claim.task == ROWS:
             return ROWS_TASK, {
                 **payload,
@@ -222,13 +222,13 @@ class Worker:
             message = task.engine.hear(self.settings.worker.watch / 2)
             if message is None:
                 continue
-            if message.kind != TOLD:
+            if message.kind != PROGRESS:
                 return message
             if task.claim.task != ROWS:  # the process itself tells no more often than anybody can read
-                self._tell(task.job, message.content)
+                self._report_progress(task.job, message.content)
         return None
 
-    def _tell(self, job: Job, state: Mapping[str, Any]) -> None:
+    def _report_progress(self, job: Job, state: Mapping[str, Any]) -> None:
         self._quietly(lambda: self.store.progress(job.id, state))
 
     # -- what came out -------------------------------------------------------------------------
@@ -237,9 +237,9 @@ class Worker:
         job, claim = task.job, task.claim
         if claim.task == ROWS:
             if message.kind == ANSWERED:
-                outcomes, errors, alone = sorted_out(message.content)
+                outcomes, errors, single = sorted_out(message.content)
                 most = self.settings.runner.attempts
-                self._written(job, lambda: self.store.finish(job.id, claim, self.owner, outcomes, errors, most, alone))
+                self._written(job, lambda: self.store.finish(job.id, claim, self.owner, outcomes, errors, most, single))
                 self._after_rows(job)
             else:
                 self._broken(task, message.content)
@@ -275,15 +275,15 @@ class Worker:
         """Write what came of a unit; count it where the lease had ended before, and others have the unit now."""
         if self._patiently(write) is not False:
             return
-        wanted = self._patiently(lambda: self.store.wanted([job.id]))
-        if wanted:
+        live = self._patiently(lambda: self.store.unfinished([job.id]))
+        if live:
             self.lost += 1
             self.say(f"job {job.id}: a unit was lost to another worker: the database did not hear in time of this one")
 
     def _broken(self, task: UnitAtWork, failure: Failure) -> None:
         """Note an error of a program: where it was raised is for whoever runs it, not for whoever has asked."""
-        self.say(f"job {task.job.id}: {failure.told}; raised at {' < '.join(failure.where)}")
-        self._failed(task, failure.told if task.claim.task == ROWS else BROKEN)
+        self.say(f"job {task.job.id}: {failure.message}; raised at {' < '.join(failure.where)}")
+        self._failed(task, failure.message if task.claim.task == ROWS else BROKEN)
 
     def _failed(self, task: UnitAtWork, error: str) -> None:
         """Note that an attempt failed; after the last one the job has, or these rows have."""
@@ -340,7 +340,7 @@ class Worker:
             now = time.monotonic()
             try:
                 self._end_unwanted()
-                self._make_room()
+                self._free_slot()
                 if now - weighed >= worker.weigh:
                     weighed = now
                     self._weigh()
@@ -363,10 +363,10 @@ class Worker:
         tasks = list(self.tasks.values())
         if not tasks:
             return
-        wanted = self.store.wanted({task.job.id for task in tasks})
+        live = self.store.unfinished({task.job.id for task in tasks})
         for task in tasks:
             limit = task.job.seconds_limit
-            if task.job.id not in wanted:
+            if task.job.id not in live:
                 self._abort(task, CANCEL)
             elif (
                 limit is not None
@@ -385,7 +385,7 @@ class Worker:
             if resident(task.engine.pid) > self.settings.engine.memory:
                 self._abort(task, MEMORY)
 
-    def _make_room(self) -> None:
+    def _free_slot(self) -> None:
         """Let bulk work go where somebody waits and all slots are busy: of what was begun last, least is lost."""
         bulk = [task for task in list(self.tasks.values()) if task.bulk and not task.abort]
         if not bulk or len(self.tasks) < self.slots or not self.store.interactive_waits(self.code):

@@ -22,7 +22,7 @@ from synth.batches.row_groups import RowGroups, neighbourhoods
 from synth.batches.row_questions import alikeness
 from synth.batches.settings import BatchSettings, GroupSettings, RunnerSettings
 from synth.batches.signs import show
-from synth.batches.solve import ALONE, GROUP, Shared, answered_together, is_group, solve_unit
+from synth.batches.solve import GROUP, UNGROUPED, Shared, answered_together, is_group, solve_unit
 from synth.batches.store import Outcome, Store
 from synth.batches.warm_starts import place
 from synth.queue.database import digest
@@ -330,9 +330,9 @@ def test_worker_processes_show_how_far_they_are() -> None:
     pool = Processes(1)
     try:
         pool.submit(show, {"incumbents": 7}).result(timeout=PATIENCE)
-        assert pool.found() == 7
+        assert pool.with_designs() == 7
         pool.submit(show, {"incumbents": 0}).result(timeout=PATIENCE)
-        assert pool.found() == 0
+        assert pool.with_designs() == 0
     finally:
         pool.shutdown()
     show({"incumbents": 7})  # of no master
@@ -349,7 +349,7 @@ def of_a_group(questions: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, An
 def test_what_a_group_cannot_settle_is_left_to_be_asked_alone() -> None:
     asked = of_a_group([question(10), question(-5), question(20), question("x"), question(30, 1)])
     found = answered_together(asked, SEARCHED, Shared("job", None, Rod), None)
-    assert [found[key].get("status", found[key].get(ALONE)) for key in asked] == [
+    assert [found[key].get("status", found[key].get(UNGROUPED)) for key in asked] == [
         "optimal",
         "",
         "optimal",
@@ -363,7 +363,7 @@ def test_an_error_in_one_question_is_its_own() -> None:
     del asked["key 1"]["parts"]
     asked["key 1"]["fix"] = 7
     found = answered_together(asked, SEARCHED, Shared("job", None, Rod), None)
-    assert [ALONE in found[key] for key in asked] == [False, True, True, False]
+    assert [UNGROUPED in found[key] for key in asked] == [False, True, True, False]
 
 
 @pytest.mark.slow
@@ -392,7 +392,7 @@ def test_time_that_is_over_leaves_all_to_be_asked_alone(monkeypatch: pytest.Monk
     assert [found[key]["status"] for key in asked] == ["optimal", "optimal"]
     monkeypatch.setattr(JointSearch, "settled", late)
     found = answered_together(asked, {**SEARCHED, "time_limit": 60.0}, Shared("job", None, Rod), None)
-    assert list(found.values()) == [{ALONE: ""}] * 2
+    assert list(found.values()) == [{UNGROUPED: ""}] * 2
 
 
 def failing_groups(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:

@@ -16,6 +16,7 @@ from synth.tables.catalogs import Catalogs
 from synth.testing import KnownDesign
 from tests.asking import instance_of
 from tests.conformance.cases import CASES
+from tests.shipped import FAMILIES
 
 KNOWN = [
     pytest.param(family, name, id=f"{family}-{name}")

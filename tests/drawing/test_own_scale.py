@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from synth.reports.drawing.page import OWN_LEAST, OWN_MOST, paper_sheet
+from synth.reports.drawing.page import SINGLE_LEAST, SINGLE_MOST, paper_sheet
 
 from synth.drawing import Area, Balloon, Drawing, Item, View, rectangle
 
@@ -22,6 +22,6 @@ def test_a_small_part_is_drawn_larger_than_the_sheet_says_and_tells_its_scale():
     assert pin.heading.text == "Pin (5:1)"
     assert (pin.scale, rod.scale) == (5, 0.2)
     for placed, long in ((pin, 12), (rod, 260)):
-        assert OWN_LEAST <= placed.scale * long <= OWN_MOST
+        assert SINGLE_LEAST <= placed.scale * long <= SINGLE_MOST
     for one, other in itertools.combinations(sheet.views, 2):
         assert one.region[2] <= other.region[0] or one.region[3] <= other.region[1] or other.region[3] <= one.region[1]

@@ -8,7 +8,7 @@ import pytest
 
 import synth
 from synth.declaration import Origin
-from synth.model.constraint import SIGNS, Constraint, NodeConstraint, void_limits
+from synth.model.constraint import SYMBOLS, Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
 from synth.order.feasibility import SMALLEST, holds, size_of_miss
@@ -85,7 +85,7 @@ def own_limits(instance, variables, combinations, rng):
         bound = float(np.nanmedian(values[name]))
         sense = ("at_most", "at_least")[int(rng.integers(2))]
         if bound <= derived[name].ceiling and math.isfinite(bound):
-            limits[name] = f"{SIGNS[sense]} {typed_quantity(bound, instance.model.units[name], None)}"
+            limits[name] = f"{SYMBOLS[sense]} {typed_quantity(bound, instance.model.units[name], None)}"
     for first in instance.model.variables[:1]:
         limits[first.name] = f"<= {typed_quantity(first.upper, first.unit, None)}"
     return limits

@@ -24,7 +24,7 @@ from synth.queue.job_table import (
     RUNNING,
     STOPPED,
     Ending,
-    KeyTakenError,
+    KeyInUseError,
     NewJob,
     QueueFullError,
     new_id,
@@ -103,7 +103,7 @@ def test_nothing_is_written_of_a_job_that_was_cancelled_or_lost(store: Store) ->
     found = store.job(job)
     assert found is not None
     assert found.state == CANCELLED
-    assert store.wanted([job]) == set()
+    assert store.unfinished([job]) == set()
     assert store.claim_next("me", CODE) is None
     assert store.open_units(job) == (0, 1)  # the unit is still held; it is free again when the job is
     assert store.give_back(again[1], "you")
@@ -207,7 +207,7 @@ def test_a_key_makes_one_job_and_stands_for_one_request(store: Store) -> None:
     one, made = store.submit(asked(idempotency="k", body="x"))
     assert made
     assert store.submit(asked(idempotency="k", body="x")) == (one, False)
-    with pytest.raises(KeyTakenError):
+    with pytest.raises(KeyInUseError):
         store.submit(asked(idempotency="k", body="y"))
     other = tenant(store, "other")
     assert store.submit(asked(idempotency="k", body="y", tenant=other))[1]
@@ -339,7 +339,7 @@ def test_an_open_job_tells_what_it_waits_for(store: Store) -> None:
 
 def test_a_file_gets_smaller_when_jobs_go(tmp_path: Path) -> None:
     file = tmp_path / "jobs.sqlite"
-    with Store(file_url(file), settings=StoreSettings(given_back=300)) as store:
+    with Store(file_url(file), settings=StoreSettings(pages_released=300)) as store:
 
         def pages() -> int:
             with store.engine.connect() as connection:

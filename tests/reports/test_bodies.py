@@ -7,7 +7,7 @@ import math
 import struct
 
 import pytest
-from synth.reports.drawing.bodies import assembly, glb_of, left_out, plain, round_areas, step_of
+from synth.reports.drawing.bodies import assembly, glb_of, not_bodies, plain, round_areas, step_of
 
 import synth
 from synth.analysis.drawing import drawing_of, quantity_of, weighed
@@ -56,7 +56,7 @@ def everything() -> Drawing:
 def test_only_what_is_round_about_the_axis_is_a_body():
     drawing = everything()
     assert {item: len(areas) for item, areas in round_areas(drawing).items()} == {1: 1, 2: 1, 3: 8, 4: 1}
-    assert [item.name for item in left_out(drawing)] == ["Ball", "Plate"]
+    assert [item.name for item in not_bodies(drawing)] == ["Ball", "Plate"]
     assert plain("Külső <gyűrű>") == "Kulso <gyuru>"
     assert plain("歯車") == "part"
 

@@ -11,7 +11,7 @@ from rich.cells import cell_len
 from rich.console import Console
 from synth.reports.front_plot import Drawn
 from synth.reports.label_spots import Box, label_spots
-from synth.reports.terminal_plot import ASCII_SIGNS, BRAILLE_SIGNS, Canvas, plot_lines, print_plot
+from synth.reports.terminal_plot import ASCII_GLYPHS, BRAILLE_GLYPHS, Canvas, plot_lines, print_plot
 
 import synth
 from tests.analysis.test_calculation import Beam
@@ -52,7 +52,7 @@ def field_of(text):
 
 
 @pytest.mark.parametrize("width", [25, 40, 80, 160])
-@pytest.mark.parametrize("signs", [BRAILLE_SIGNS, ASCII_SIGNS])
+@pytest.mark.parametrize("signs", [BRAILLE_GLYPHS, ASCII_GLYPHS])
 def test_it_fits_its_width(front, width, signs):
     lines = plot_lines(Drawn(front.designs, MIN2), width, signs)
     assert max(line.cell_len for line in lines) <= width
@@ -74,7 +74,7 @@ def test_plain_characters_where_the_encoding_has_no_braille(front):
     assert "o" not in "".join(field_of(shown(front.designs)))
 
 
-@pytest.mark.parametrize("fine", [BRAILLE_SIGNS, ASCII_SIGNS])
+@pytest.mark.parametrize("fine", [BRAILLE_GLYPHS, ASCII_GLYPHS])
 def test_the_outermost_points_lie_in_the_outermost_cells(fine):
     canvas = Canvas(30, 16, fine)
     assert canvas.cell(*canvas.place(0, 1)) == (0, 0)
@@ -173,7 +173,7 @@ def test_texts_of_others_do_nothing(front):
         replace(d, frame=frame, objectives={hostile: d.objectives["width"], "height": d.objectives["height"]})
         for d in designs
     ]
-    lines = plot_lines(Drawn(designs, {hostile: "min", "height": "min"}, [hostile, "b"]), 40, BRAILLE_SIGNS)
+    lines = plot_lines(Drawn(designs, {hostile: "min", "height": "min"}, [hostile, "b"]), 40, BRAILLE_GLYPHS)
     text = "\n".join(line.plain for line in lines)
     assert not re.search("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]", text)
     assert all(cell_len(line) <= 40 for line in text.split("\n"))
@@ -184,11 +184,11 @@ def test_spots_keep_clear_of_points_names_lines_and_edges():
     field = Box(0, 0, 12, 5)
     points = [Box(5, 2, 6, 3), Box(11, 0, 12, 1)]
     line = [Box(6, 1, 12, 2)]
-    first, second = label_spots(points, [(2, 1), (3, 1)], field, line, whole=True)
+    first, second = label_spots(points, [(2, 1), (3, 1)], field, line, integer=True)
     assert first is not None
     assert second is not None
     assert field.holds(first)
     assert field.holds(second)
     assert not first.meets(line[0])
     assert not any(second.meets(box) for box in (*points, first))
-    assert label_spots(points, [(20, 1), None], field, whole=True) == [None, None]
+    assert label_spots(points, [(20, 1), None], field, integer=True) == [None, None]

@@ -12,7 +12,7 @@ import numpy as np
 import openpyxl
 from synth.reports.workbook import VALUE, live_workbook
 from synth.reports.workbook_cells import legal_names
-from synth.reports.workbook_limits import HOLDS, NOT_GIVEN, NOT_TOLD, USED, VERDICT, VIOLATED
+from synth.reports.workbook_limits import HOLDS, UNCHECKED, UNDECIDED, USED, VERDICT, VIOLATED
 
 from synth.analysis.calculation import calculation_of
 from synth.analysis.designs import make_design, make_frame, part_row
@@ -207,7 +207,7 @@ def compared(places: Places, found: CalculatedDesign, cell: Callable[[str, str],
         else:
             near(f"limit {name}", verdict.used, used)
         judged = HOLDS if verdict.holds else VIOLATED
-        start = NOT_GIVEN if verdict.void else NOT_TOLD if verdict.failed else judged
+        start = UNCHECKED if verdict.void else UNDECIDED if verdict.failed else judged
         if not words.startswith(start) or (verdict.failed and not verdict.void and verdict.failed[0] not in words):
             wrong.append(f"limit {name}: {words}, not {start} {verdict.failed}")
     return worst, wrong

@@ -29,8 +29,8 @@ def test_the_same_question_has_the_same_fingerprint() -> None:
     own = question().fingerprint()
     assert question({"F": "20000 N"}).fingerprint() == question({"load": 20}).fingerprint() == own
     assert question({"load": "20 kN", "safety": 1.5}).fingerprint() == own
-    assert len(own.whole) == 64
-    assert own.whole not in (own.question, own.computation)
+    assert len(own.combined) == 64
+    assert own.combined not in (own.question, own.computation)
 
 
 @pytest.mark.parametrize(

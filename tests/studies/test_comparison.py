@@ -562,7 +562,7 @@ def looked(families, progress=None, finished=None, told=None):
     sheet, tables = sheet_of(requirements={"load": LOAD}), Catalogs(OWN)
     found = applicants(families, sheet, tables)
     ranked = {"objectives": common_objectives(found, None), "weights": None, "grid": True}
-    settings, limits = SearchSettings(points=4), dataclasses.replace(COMPARING, first_look=0.0)
+    settings, limits = SearchSettings(points=4), dataclasses.replace(COMPARING, first_pass=0.0)
     comparing = synth.studies.families.compare._Comparing(
         found, sheet, ranked, tables, settings, progress, False, limits=limits
     )

@@ -191,7 +191,7 @@ def test_kinds_and_how_they_are_called() -> None:
     ):
         varied = one(key, values)
         assert (varied.kind, varied.label) == (kind, label)
-        assert varied.stated(varied.values[0]) == stated
+        assert varied.text(varied.values[0]) == stated
         assert varied.numeric == (kind in ("requirement", "limit", "weight"))
 
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from synth.batches.row_table import read_table
 from synth.errors import InputError
-from synth.tables.catalogs import Catalogs, read_as_stated
+from synth.tables.catalogs import Catalogs, with_reading_options
 from synth.tables.reading import csv_of_file, load_table
 from synth.tables.table_text import TableText
 from synth.tables.workbook import is_workbook, sheet_of, split_sheet
@@ -334,13 +334,13 @@ def test_flags_say_how_all_files_of_a_spec_are_read(tmp_path: Path) -> None:
         "bolts": "bolts.csv",
         "more": ["+", "plates.xlsx#Sheet", "bolts.csv#encoding=cp1252"],
     }
-    assert read_as_stated(stated, tmp_path, "cp1250", True) == {
+    assert with_reading_options(stated, tmp_path, "cp1250", True) == {
         "plates": "plates.xlsx#rows=visible",
         "bolts": "bolts.csv#encoding=cp1250",
         "more": ["+", "plates.xlsx#Sheet#rows=visible", "bolts.csv#encoding=cp1252"],
     }
     for folder in (tmp_path, str(tmp_path)):
-        own = Catalogs(read_as_stated(folder, Path(), "cp1250", True))
+        own = Catalogs(with_reading_options(folder, Path(), "cp1250", True))
         assert own.table("plates").designations == ("a", "c", "d")
         assert own.table("bolts").designations == ("čep",)
-    assert read_as_stated("nothing", tmp_path, "cp1250", True) == "nothing"
+    assert with_reading_options("nothing", tmp_path, "cp1250", True) == "nothing"

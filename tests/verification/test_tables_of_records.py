@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import synth
-from synth.analysis.design_spec import given_design
+from synth.analysis.design_spec import design_of_spec
 from synth.declaration.records import RowRange
 from synth.question.spec import read_spec
 from synth.results.verification import Verdict
@@ -168,7 +168,7 @@ def test_a_design_file_alone_brings_the_rows_it_uses(mounted, extra):
     asked = read_spec(alone)
     assert sorted(asked.rows) == sorted({row.key for row in (*front.designs[0].parts.values(), *front.designs[0].rows)})
     assert {key.partition("/")[0] for key in asked.rows} == set(TABLES)
-    _, tables, design = given_design(asked)
+    _, tables, design = design_of_spec(asked)
     first = front.designs[0]
     assert (design.objectives, design.limits, design.values) == (first.objectives, first.limits, first.values)
     assert {n: str(x) for n, x in design.next_rows.items()} == {n: str(x) for n, x in first.next_rows.items()}
@@ -187,12 +187,12 @@ def test_a_row_that_was_changed_in_a_design_file_is_refused(mounted):
         assert old in text
         alone.write_text(text.replace(old, new), encoding="utf-8")
         with pytest.raises(synth.InputError, match="a row that was changed; expected a row of a table as"):
-            given_design(read_spec(alone))
+            design_of_spec(read_spec(alone))
         found = CliRunner().invoke(app, ["check", str(alone)])
         assert isinstance(found.exception, synth.InputError)
     alone.write_text(text.replace("unit: B", "unit: C"), encoding="utf-8")
     with pytest.raises(synth.InputError, match=r"table units: got 'C'; .* one of B, the rows kept; .* is not there"):
-        given_design(read_spec(alone))
+        design_of_spec(read_spec(alone))
 
 
 def test_a_front_alone_keeps_all_rows_that_its_designs_read(mounted, tmp_path):

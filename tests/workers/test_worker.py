@@ -25,10 +25,10 @@ import yaml
 from synth.batches.batch import batch
 from synth.batches.store import Store
 from synth.queue.database import file_url
-from synth.queue.job_table import CANCELLED, DONE, FAILED, LOCAL, OPEN, PLAN, RUNNING, STOPPED, WHOLE_JOB, NewJob
+from synth.queue.job_table import CANCELLED, DONE, FAILED, JOB_TASK, LOCAL, OPEN, PLAN, RUNNING, STOPPED, NewJob
 from synth.queue.models import Job, JobRecord, WorkUnit
 from synth.queue.records import NOTHING
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.system.operating_system import processor_time
 from synth.workers import engine_process
 from synth.workers.engine_process import (
@@ -61,7 +61,7 @@ def engines() -> Iterator[Engines]:
 
 
 def submit(store: Store, engines: Engines, kind: str, request: dict[str, Any], **more: Any) -> str:
-    sources = Shelf(store).sources(LOCAL, request)
+    sources = TenantFiles(store).sources(LOCAL, request)
     read = engines.call(READ_TASK, {"kind": kind, "request": request, "sources": sources}, PATIENCE)
     new = NewJob(
         kind=kind,
@@ -70,7 +70,7 @@ def submit(store: Store, engines: Engines, kind: str, request: dict[str, Any], *
         fingerprint=read["fingerprint"],
         code=read["code"],
         kept=read["kept"],
-        task=PLAN if kind == "batch" else WHOLE_JOB,
+        task=PLAN if kind == "batch" else JOB_TASK,
         priority=0 if read["bulk"] else 1,
     )
     return store.submit(replace(new, **more))[0]
@@ -106,7 +106,7 @@ def test_jobs_of_several_kinds_are_done(database: str, engines: Engines, tmp_pat
         assert (found.state, found.summary["status"]) == (DONE, {"bad_input": 1, "optimal": 2})
         files = {
             name: engines.call(
-                BATCH_FILE_TASK, {"job": table, "name": name, "sources": Shelf(store).sources(LOCAL, {})}, 60.0
+                BATCH_FILE_TASK, {"job": table, "name": name, "sources": TenantFiles(store).sources(LOCAL, {})}, 60.0
             )
             for name in ("designs.csv", "rows.csv")
         }

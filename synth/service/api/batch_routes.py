@@ -9,7 +9,7 @@ from fastapi import APIRouter, Body, File, Query, Request, Response, UploadFile
 from synth.batches.views import uploads_kept
 from synth.errors import InputError
 from synth.queue.job_table import BATCH
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.service.api.job_routes import SUBMITTED, IdempotencyKey, submitted
 from synth.service.api.schemas import EXAMPLES, BatchCheck, FirstRow, JobAnswer, UploadAnswer
 from synth.service.api.submission import Wish
@@ -42,7 +42,7 @@ async def bring_file(
     visible: Annotated[bool, Query(description="Leave out hidden and filtered rows of a workbook.")] = False,
 ) -> UploadAnswer:
     """Keep a file for a day, to be asked as a batch; its content says what it is, not its name."""
-    settings, shelf = context.settings, Shelf(context.store)
+    settings, shelf = context.settings, TenantFiles(context.store)
     if await in_thread(uploads_kept, context.store, principal.tenant) >= settings.tenant_uploads:
         message = f"{settings.tenant_uploads} files are kept, as many as you may have; they go by themselves"
         raise ServiceError(429, message, headers=again(HOUR))
@@ -74,7 +74,7 @@ async def bring_file(
 @router.post("/batches/check", summary="Check a table")
 async def check_batch(asked: BatchBody, principal: Reader, context: Context) -> BatchCheck:
     """Tell how a table is understood, and which of its rows cannot be asked; of a long one the first rows."""
-    sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
+    sources = await in_thread(TenantFiles(context.store).sources, principal.tenant, asked)
     payload = {"request": asked, "sources": sources}
     told = await context.files.ask(asker_of(principal), CHECK_ROWS_TASK, payload)
     return BatchCheck.model_validate(told)

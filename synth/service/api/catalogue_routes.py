@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from synth.errors import InputError
 from synth.queue.accounts import Principal
 from synth.queue.models import Catalogue
-from synth.queue.shelf import NAME, Shelf, text_of
+from synth.queue.tenant_files import NAME, TenantFiles, text_of
 from synth.service.api.schemas import (
     BroughtCatalogue,
     CatalogueAnswer,
@@ -38,7 +38,7 @@ USED: dict[int | str, dict[str, Any]] = {409: {"description": "Jobs refer to it.
 @router.get("/catalogues", summary="Your part tables")
 async def list_catalogues(principal: Reader, context: Context) -> CatalogueList:
     """List all versions of the part tables that you have brought."""
-    found = await in_thread(Shelf(context.store).catalogues, principal.tenant)
+    found = await in_thread(TenantFiles(context.store).catalogues, principal.tenant)
     return CatalogueList(catalogues=[_entry(one) for one in found])
 
 
@@ -58,7 +58,7 @@ async def add_catalogue(
     csv = await _text(asked, principal, context)
     payload = {"name": asked.name, "table": table, "csv": csv, "schema": asked.schema_}
     told = await context.files.ask(asker_of(principal), PART_TABLE_TASK, payload)
-    shelf = Shelf(context.store)
+    shelf = TenantFiles(context.store)
     added, is_new = await in_thread(
         shelf.add_catalogue, principal.tenant, asked.name, table, csv, asked.schema_, told["rows"], asked.note
     )
@@ -84,7 +84,7 @@ async def _text(asked: CatalogueRequest, principal: Principal, context: ServiceC
         raise InputError("csv", got, "the rows as text, or upload with the id of a file that was brought", ("csv",))
     if not asked.upload:
         return asked.csv
-    kept = await in_thread(Shelf(context.store).upload, principal.tenant, asked.upload)
+    kept = await in_thread(TenantFiles(context.store).upload, principal.tenant, asked.upload)
     if kept is None:
         raise InputError("upload", asked.upload, "the id of a file that was brought and is still kept", ("upload",))
     payload = {"name": kept.name, "content": kept.content, "sheet": asked.sheet}
@@ -100,7 +100,7 @@ async def read_catalogue(name: Name, version: Version, principal: Reader, contex
     """Give a version of a part table, and the jobs that name it."""
     found = await _own(context, principal.tenant, name, version)
     text = text_of(found)
-    used = await in_thread(Shelf(context.store).uses, principal.tenant, text.reference)
+    used = await in_thread(TenantFiles(context.store).uses, principal.tenant, text.reference)
     written = delimited_text(text.csv.encode(), text.reference)
     return CatalogueAnswer(
         entry=_entry(found), csv=text.csv, separator=written.delimiter, schema=text.schema, used_by=used
@@ -125,7 +125,7 @@ async def compare_catalogues(
 async def remove_catalogue(name: Name, version: Version, principal: Submitter, context: Context) -> None:
     """Remove a version of a part table that no job names."""
     found = await _own(context, principal.tenant, name, version)
-    shelf = Shelf(context.store)
+    shelf = TenantFiles(context.store)
     used = await in_thread(shelf.uses, principal.tenant, f"{found.name}@{found.version}")
     if used:
         shown = ", ".join(used[:SHOWN_USES])
@@ -136,7 +136,7 @@ async def remove_catalogue(name: Name, version: Version, principal: Submitter, c
 async def _own(context: ServiceContext, tenant: int, name: str, version: int) -> Catalogue:
     found = None
     if NAME.fullmatch(name):
-        found = await in_thread(Shelf(context.store).catalogue, tenant, name, version)
+        found = await in_thread(TenantFiles(context.store).catalogue, tenant, name, version)
     if found is None:
         raise not_found()
     return found

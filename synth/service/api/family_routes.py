@@ -9,7 +9,7 @@ from fastapi import APIRouter, Body, Path, Query, Request, Response
 from synth.errors import InputError
 from synth.plugins import family_names
 from synth.queue.accounts import Principal
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
 from synth.service.api.schemas import (
     EXAMPLES,
@@ -130,5 +130,5 @@ async def evaluate(
 
 
 async def _asked(context: ServiceContext, principal: Principal, task: str, asked: dict[str, Any]) -> Any:
-    sources = await in_thread(Shelf(context.store).sources, principal.tenant, asked)
+    sources = await in_thread(TenantFiles(context.store).sources, principal.tenant, asked)
     return await context.small.ask(asker_of(principal), task, {"request": asked, "sources": sources})

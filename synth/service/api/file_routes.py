@@ -17,7 +17,7 @@ from synth.queue.accounts import Principal
 from synth.queue.job_table import BATCH, LIVE
 from synth.queue.models import Job
 from synth.queue.records import MEDIA, Record
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.service.api.asking import ENDED, NOT_MODIFIED, OwnJob, knows, refuse_live
 from synth.service.api.presenting import job_place
 from synth.service.api.schemas import FileAnswer, FileList
@@ -114,7 +114,7 @@ async def _known(
 async def _rendered(
     context: ServiceContext, principal: Principal, job: Job, kept: dict[str, Record], name: str, options: dict[str, Any]
 ) -> Record:
-    sources = await in_thread(Shelf(context.store).sources, job.tenant, job.request)
+    sources = await in_thread(TenantFiles(context.store).sources, job.tenant, job.request)
     payload = {
         "job": job.id,
         "kind": job.kind,

@@ -11,7 +11,7 @@ from synth.folders.files import yaml_text
 from synth.kinds import KINDS
 from synth.kinds import kind as kind_named
 from synth.queue.job_table import LIVE
-from synth.queue.shelf import Shelf
+from synth.queue.tenant_files import TenantFiles
 from synth.service.api.asking import (
     ENDED,
     LONGEST,
@@ -177,7 +177,7 @@ async def resume_job(request: Request, found: OwnJob, principal: Submitter, cont
         raise ServiceError(
             409, "only the command line, or the script, that has made this job can go on with it", "not_here"
         )
-    sources = await in_thread(Shelf(context.store).sources, principal.tenant, found.request)
+    sources = await in_thread(TenantFiles(context.store).sources, principal.tenant, found.request)
     told = await context.small.ask(asker_of(principal), CHANGED_TASK, {"content": found.content, "sources": sources})
     if told["changed"]:
         changed = " and ".join(told["changed"])

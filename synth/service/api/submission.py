@@ -9,8 +9,8 @@ from typing import Any
 from synth.errors import InputError
 from synth.kinds import Kind, kind
 from synth.queue.accounts import Principal
-from synth.queue.job_table import BATCH, PLAN, WHOLE_JOB, NewJob, body_digest
-from synth.queue.shelf import Shelf
+from synth.queue.job_table import BATCH, JOB_TASK, PLAN, NewJob, body_digest
+from synth.queue.tenant_files import TenantFiles
 from synth.service.api.presenting import FAMILIES, STATED_ROWS
 from synth.service.context import ServiceContext, in_thread
 from synth.service.settings import ServiceSettings
@@ -45,7 +45,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
     ------
     InputError
         Something of it is wrong, or more than the tenant may have.
-    KeyTakenError, QueueFullError
+    KeyInUseError, QueueFullError
     """
     store, settings = context.store, context.settings
     body = wish.body()
@@ -60,7 +60,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
     asked = wish.request
     if chosen.name == BATCH and asked.get(TIME_LIMIT) is None and limit is not None:
         asked = {**asked, TIME_LIMIT: limit}  # of each row, and a part of what is asked
-    sources = await in_thread(Shelf(store).sources, principal.tenant, asked)
+    sources = await in_thread(TenantFiles(store).sources, principal.tenant, asked)
     payload = {"kind": chosen.name, "request": asked, "sources": sources}
     pool = context.files if sources.files or chosen.name == BATCH else context.small
     read = await pool.ask(asker_of(principal), READ_TASK, payload)
@@ -73,7 +73,7 @@ async def submit(context: ServiceContext, principal: Principal, wish: Wish, key:
         fingerprint=read["fingerprint"],
         code=read["code"],
         tenant=principal.tenant,
-        task=PLAN if chosen.name == BATCH else WHOLE_JOB,
+        task=PLAN if chosen.name == BATCH else JOB_TASK,
         priority=own if wish.priority is None else min(own, wish.priority),
         content={FAMILIES: read["families"], STATED_ROWS: read["rows"]},
         idempotency=key,

@@ -42,15 +42,15 @@ class CommonFront:
     def useful(self, designs: Sequence[Design]) -> list[Design]:
         """Designs that no known design dominates or equals."""
         known = self.signed([d for m in self.members for d in m.designs])
-        return [d for d, own in zip(designs, self.signed(designs), strict=True) if not beaten(known, own).any()]
+        return [d for d, point in zip(designs, self.signed(designs), strict=True) if not beaten(known, point).any()]
 
     def listed(self) -> tuple[list[tuple[Competitor, Design]], list[tuple[Competitor, Design]]]:
         """Return the designs of the common front, and all that nothing beats."""
         every = [(m, d) for m in self.members for d in m.designs]
         signed = self.signed([d for _, d in every])
         stay: list[int] = []
-        for k, own in enumerate(signed):
-            better = beaten(signed, own) & (strictly_better(signed, own) | (np.arange(len(signed)) < k))
+        for k, point in enumerate(signed):
+            better = beaten(signed, point) & (strictly_better(signed, point) | (np.arange(len(signed)) < k))
             if not better.any():
                 stay.append(k)
         front = [every[k] for k in stay]
@@ -59,33 +59,33 @@ class CommonFront:
     def _spread(self, owners: Sequence[Competitor], signed: np.ndarray) -> list[int]:
         """Return designs that spread best, at most so many as asked for; no family is left out that has one."""
         most = self.points
-        taken = [int(k) for k in spread_subset(signed, most)]
-        kept = [owners[k].one.label for k in taken]
+        chosen = [int(k) for k in spread_subset(signed, most)]
+        kept = [owners[k].one.label for k in chosen]
         for label in dict.fromkeys(m.one.label for m in owners):
             if label not in kept:
-                spare = [k for k, own in enumerate(kept) if kept.count(own) > 1]
+                spare = [k for k, owner in enumerate(kept) if kept.count(owner) > 1]
                 if not spare:
                     break
                 low, high = signed.min(axis=0), signed.max(axis=0)
                 unit = (signed - low) / np.where(high > low, high - low, 1.0)
-                own = [k for k, m in enumerate(owners) if m.one.label == label]
-                best = min(own, key=lambda k: float(np.linalg.norm(unit[k])))
+                of_family = [k for k, m in enumerate(owners) if m.one.label == label]
+                best = min(of_family, key=lambda k: float(np.linalg.norm(unit[k])))
                 # It takes the place of the design nearest to it of a family that has more.
-                gone = min(spare, key=lambda k: float(np.linalg.norm(unit[taken[k]] - unit[best])))
-                taken[gone], kept[gone] = best, label
-        return sorted(taken)
+                gone = min(spare, key=lambda k: float(np.linalg.norm(unit[chosen[k]] - unit[best])))
+                chosen[gone], kept[gone] = best, label
+        return sorted(chosen)
 
 
-def beaten(signed: np.ndarray, own: np.ndarray, of_others: bool = False) -> np.ndarray:
+def beaten(signed: np.ndarray, point: np.ndarray, of_others: bool = False) -> np.ndarray:
     """Tell which rows are as good as a design in every objective; ``of_others``: which ones it is as good as."""
-    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
-    better = own <= signed + room if of_others else signed <= own + room
+    tolerance = MARGINS.same * np.maximum(np.abs(point), np.abs(signed))
+    better = point <= signed + tolerance if of_others else signed <= point + tolerance
     result: np.ndarray = np.all(better, axis=1)
     return result
 
 
-def strictly_better(signed: np.ndarray, own: np.ndarray) -> np.ndarray:
+def strictly_better(signed: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Tell which rows are better than a design in some objective."""
-    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
-    result: np.ndarray = np.any(signed < own - room, axis=1)
+    tolerance = MARGINS.same * np.maximum(np.abs(point), np.abs(signed))
+    result: np.ndarray = np.any(signed < point - tolerance, axis=1)
     return result

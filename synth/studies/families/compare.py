@@ -45,7 +45,7 @@ from synth.system.deadline import Stopped, until
 from synth.tables.catalogs import Catalogs
 
 KINDS = ("heuristic", "exhaustive", "global")
-LOOKS = 2  # at a family: the first, and the one to the end
+PASSES = 2  # over the families: a first one, and one to the end
 
 
 def compare(
@@ -94,7 +94,7 @@ def compare(
         Options of every family.
     finished : callable, optional
         Called with the label and the front of each family as soon as it is searched; again where it is searched to the
-        end after a first look.
+        end after a first pass.
     robust : mapping, optional
         What scatters, as for ``synthesize``: designs of all families stand it, or are rated. Under a family "none" in
         place of a range tells that it does not scatter there.
@@ -114,12 +114,13 @@ def compare(
     check_progress(progress)
     sheet = sheet_of(options=options, requirements=requirements, limits=limits, fix=fix, parts=parts, robust=robust)
     tables = catalogs if isinstance(catalogs, Catalogs) else Catalogs(catalogs)
-    found = applicants(families, sheet, tables)
-    refuse_all(found, sheet)
-    chosen = common_objectives(found, objectives)
-    refuse_all(found, sheet)
+    candidates = applicants(families, sheet, tables)
+    refuse_all(candidates, sheet)
+    chosen = common_objectives(candidates, objectives)
+    refuse_all(candidates, sheet)
     ranked = {"objectives": chosen, "weights": weights, "grid": grid}
-    return _Comparing(found, sheet, ranked, tables, settings, progress, objectives is not None).run(finished, serving)
+    comparing = _Comparing(candidates, sheet, ranked, tables, settings, progress, objectives is not None)
+    return comparing.run(finished, serving)
 
 
 class _Comparing:
@@ -127,7 +128,7 @@ class _Comparing:
 
     def __init__(
         self,
-        found: Sequence[Applicant],
+        candidates: Sequence[Applicant],
         sheet: Sheet,
         ranked: Mapping[str, Any],
         tables: Catalogs,
@@ -139,7 +140,7 @@ class _Comparing:
     ) -> None:
         self.chosen = chosen  # whether objectives were asked for by name
         self.started, self.tuning, self.limits = time.monotonic(), tuning, limits
-        self.found, self.sheet, self.ranked, self.tables = found, sheet, ranked, tables
+        self.candidates, self.sheet, self.ranked, self.tables = candidates, sheet, ranked, tables
         self.settings, self.progress = settings, progress
         limit = settings.time_limit
         self.deadline = math.inf if limit is None else self.started + limit
@@ -151,11 +152,11 @@ class _Comparing:
     def run(
         self,
         finished: Callable[[str, ParetoFront], object] | None,
-        told: Callable[[Sequence[str]], object] | None = None,
+        announce: Callable[[Sequence[str]], object] | None = None,
     ) -> Comparison:
-        serving = sorted((one for one in self.found if not one.misfits), key=Applicant.effort)
-        if told is not None:
-            told([one.label for one in serving])
+        serving = sorted((one for one in self.candidates if not one.misfits), key=Applicant.effort)
+        if announce is not None:
+            announce([one.label for one in serving])
         self._search_all(serving, finished)
         if len(self.faults) == len(serving):
             raise next(iter(self.faults.values()))
@@ -174,17 +175,17 @@ class _Comparing:
     # -- every family by itself ----------------------------------------------------------------
 
     def _search_all(self, serving: Sequence[Applicant], finished: Callable[[str, ParetoFront], object] | None) -> None:
-        """Look at every family for a while, then search those that are not finished to the end."""
+        """Search every family for a limited time, then those that are not finished to the end."""
         members: dict[str, Competitor] = {}
-        for look, most in enumerate((self.limits.first_look, math.inf)):
+        for pass_number, most in enumerate((self.limits.first_pass, math.inf)):
             open_still = [one for one in serving if one.label not in self.faults and not _done(members.get(one.label))]
             for number, one in enumerate(open_still):
-                left = (self.deadline - time.monotonic()) / (len(open_still) - number)
-                if self.interrupted or (left <= 0 and (look or number)):
+                remaining = (self.deadline - time.monotonic()) / (len(open_still) - number)
+                if self.interrupted or (remaining <= 0 and (pass_number or number)):
                     break
-                done = (look + number / len(open_still)) / LOOKS
+                done = (pass_number + number / len(open_still)) / PASSES
                 try:
-                    member = self._searched(one, min(most, left), done, 1 / len(open_still) / LOOKS)
+                    member = self._searched(one, min(most, remaining), done, 1 / len(open_still) / PASSES)
                 except InputError as error:
                     self.faults[one.label] = error
                     continue
@@ -196,7 +197,7 @@ class _Comparing:
                     finished(one.label, members[one.label].front)
                 if member.front.interrupted == "interrupted":
                     self._stop("interrupted")
-        self.front.members += [members[one.label] for one in self.found if one.label in members]
+        self.front.members += [members[one.label] for one in self.candidates if one.label in members]
         if not self.interrupted and not all(map(_done, self.front.members)):
             self._stop("time limit")
 
@@ -225,8 +226,8 @@ class _Comparing:
             return None
 
         def show(state: Mapping[str, Any]) -> None:
-            own = float(state.get("done") or 0.0)
-            progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done + share * own})
+            fraction = float(state.get("done") or 0.0)
+            progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done + share * fraction})
 
         return show
 
@@ -243,12 +244,12 @@ class _Comparing:
                 listed, _ = self.front.listed()
                 others = [d for m, d in listed if m is not member]
                 if others:
-                    asked = challenge(member.state, self.front.signed(others), self.deadline)
-                    member.amounts = np.maximum(member.amounts, asked.amounts)
-                    useful = self.front.useful(further_designs(member.state, asked.better)) if asked.better else []
+                    reply = challenge(member.state, self.front.signed(others), self.deadline)
+                    member.amounts = np.maximum(member.amounts, reply.amounts)
+                    useful = self.front.useful(further_designs(member.state, reply.better)) if reply.better else []
                     fresh = member.standing(useful, self.deadline)
                     member.designs += fresh
-                    closed = closed and asked.closed and len(fresh) == len(useful)
+                    closed = closed and reply.closed and len(fresh) == len(useful)
                     quiet = quiet and not fresh
             if quiet:
                 # What did not stand the range may have kept the search from what does, and beats others as well.
@@ -285,7 +286,7 @@ class _Comparing:
             self.front.objectives,
             designs,
             owners,
-            [outcomes.of(one) for one in self.found],
+            [outcomes.of(one) for one in self.candidates],
             certificate,
             settings,
             self.interrupted,
@@ -293,36 +294,36 @@ class _Comparing:
         )
 
     def _certificate(self, any_design: bool) -> Certificate:
-        own = [m.front.certificate for m in self.front.members]
-        weakest = min((KINDS.index(c.kind) for c in own), default=0)
+        certificates = [m.front.certificate for m in self.front.members]
+        weakest = min((KINDS.index(c.kind) for c in certificates), default=0)
         kind = KINDS[weakest] if not self.interrupted else KINDS[0]
         if kind == "global" and not self.proven:
             kind = KINDS[0]
         gap = self.settings.gap if kind == "global" and any_design else None
         amounts = self._amounts() if gap is not None else {}
-        units = {name: next(c.units[name] for c in own if name in c.units) for name in amounts}
+        units = {name: next(c.units[name] for c in certificates if name in c.units) for name in amounts}
         return Certificate(
             kind,
             gap,
-            sum(c.combinations for c in own),
-            sum(c.excluded_by_bound for c in own),
-            sum(c.solved for c in own),
-            sum(c.unresolved for c in own),
+            sum(c.combinations for c in certificates),
+            sum(c.excluded_by_bound for c in certificates),
+            sum(c.solved for c in certificates),
+            sum(c.unresolved for c in certificates),
             resolution=amounts,
             units=units,
         )
 
     def _amounts(self) -> dict[str, float]:
         """Return in SI by how much a design must be better where that is no share of its value in every family."""
-        told = [m.front.certificate for m in self.front.members if m.designs]
+        proofs = [m.front.certificate for m in self.front.members if m.designs]
         values = np.abs(self.front.signed([d for m in self.front.members for d in m.designs]))
         result = {}
         for k, name in enumerate(self.front.objectives):
-            unit = next((c.units[name] for c in told if name in c.resolution), None)
+            unit = next((c.units[name] for c in proofs if name in c.resolution), None)
             if unit is not None:
                 # In some families the share of a value, in others an amount: the largest of them all serves every one.
-                own = [c.resolution.get(name, self.settings.gap * float(values[:, k].max())) for c in told]
-                least = max(*own, *(float(m.amounts[k]) for m in self.front.members))
+                sizes = [c.resolution.get(name, self.settings.gap * float(values[:, k].max())) for c in proofs]
+                least = max(*sizes, *(float(m.amounts[k]) for m in self.front.members))
                 result[name] = rounded_up(least, unit)
         return result
 

@@ -119,17 +119,17 @@ class Comparison:
     def files(self, folder: Path | None = None) -> dict[str, str]:
         """Files that ``save`` writes into its folder: file name -> text; ``folder``: where they will stand."""
         width = max(2, len(str(len(self.designs))))
-        found = {
+        files = {
             "designs.csv": csv_text(*self._table()),
             "families.csv": csv_text(*self._family_table()),
             COMPARISON: self._json(),
         }
         if any(d.robust for d in self.designs):
-            found["robust.csv"] = csv_text(*limits_table(self.designs))
+            files["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
-            own = design if folder is None else design.placed(folder)
-            found[f"design_{design.rank:0{width}d}.yaml"] = own.yaml()
-        return found
+            placed = design if folder is None else design.placed(folder)
+            files[f"design_{design.rank:0{width}d}.yaml"] = placed.yaml()
+        return files
 
     def family_files(self, folder: Path | None = None) -> dict[str, str]:
         """Return the files of each family's own front, in a folder of its name; ``folder``: where that will stand."""
@@ -172,10 +172,10 @@ class Comparison:
                 d.gap,
                 d.note,
                 "; ".join(d.alternatives),
-                *map(own.get, every),
+                *map(values.get, every),
                 *(rating_row(d) if rated else ()),
             ]
-            for d, name, own in zip(self.designs, self.families, known, strict=True)
+            for d, name, values in zip(self.designs, self.families, known, strict=True)
         ]
         columns = ["rank", "score", "family", "status", "gap", "note", "alternatives", *every]
         return [*columns, *(COLUMNS if rated else ())], rows
@@ -185,13 +185,13 @@ class Comparison:
         columns += [f"best {n}" for n in self.objectives] + [f"meaning of {n}" for n in self.objectives]
         rows: list[list[Any]] = []
         for x in self.outcomes:
-            told: list[Any] = [None] * 4
+            front_cells: list[Any] = [None] * 4
             if x.front is not None:
-                own = x.front.certificate
-                told = [len(x.front.designs), own.kind, own.gap, own.combinations]
+                certificate = x.front.certificate
+                front_cells = [len(x.front.designs), certificate.kind, certificate.gap, certificate.combinations]
             best = [best_value(x.front, n, sense) for n, sense in self.objectives.items()]
             meanings = [x.meanings.get(n) for n in self.objectives]
-            rows.append([x.family, x.title, x.outcome, x.listed, x.sentence, *told, *best, *meanings])
+            rows.append([x.family, x.title, x.outcome, x.listed, x.sentence, *front_cells, *best, *meanings])
         return columns, rows
 
     def _json(self) -> str:

@@ -53,28 +53,28 @@ class Outcomes:
         quantities: Mapping[str, Any] = {**d.variables, **d.counts, **d.derived}
         meanings = {n: quantities[n].text for n in self.front.objectives if n in quantities}
         offers = {} if self.chosen else {n: objective.default for n, objective in d.objectives.items()}
-        told = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings, offers=offers)
+        outcome = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings, offers=offers)
         if one.misfits:
-            return replace(told, sentence=f"it {' and '.join(one.misfits)}")
+            return replace(outcome, sentence=f"it {' and '.join(one.misfits)}")
         if one.label in self.faults:
-            return replace(told, sentence=str(self.faults[one.label]))
+            return replace(outcome, sentence=str(self.faults[one.label]))
         member = next((m for m in self.front.members if m.one is one), None)
         if member is None:
-            return replace(told, outcome="stopped", sentence=f"not searched ({self.interrupted})")
+            return replace(outcome, outcome="stopped", sentence=f"not searched ({self.interrupted})")
         listed = self.owners.count(one.label)
-        told = replace(told, front=member.front, listed=listed)
+        outcome = replace(outcome, front=member.front, listed=listed)
         if listed:
             words = "1 design" if listed == 1 else f"{listed} designs"
-            return replace(told, outcome="listed", sentence=f"{words} on the common front")
-        return self._without_place(member, told) if member.designs else _without_design(member, told)
+            return replace(outcome, outcome="listed", sentence=f"{words} on the common front")
+        return self._without_place(member, outcome) if member.designs else _without_design(member, outcome)
 
-    def _without_place(self, member: Competitor, told: FamilyOutcome) -> FamilyOutcome:
+    def _without_place(self, member: Competitor, outcome: FamilyOutcome) -> FamilyOutcome:
         """Outcome of a family none of whose designs is listed."""
         if any(m is member for m, _ in self.every):
             reason = "it has designs that nothing beats, but there is no room for them among so few points"
-            return replace(told, outcome="beaten", sentence=reason)
+            return replace(outcome, outcome="beaten", sentence=reason)
         winner, sentence = self._beaten(member)
-        return replace(told, outcome="beaten", sentence=sentence, beaten_by=winner)
+        return replace(outcome, outcome="beaten", sentence=sentence, beaten_by=winner)
 
     def _beaten(self, member: Competitor) -> tuple[Design | None, str]:
         """Say by which design a family is beaten in most of its own, and how its best values compare with that one's.
@@ -82,35 +82,35 @@ class Outcomes:
         Where no listed design beats any, they are compared with the best values of all.
         """
         signed, designs = self.front.signed, self.designs
-        own = signed(member.designs)
-        beats = [int(beaten(own, row, of_others=True).sum()) for row in signed(designs)]
+        points = signed(member.designs)
+        beats = [int(beaten(points, row, of_others=True).sum()) for row in signed(designs)]
         best = int(np.argmax(beats)) if beats else -1
         if best < 0 or not beats[best]:
-            words = self._against(member, own, signed([d for _, d in self.every]))
+            words = self._against(member, points, signed([d for _, d in self.every]))
             return None, f"everywhere, by designs between those listed: {words}"
         by = f"by #{designs[best].rank} ({self.owners[best]})"
-        if len(own) > 1:
-            by = f"in {'all' if beats[best] == len(own) else f'{beats[best]} of {len(own)}'} of its designs {by}"
-        return designs[best], f"everywhere, {by}: {self._against(member, own, signed([designs[best]]))}"
+        if len(points) > 1:
+            by = f"in {'all' if beats[best] == len(points) else f'{beats[best]} of {len(points)}'} of its designs {by}"
+        return designs[best], f"everywhere, {by}: {self._against(member, points, signed([designs[best]]))}"
 
-    def _against(self, member: Competitor, own: np.ndarray, others: np.ndarray) -> str:
+    def _against(self, member: Competitor, points: np.ndarray, others: np.ndarray) -> str:
         """Return the best values of a family's designs beside those of others."""
         words = []
         for k, (name, sense) in enumerate(self.front.objectives.items()):
             mine, theirs = (
                 typed_quantity(float(rows[:, k].min() * self.front.senses[k]), member.front.frame.units[name], 4)
-                for rows in (own, others)
+                for rows in (points, others)
             )
             words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {theirs}")
         return ", ".join(words)
 
 
-def _without_design(member: Competitor, told: FamilyOutcome) -> FamilyOutcome:
+def _without_design(member: Competitor, outcome: FamilyOutcome) -> FamilyOutcome:
     """Outcome of a family of which no design was found."""
     if member.front.interrupted:
         reason = f"no design was found until it was stopped ({member.front.interrupted})"
-        return replace(told, outcome="stopped", sentence=reason)
+        return replace(outcome, outcome="stopped", sentence=reason)
     nothing = NOTHING_STANDS if member.incomplete else "No design is feasible."
     explanation = member.front.explanation
     message = nothing if explanation is None else explanation.get("message", nothing)
-    return replace(told, outcome=member.front.status.value, sentence=str(message))
+    return replace(outcome, outcome=member.front.status.value, sentence=str(message))

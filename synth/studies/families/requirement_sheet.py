@@ -43,14 +43,14 @@ class Applicant:
 
     label: str
     title: str
-    own: Sheet
+    family_sheet: Sheet
     problem: DesignProblem
     declaration: Declaration
     misfits: list[str] = field(default_factory=list)
 
     def robust(self, sheet: Sheet) -> dict[str, Any]:
         """Scatter of the sheet of all, and of its own."""
-        return {**sheet["robust"], **self.own["robust"]}
+        return {**sheet["robust"], **self.family_sheet["robust"]}
 
     def effort(self) -> tuple[int, int]:
         """Sizes and combinations of counts and choices that a search decides: the fewer, the sooner it is done."""
@@ -60,20 +60,20 @@ class Applicant:
 
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
         """Question of the family: the sheet of all and its own, and the objectives of the ranking."""
-        asked: dict[str, Any] = {key: {**sheet[key], **self.own[key]} for key in ("limits", "fix", "parts")}
-        requirements = {**sheet["requirements"], **self.own["requirements"]}
-        return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **asked, **ranked)
+        entries: dict[str, Any] = {key: {**sheet[key], **self.family_sheet[key]} for key in ("limits", "fix", "parts")}
+        requirements = {**sheet["requirements"], **self.family_sheet["requirements"]}
+        return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **entries, **ranked)
 
 
-def sheet_of(**given: Any) -> Sheet:
-    """Return a sheet of what was given; what is None is not asked.
+def sheet_of(**blocks: Any) -> Sheet:
+    """Sheet of the blocks; entries that are None are dropped.
 
     Raises
     ------
     InputError
         When something is no mapping.
     """
-    read = {key: as_mapping(given.get(key), key, EXAMPLES[key]) for key in KEYS}
+    read = {key: as_mapping(blocks.get(key), key, EXAMPLES[key]) for key in KEYS}
     return {key: {str(n): v for n, v in mapping.items() if v is not None} for key, mapping in read.items()}
 
 
@@ -86,14 +86,14 @@ def understood() -> dict[str, tuple[str, list[str]]]:
     return dict(sorted(result.items(), key=lambda item: (-len(item[1][1]), item[0])))
 
 
-def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
-    """Return the families that are asked, each with the reasons for which it cannot serve.
+def applicants(families: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
+    """Requested families, each with the reasons for which it cannot serve.
 
     Parameters
     ----------
-    asked : "any", or list of names, DesignProblem subclasses, instances, or mappings with ``family``
+    families : "any", or list of names, DesignProblem subclasses, instances, or mappings with ``family``
     sheet : mapping
-        What all are asked.
+        Requirements, limits and other entries for all families.
     catalogs : Catalogs
 
     Raises
@@ -101,29 +101,29 @@ def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
     InputError
         When a name means nothing to any family, or none can serve.
     """
-    every = isinstance(asked, str) and asked == ANY
-    entries: Sequence[Any] = [*every_family().values()] if every else asked
+    every = isinstance(families, str) and families == ANY
+    entries: Sequence[Any] = [*every_family().values()] if every else families
     if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence) or not entries:
-        raise InputError("family", asked, f"'{ANY}', or a list of families", ("family",))
+        raise InputError("family", families, f"'{ANY}', or a list of families", ("family",))
     if len(entries) > INPUT_LIMITS.families:
         raise InputError("family", f"{len(entries)} entries", f"at most {INPUT_LIMITS.families}", ("family",))
-    found = []
+    candidates = []
     for k, entry in enumerate(entries):
         with at("family", k), skipping_faulty_families() if every else nullcontext():
-            found.append(_applicant(entry, sheet, catalogs))
-    _tell_apart(found)
-    _check_names(found, sheet)
-    _check_own(found, sheet)
-    _check_tables(found, catalogs)
-    for one in found:
+            candidates.append(_applicant(entry, sheet, catalogs))
+    _number_duplicates(candidates)
+    _check_names(candidates, sheet)
+    _check_family_sheets(candidates, sheet)
+    _check_tables(candidates, catalogs)
+    for one in candidates:
         one.misfits += _misfits(one, sheet)
-    return found
+    return candidates
 
 
-def refuse_all(found: Sequence[Applicant], sheet: Sheet) -> None:
+def refuse_all(candidates: Sequence[Applicant], sheet: Sheet) -> None:
     """Raise where no family can serve, with the reasons of the one that comes nearest."""
-    if all(one.misfits for one in found):
-        near = min(found, key=lambda one: sum(m.count(",") + 1 for m in one.misfits))
+    if all(one.misfits for one in candidates):
+        near = min(candidates, key=lambda one: sum(m.count(",") + 1 for m in one.misfits))
         shown = ", ".join(sheet["requirements"]) or None
         reasons = " and ".join(near.misfits)
         expected = f"a sheet that one of the families can serve; the nearest is {near.label}, but it {reasons}"
@@ -132,18 +132,18 @@ def refuse_all(found: Sequence[Applicant], sheet: Sheet) -> None:
 
 def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     """Read one entry of the list of families."""
-    family, own = entry, sheet_of()
+    family, family_sheet = entry, sheet_of()
     if isinstance(entry, Mapping):
         family = entry.get("family")
         for key in entry:
             if key not in ("family", *KEYS):
                 raise InputError("family", key, f"family, {', '.join(KEYS)}", (str(key),))
-        own = sheet_of(**{key: entry[key] for key in KEYS if key in entry})
+        family_sheet = sheet_of(**{key: entry[key] for key in KEYS if key in entry})
     problem = load(family)
-    if own["options"]:
-        problem = type(problem)(**{**problem.options, **own["options"]})
+    if family_sheet["options"]:
+        problem = type(problem)(**{**problem.options, **family_sheet["options"]})
     declaration = problem.model(frozenset(), catalogs).declaration
-    one = Applicant(problem.name, problem.title or problem.name, own, problem, declaration)
+    one = Applicant(problem.name, problem.title or problem.name, family_sheet, problem, declaration)
     shared = {n: v for n, v in sheet["options"].items() if n not in problem.options}
     if shared and all(n in one.declaration.options for n in shared):
         one.problem = type(problem)(**{**shared, **problem.options})
@@ -155,26 +155,26 @@ def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     return one
 
 
-def _tell_apart(found: Sequence[Applicant]) -> None:
-    """Give numbers to families that stand there twice, with other options for instance."""
-    for label in {one.label for one in found}:
-        same = [one for one in found if one.label == label]
+def _number_duplicates(candidates: Sequence[Applicant]) -> None:
+    """Number families that are requested twice, with other options for instance."""
+    for label in {one.label for one in candidates}:
+        same = [one for one in candidates if one.label == label]
         for number, one in enumerate(same[1:], start=2):
             one.label = f"{label}_{number}"
 
 
-def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
+def _check_names(candidates: Sequence[Applicant], sheet: Sheet) -> None:
     """Refuse names that mean nothing to any of the families."""
     for key in KEYS:
-        known = {n for one in found for n in _known(one, key)}
+        known = {n for one in candidates for n in _known(one, key)}
         for name in sheet[key]:
             if name in known:
                 continue
             if key == "requirements":
-                common = (r for one in found for r in one.declaration.requirements.values() if r.name in known)
+                common = (r for one in candidates for r in one.declaration.requirements.values() if r.name in known)
                 refuse_power(name, sheet[key][name], list(common))
             expected = f"a name that one of the families knows{_hint(name, known)}"
-            if key in ("requirements", "robust") and any(name in one.declaration.names() for one in found):
+            if key in ("requirements", "robust") and any(name in one.declaration.names() for one in candidates):
                 expected = (
                     "a requirement that families understand in common, by name; what concerns one family alone is "
                     "stated under that family"
@@ -187,19 +187,19 @@ def _hint(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {' or '.join(close)}?)" if close else ""
 
 
-def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
+def _check_family_sheets(candidates: Sequence[Applicant], sheet: Sheet) -> None:
     """Refuse names under a family that mean nothing to it, and blocks of what scatters that mean nothing to any."""
-    for one in found:
+    for one in candidates:
         names = one.declaration.names()
         for key in ("requirements", "limits", "fix", "parts", "robust"):
             # Under a family what concerns it alone may stand as well, by symbols too.
             known = {*_known(one, key), *(one.declaration.requirements if key in ("requirements", "robust") else ())}
-            for word in one.own[key]:
+            for word in one.family_sheet[key]:
                 name = uncertainty.name_in_block(word, names) if key == "robust" else names.get(word, word)
                 if name not in known:
                     expected = f"a name that {one.label} knows{_hint(word, known)}"
                     raise InputError(f"family {one.label}: {key}", word, expected)
-        if one.own["robust"]:
+        if one.family_sheet["robust"]:
             uncertainty.read_remaining(one.robust(sheet), f"family {one.label}: robust")
 
 
@@ -218,8 +218,8 @@ def _known(one: Applicant, key: str) -> Iterable[str]:
     }[key]
 
 
-def _check_tables(found: Sequence[Applicant], catalogs: Catalogs) -> None:
-    used = {table for one in found for table in one.declaration.tables()}
+def _check_tables(candidates: Sequence[Applicant], catalogs: Catalogs) -> None:
+    used = {table for one in candidates for table in one.declaration.tables()}
     for name in catalogs.added:
         if name not in used:
             right = f"a table that one of the families uses ({', '.join(sorted(used))})"
@@ -242,8 +242,8 @@ def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
         if strange:
             reasons.append(f"{lacks} {', '.join(strange)}")
     names = d.names()
-    given = {*sheet["requirements"], *(names.get(n, n) for n in one.own["requirements"])}
-    lacking = [r.name for r in d.requirements.values() if r.default is None and not r.optional and r.name not in given]
+    known = {*sheet["requirements"], *(names.get(n, n) for n in one.family_sheet["requirements"])}
+    lacking = [r.name for r in d.requirements.values() if r.default is None and not r.optional and r.name not in known]
     if lacking:
         reasons.append(f"needs {', '.join(lacking)}")
     return reasons
@@ -252,22 +252,22 @@ def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
 # ---- what they are compared by --------------------------------------------------------------------------------------
 
 
-def common_objectives(found: Sequence[Applicant], asked: Any) -> dict[str, str]:
-    """Return the objectives that all families that can serve have, and note who lacks one that was asked for.
+def common_objectives(candidates: Sequence[Applicant], objectives: Any) -> dict[str, str]:
+    """Return the objectives that all families that can serve have, and note which family lacks a requested one.
 
-    Nothing asked: what all offer; those that are defaults in most families come first, two at least if there are.
+    None requested: what all offer; those that are defaults in most families come first, two at least if there are.
 
     Raises
     ------
     InputError
         When there is none, or a name or sense is not one.
     """
-    serving = [one for one in found if not one.misfits]
-    if asked is None:
+    serving = [one for one in candidates if not one.misfits]
+    if objectives is None:
         return _offered_by_all(serving)
-    if isinstance(asked, str):
-        asked = [asked]
-    pairs = list(asked.items()) if isinstance(asked, Mapping) else [(name, None) for name in asked]
+    if isinstance(objectives, str):
+        objectives = [objectives]
+    pairs = list(objectives.items()) if isinstance(objectives, Mapping) else [(name, None) for name in objectives]
     if not pairs:
         raise InputError("objectives", None, "at least one", ("objectives",))
     result: dict[str, str] = {}

@@ -24,23 +24,23 @@ def irreducible_subset(search: RelaxedSearch, patches: Patches, nearest: Design 
         That keeps all limits if they are widened by least.
     """
     limits, first = search.question.limits, search.ways.first
-    near = [] if nearest is None else most_used(patches.as_asked(nearest).utilisation)
+    near = [] if nearest is None else most_used(patches.original(nearest).utilisation)
     kept = [x for x in near if x in limits][:first]
     while True:
-        found = search.least(Giving(give={}, kept=kept))
-        if found.design is None:
+        least = search.least(Giving(give={}, kept=kept))
+        if least.design is None:
             break
-        broken = [x for x in _broken(patches.as_asked(found.design))[:first] if x not in kept]
+        broken = [x for x in _broken(patches.original(least.design))[:first] if x not in kept]
         if not broken:
             return tuple(kept), False
         kept += broken
-    proven = found.closed
+    proven = least.closed
     for k, name in enumerate(list(kept)):
         search.say("conflict", 0.1 + 0.1 * k / len(kept), f"without {name}")
-        found = search.least(Giving(give={}, kept=[x for x in kept if x != name]))
-        if found.design is None and found.closed:
+        least = search.least(Giving(give={}, kept=[x for x in kept if x != name]))
+        if least.design is None and least.closed:
             kept.remove(name)
-        proven &= found.design is not None or found.closed
+        proven &= least.design is not None or least.closed
     return tuple(x for x in limits if x in kept), proven
 
 

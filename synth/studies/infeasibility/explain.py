@@ -121,10 +121,10 @@ def _find_conflict(search: RelaxedSearch, patches: Patches, result: Explanation,
 
 def _find_ways(search: RelaxedSearch, patches: Patches, result: Explanation, physics: bool) -> None:
     """Find what makes it feasible: one thing alone, and all that was asked together."""
-    alone, tried = SingleWays(search, patches), trials(search.question, result.fired, result.conflict, physics)
+    single_ways, tried = SingleWays(search, patches), trials(search.question, result.fired, result.conflict, physics)
     for k, trial in enumerate(tried):
         search.say("ways out", 0.2 + 0.7 * k / len(tried), str(trial))
-        way = alone.way(trial)
+        way = single_ways.way(trial)
         if isinstance(way, Relaxation):
             place = {COLUMN: result.parts, CHOICE: result.choices}.get(trial.kind, result.single)
             place.append(way)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 
 from synth.analysis.fired_guards import fired_guards
-from synth.model.constraint import SIGNS, Constraint
+from synth.model.constraint import SYMBOLS, Constraint
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.robust.counterpart import robust_counterpart
@@ -35,7 +35,7 @@ class Pin:
     def ends(self, model: Model) -> list[tuple[Constraint, float]]:
         """Return the limits that take its place where it gives way, each with the way that it gives way."""
         return [
-            (model.constraint_on(self.name, sense, bound, f"{self.key}: {self.name} {SIGNS[sense]}"), sign)
+            (model.constraint_on(self.name, sense, bound, f"{self.key}: {self.name} {SYMBOLS[sense]}"), sign)
             for sense, bound, sign in (("at_most", self.high, 1.0), ("at_least", self.low, -1.0))
         ]
 
@@ -52,12 +52,12 @@ class ExplainedQuestion:
     ----------
     instance : Instance
         The question as it stands.
-    own : list of Constraint
-        The user's own limits on quantities and variables.
+    user_limits : list of Constraint
+        The user's limits on quantities and variables.
     bounded : mapping
-        What is asked of counts: it bounds them.
+        Bounds of counts.
     fix, parts : mapping
-        What is pinned and which parts are asked for, by name.
+        Pins, and requested parts, by name.
     pins : mapping
         Of what is pinned to a number: each may give way.
     constraints : tuple of Constraint
@@ -68,8 +68,8 @@ class ExplainedQuestion:
         Names of the limits that may give way.
     columns : mapping
         ``slot.column`` -> slot, of all part columns that the family uses.
-    given : mapping
-        Requirements that the user states.
+    requirements : mapping
+        Requirements with an explicit value.
 
     Raises
     ------
@@ -78,50 +78,50 @@ class ExplainedQuestion:
     """
 
     def __init__(self, request: Request) -> None:
-        whole = replace(request, problem=robust_counterpart(request.problem, request.robust, request.limits))
-        self.request, self.instance = request, Instance(whole, refuse=False)
+        robust_request = replace(request, problem=robust_counterpart(request.problem, request.robust, request.limits))
+        self.request, self.instance = request, Instance(robust_request, refuse=False)
         model, d = self.instance.model, self.instance.model.declaration
         self.names = d.names()
         kept = model.by_name(request.fix, "fix", list(self.names.values()), "a name")
         self.fix = {name: value for name, value in kept.items() if name not in d.derived}
         self.parts = model.by_name(request.parts, "parts", list(d.slots), "a slot")
         self.pins = self._pins(kept)
-        # What is asked of counts bounds them here as well; limits on variables may give way.
+        # Bounds of counts hold here as well; limits on variables may give way.
         limits, variables = self.instance.limits, {v.name for v in model.variables}
-        self.own = [*limits.judging, *(x for x in limits.bounding if x.quantity in variables)]
-        self.bounded = {name: asked for name, asked in limits.asked.items() if name in d.counts}
-        self.constraints = (*model.constraints, *self.own)
+        self.user_limits = [*limits.judging, *(x for x in limits.bounding if x.quantity in variables)]
+        self.bounded = {name: allowed for name, allowed in limits.asked.items() if name in d.counts}
+        self.constraints = (*model.constraints, *self.user_limits)
         self.by_name = {x.name: x for x in self.constraints}
         self.giving = self._giving()
         self.columns = {f"{part.slot}.{key}": part for part in d.slots.values() for key in part.columns}
-        self.given = {
+        self.requirements = {
             name: Quantity(value, d.requirements[name].unit)
             for name, value in self.instance.values.requirements.items()
             if name in self.instance.values.given
         }
         if not fired_guards(self.instance):
             # What is refused only because several refusals leave out all rows between them.
-            Instance(whole)
+            Instance(robust_request)
 
     def _pins(self, fix: Mapping[str, Any]) -> dict[str, Pin]:
         """Quantities pinned to a number, and counts of which comparisons leave some values."""
-        model, found = self.instance.model, dict[str, Pin]()
+        model, pins = self.instance.model, dict[str, Pin]()
         for k, variable in enumerate(model.variables):
             if variable.name in fix:
                 value = float(self.instance.ranges.lower[k])
-                found[variable.name] = Pin(variable.name, "fix", value, value, variable.unit)
+                pins[variable.name] = Pin(variable.name, "fix", value, value, variable.unit)
         # A set of values is kept as it is: between them lies nothing that would be nearer.
         sets = {name for name, _ in self.instance.limits.count_sets}
-        for name, left in self.instance.selection.counts.items():
-            if name not in sets and len(left) < len(model.declaration.counts[name].values):
-                found[name] = Pin(name, "fix" if name in fix else "limits", float(left[0]), float(left[-1]), "-")
-        return found
+        for name, values in self.instance.selection.counts.items():
+            if name not in sets and len(values) < len(model.declaration.counts[name].values):
+                pins[name] = Pin(name, "fix" if name in fix else "limits", float(values[0]), float(values[-1]), "-")
+        return pins
 
     def _giving(self) -> list[str]:
         """Return the limits that may give way: no guard, no equality and no limit of zero."""
         limits = self.instance.model.limits
         firm = {x.name for x in limits if x.guard or x.sense == "equal" or x.limit.is_zero()}
-        firm |= {x.name for x in self.own if x.sense == "equal" or x.bound == 0}
+        firm |= {x.name for x in self.user_limits if x.sense == "equal" or x.bound == 0}
         return [name for name in self.limits if name not in firm]
 
     @property
@@ -134,25 +134,25 @@ class ExplainedQuestion:
         """Names of the limits without which formulas do not exist."""
         return [x.name for x in self.instance.model.constraints if x.guard]
 
-    def own_limit(self, name: str) -> Constraint | None:
-        """Return a limit of the user's own by its name, if it is one."""
-        return next((x for x in self.own if x.name == name), None)
+    def user_limit(self, name: str) -> Constraint | None:
+        """User's limit of this name; None where it is one of the family."""
+        return next((x for x in self.user_limits if x.name == name), None)
 
     def sign(self, limit: str) -> float:
         """Direction in which a limit gives way."""
         return -1.0 if self.by_name[limit].sense == "at_least" else 1.0
 
     def at_corners(self, limit: str) -> list[str]:
-        """Return a limit of the user's own, and what it was posed as over a range."""
+        """User's limit, and its copies at the corners of a range."""
         return [limit, *(x for x in self.limits if x.startswith(f"{limit} ("))]
 
     def words(self) -> list[str]:
-        """Return the slots and choices for which the user asked something."""
+        """Slots and choices that the user restricts."""
         d = self.instance.model.declaration
         return [name for name in {**self.fix, **self.parts} if name in d.slots or name in d.choices]
 
-    def room(self, name: str, sign: float, farthest: float) -> float:
-        """Room of a requirement before it leaves its declared range, as a logarithm.
+    def reach(self, name: str, sign: float, farthest: float) -> float:
+        """Possible change of a requirement within its declared range, as a logarithm.
 
         Parameters
         ----------
@@ -187,13 +187,13 @@ class ExplainedQuestion:
         """Return the inputs of the program that move with a data input: itself, and defaults that are made of it."""
         model = self.instance.model
         entry, first = model.data_inputs[position], len(model.variables)
-        found = [first + position]
+        inputs = [first + position]
         for j, other in enumerate(model.data_inputs if entry.kind == "requirement" else ()):
             default = model.declaration.requirements[other.name].default if other.kind == "requirement" else None
             if other.name not in self.instance.values.given and isinstance(default, ca.SX):
                 used = {str(s) for s in ca.symvar(expanded(default, model.calls))}
-                found += [first + j] if str(entry.sx) in used else []
-        return found
+                inputs += [first + j] if str(entry.sx) in used else []
+        return inputs
 
     def requirement_of(self, limit: str) -> str:
         """Return the requirement that is the limit side of a limit; nothing where it is more or something else."""

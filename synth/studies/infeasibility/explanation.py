@@ -181,7 +181,7 @@ class Explanation:
         """Files that ``save`` writes: file name -> text."""
         return {
             "explanation.csv": frame_csv(self.to_frame()),
-            "explanation.json": json.dumps(self._told(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
+            "explanation.json": json.dumps(self._record(), indent=2, ensure_ascii=False, allow_nan=False) + "\n",
         }
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> list[Path]:
@@ -193,7 +193,7 @@ class Explanation:
         target = save_result(folder, files, EXPLANATION, bool(self.interrupted))
         return [target / name for name in files]
 
-    def _told(self) -> dict[str, Any]:
+    def _record(self) -> dict[str, Any]:
         """Content of explanation.json."""
         return {
             "feasible": self.feasible,
@@ -245,7 +245,7 @@ def roundings(value: float, unit: str, up: bool) -> tuple[str, ...]:
     return (next(outward(value, unit, up, WAYS_OUT.digits)), *outward(value, unit, up))[: WAYS_OUT.further]
 
 
-def as_given(si: float, unit: str) -> str:
+def present_value(si: float, unit: str) -> str:
     """Present value in a question, beside the one needed: with as many digits, whole parts in full."""
-    whole = math.floor(math.log10(abs(shown))) + 1 if (shown := float(from_si(si, unit))) else 0
-    return written_quantity(si, unit, max(WAYS_OUT.digits, whole))
+    integer_digits = math.floor(math.log10(abs(shown))) + 1 if (shown := float(from_si(si, unit))) else 0
+    return written_quantity(si, unit, max(WAYS_OUT.digits, integer_digits))

@@ -100,14 +100,14 @@ class RelaxedSearch:
         Stopped
             When time is over.
         """
-        left = self.deadline - time.monotonic()
-        if left <= 0:
+        spare = self.deadline - time.monotonic()
+        if spare <= 0:
             raise Stopped("time limit")
         try:
             instance = self._relaxed(giving)
         except RefusedError:
             return LeastAmount(None, True)
-        front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), self.ways.boxes)
+        front = one_best(instance, AMOUNT, self.settings.within(None if spare == math.inf else spare), self.ways.boxes)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return LeastAmount(front.designs[0] if front.designs else None, front.certificate.kind == "global")
@@ -118,18 +118,18 @@ class RelaxedSearch:
         ends = [end for pin in giving.pins for end in pin.ends(question.instance.model)]
         give = {**giving.give, **{(LIMIT, x.name): sign for x, sign in ends if x.bound}}
         limits = [*(question.limits if giving.kept is None else giving.kept), *(x.name for x, _ in ends)]
-        own = [*question.own, *(x for x, _ in ends)]
+        user_limits = [*question.user_limits, *(x for x, _ in ends)]
         farthest = self.ways.farthest
-        relaxed = Relaxed(question.instance, own, give, limits, giving.rooms, giving.free, farthest)
+        relaxed = Relaxed(question.instance, user_limits, give, limits, giving.rooms, giving.free, farthest)
         loose = {*giving.free, *(pin.name for pin in giving.pins)}
         fix, bounds, parts = (
-            {name: value for name, value in asked.items() if name not in loose}
-            for asked in (question.fix, question.bounded, question.parts)
+            {name: value for name, value in selection.items() if name not in loose}
+            for selection in (question.fix, question.bounded, question.parts)
         )
         # Where nothing gives way any design will do.
         fix |= {} if give else {AMOUNT: 0.0}
         bounds |= {AMOUNT: f"<= {giving.most!r}"} if giving.most is not None and giving.most < farthest else {}
         request = replace(
-            question.request, problem=relaxed, requirements=question.given, parts=parts, limits=bounds, fix=fix
+            question.request, problem=relaxed, requirements=question.requirements, parts=parts, limits=bounds, fix=fix
         )
         return Instance(request)

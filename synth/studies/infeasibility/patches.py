@@ -12,7 +12,7 @@ from synth.analysis.designs import make_design, make_frame
 from synth.analysis.evaluate import evaluate
 from synth.declaration import Origin
 from synth.errors import InputError
-from synth.model.constraint import SIGNS
+from synth.model.constraint import SYMBOLS
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.question.selection import part_row
@@ -51,12 +51,12 @@ class Patches:
 
     def limits(self, texts: Mapping[str, str]) -> dict[str, Any]:
         """Return the entries of ``limits`` with other bounds for some limits of the user's own."""
-        own = self.question.own
+        user_limits = self.question.user_limits
         entries: dict[str, Any] = {}
-        for quantity in sorted({x.quantity for x in own if x.name in texts}):
-            whole = [x for x in own if x.quantity == quantity and x.origin is Origin.USER]
-            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or typed_quantity(x.bound, x.unit, None)}" for x in whole]
-            entries[self._word("limits", quantity)] = stated[0] if len(stated) == 1 else stated
+        for quantity in sorted({x.quantity for x in user_limits if x.name in texts}):
+            same = [x for x in user_limits if x.quantity == quantity and x.origin is Origin.USER]
+            bounds = [f"{SYMBOLS[x.sense]} {texts.get(x.name) or typed_quantity(x.bound, x.unit, None)}" for x in same]
+            entries[self._word("limits", quantity)] = bounds[0] if len(bounds) == 1 else bounds
         return {"limits": entries} if entries else {}
 
     def pin(self, pin: Pin, text: str) -> dict[str, Any]:
@@ -80,18 +80,18 @@ class Patches:
 
     def _word(self, key: str, name: str) -> str:
         """User's name for something under a key of the spec; its own name where it does not stand there."""
-        stated, names = getattr(self.request, key), self.question.names
-        return next((str(word) for word in stated if names.get(str(word)) == name), name)
+        entries, names = getattr(self.request, key), self.question.names
+        return next((str(word) for word in entries if names.get(str(word)) == name), name)
 
     # -- what they do --------------------------------------------------------------------------
 
-    def works(self, patch: Mapping[str, Any], found: Design) -> bool:
+    def works(self, patch: Mapping[str, Any], relaxed: Design) -> bool:
         """True if a design is one of the question with a patch."""
-        asked = self._with(patch)
+        request = self._with(patch)
         try:
-            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
-            instance = Instance(replace(asked, problem=problem))
-            design = self.as_asked(found, patch)
+            problem = robust_counterpart(nominal(request.problem), request.robust, request.limits)
+            instance = Instance(replace(request, problem=problem))
+            design = self.original(relaxed, patch)
             instance.combinations.number(design)
         except InputError:
             return False
@@ -125,25 +125,25 @@ class Patches:
                 return patch(text), text
         return None, texts[0]
 
-    def as_asked(self, found: Design, patch: Mapping[str, Any] | None = None) -> Design:
+    def original(self, relaxed: Design, patch: Mapping[str, Any] | None = None) -> Design:
         """Return a design of the relaxed question as one of the question itself, or of that with a patch."""
-        kinds = {name: kind for name, kind in found.frame.kinds.items() if name != AMOUNT}
-        own = replace(found, frame=replace(found.frame, kinds=kinds))
-        asked, problem = self._with(patch or {}), self.question.instance.problem
+        kinds = {name: kind for name, kind in relaxed.frame.kinds.items() if name != AMOUNT}
+        without_amount = replace(relaxed, frame=replace(relaxed.frame, kinds=kinds))
+        request, problem = self._with(patch or {}), self.question.instance.problem
         if patch is not None:
-            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
-        return evaluate(problem, asked.requirements, own, catalogs=asked.catalogs, limits=asked.limits)
+            problem = robust_counterpart(nominal(request.problem), request.robust, request.limits)
+        return evaluate(problem, request.requirements, without_amount, catalogs=request.catalogs, limits=request.limits)
 
-    def missing(self, found: Design) -> Design:
+    def missing(self, relaxed: Design) -> Design:
         """Return a design of the relaxed question as it stands in the question, also where it is refused there."""
         instance = self.question.instance
-        number = instance.combinations.number(found)
-        variables = np.array([[found.values[v.name] for v in instance.model.variables]])
+        number = instance.combinations.number(relaxed)
+        variables = np.array([[relaxed.values[v.name] for v in instance.model.variables]])
         result = instance.evaluate(variables, instance.data(np.array([number])))
         rows = {slot: part_row(table, row) for slot, (table, row) in instance.combinations.describe(number)[0].items()}
-        return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, found.choices)
+        return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, relaxed.choices)
 
     def _with(self, patch: Mapping[str, Any]) -> Request:
         """Return the request with a patch."""
-        stated = {key: getattr(self.request, key) for key in ("requirements", "limits", "fix", "parts")}
-        return replace(self.request, **patched(stated, patch))
+        entries = {key: getattr(self.request, key) for key in ("requirements", "limits", "fix", "parts")}
+        return replace(self.request, **patched(entries, patch))

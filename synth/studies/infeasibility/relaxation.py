@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.analysis.fired_guards import wanted
+from synth.analysis.fired_guards import required_inequalities
 from synth.analysis.settings import WAYS_OUT
 from synth.declaration import Limit, Objective, Refusal, VariableRecord
 from synth.model.constraint import Constraint
@@ -54,8 +54,8 @@ class Relaxed(DesignProblem):
     ----------
     instance : Instance
         The question.
-    own : sequence of Constraint
-        The user's own limits on quantities, which become limits like those of the family.
+    added : sequence of Constraint
+        The user's limits on quantities, which become limits like those of the family.
     give : mapping
         (kind, name) of a requirement, limit or part column (``slot.column``) -> 1 or -1, upwards or downwards.
     kept : collection of str
@@ -71,7 +71,7 @@ class Relaxed(DesignProblem):
     def __init__(
         self,
         instance: Instance,
-        own: Sequence[Constraint],
+        added: Sequence[Constraint],
         give: Mapping[tuple[str, str], float],
         kept: Collection[str],
         rooms: Mapping[str, float] | None = None,
@@ -81,11 +81,11 @@ class Relaxed(DesignProblem):
         self.name = f"{instance.problem.name} (relaxed)"
         self.title = instance.problem.title
         super().__init__(**instance.problem.options)
-        self._instance, self._own, self._give, self._kept, self._rooms = instance, own, give, kept, rooms or {}
+        self._instance, self._added, self._give, self._kept, self._rooms = (instance, added, give, kept, rooms or {})
         self._free, self._farthest = free, farthest
         self._model = self._traced()
 
-    def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
+    def model(self, present: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Return the relaxed model; there is one, for the requirements, tables and comparisons of the question."""
         return self._model
 
@@ -102,7 +102,7 @@ class Relaxed(DesignProblem):
         target.derived = {name: replace(q, sx=moved(q.sx)) for name, q in source.derived.items()}
         quantities = {**original.quantity_sx, **{name: q.sx for name, q in target.derived.items()}}
         limits = [replace(x, value=moved(x.value), limit=moved(x.limit)) for x in source.limits.values()]
-        limits += [x.declared(quantities[x.quantity]) for x in self._own]
+        limits += [x.declared(quantities[x.quantity]) for x in self._added]
         target.limits = {x.name: self._loosened(x, amount.sx) for x in limits if x.guard or x.name in self._kept}
         target.refusals, refused = self._refusals(moved)
         target.limits |= {x.name: x for x in refused}
@@ -119,7 +119,7 @@ class Relaxed(DesignProblem):
         if sign is None:
             return limit
         # A negative bound that is to be less strict moves to the other side of a factor.
-        sign = -sign if any(x.bound < 0 for x in self._own if x.name == limit.name) else sign
+        sign = -sign if any(x.bound < 0 for x in self._added if x.name == limit.name) else sign
         return replace(limit, limit=limit.limit * np.exp(sign * amount))
 
     def _refusals(self, moved: _Substitution) -> tuple[list[Refusal], list[Limit]]:
@@ -129,20 +129,20 @@ class Relaxed(DesignProblem):
         """
         original = self._instance.model
         source = original.declaration.refusals
-        own = len(source) - len(self._instance.compared)
+        declared_count = len(source) - len(self._instance.compared)
         stay, limits = list[Refusal](), list[Limit]()
-        for refusal in source[:own]:
+        for refusal in source[:declared_count]:
             when = moved(expanded(refusal.when, original.calls))
             if not any(str(s) == AMOUNT for s in ca.symvar(when)):
                 stay.append(refusal)
                 continue
-            sides = [(w.smaller, w.larger) for w in wanted(refusal.when) or ()] or [(refusal.when, 0.5)]
+            sides = [(w.smaller, w.larger) for w in required_inequalities(refusal.when) or ()] or [(refusal.when, 0.5)]
             for k, pair in enumerate(sides):
                 name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
                 value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
                 limits.append(Limit(name, "at_most", "-", refusal.message, "", value, bound, False, SMALLEST))
         # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
-        rules = zip(self._instance.compared, source[own:], strict=True)
+        rules = zip(self._instance.compared, source[declared_count:], strict=True)
         return [*stay, *(refusal for rule, refusal in rules if rule.slot not in self._free)], limits
 
     def _moved_inputs(self, amount: Any) -> tuple[list[Any], list[Any]]:
@@ -151,18 +151,18 @@ class Relaxed(DesignProblem):
         A requirement at its default follows those that the default is made of.
         """
         d, calls = self._instance.model.declaration, self._instance.model.calls
-        given = self._instance.values.given
+        present = self._instance.values.given
         before: list[Any] = []
         after: list[Any] = []
         for r in d.requirements.values():
             sign = self._give.get((REQUIREMENT, r.name), 0.0)
             value = r.sx
-            if before and r.sx is not None and r.name not in given and isinstance(r.default, ca.SX):
+            if before and r.sx is not None and r.name not in present and isinstance(r.default, ca.SX):
                 value = ca.substitute([expanded(r.default, calls)], before, after)[0]
             if sign or value is not r.sx:
                 before.append(r.sx)
-                room = self._rooms.get(r.name, self._farthest)
-                step = ca.fmin(amount, room) if room < self._farthest else amount
+                reach = self._rooms.get(r.name, self._farthest)
+                step = ca.fmin(amount, reach) if reach < self._farthest else amount
                 after.append(value * np.exp(sign * step) if sign else value)
         for part in d.slots.values():
             for key, column in part.columns.items():

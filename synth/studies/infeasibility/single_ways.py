@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth.analysis.fired_guards import FiredGuard, columns_of, requirements_of
-from synth.model.constraint import SIGNS, Constraint
+from synth.model.constraint import SYMBOLS, Constraint
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
-from synth.studies.infeasibility.explanation import Relaxation, as_given, rounded
+from synth.studies.infeasibility.explanation import Relaxation, present_value, rounded
 from synth.studies.infeasibility.least_amount import Giving, LeastAmount, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches, chosen_in
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT, REQUIREMENT
@@ -58,12 +58,12 @@ def trials(
         bound = [*conflict, *question.guards]
         requirements = question.moving(REQUIREMENT, bound)
         columns = list(dict.fromkeys(question.moving(COLUMN, bound)))
-    own = {x.name for x in question.own}
+    user_limits = {x.name for x in question.user_limits}
     giving = [x for x in conflict if x in question.giving]
-    limits = [x for x in giving if x in own]
+    limits = [x for x in giving if x in user_limits]
     if physics:
         # Where a limit is a requirement, the requirement is what a user can change.
-        limits += [x for x in giving if x not in own and not question.requirement_of(x)]
+        limits += [x for x in giving if x not in user_limits and not question.requirement_of(x)]
     return [
         *(Trial(LIMIT, x, question.sign(x)) for x in limits),
         *(Trial(PIN, name) for name in question.pins),
@@ -97,20 +97,20 @@ class SingleWays:
             return self._chosen(trial.name)
         nothing, most = self.search.ways.nothing, self.search.ways.farthest
         if trial.kind == REQUIREMENT:
-            most = self.question.room(trial.name, trial.sign, most)
+            most = self.question.reach(trial.name, trial.sign, most)
         if most <= nothing:
             return None
-        found = self.search.least(self._giving(trial, most))
-        if found.design is None:
+        least = self.search.least(self._giving(trial, most))
+        if least.design is None:
             value = {0.0: "another", 1.0: "a larger", -1.0: "a smaller"}[trial.sign]
-            return None if found.closed else f"{trial.name}: whether {value} value alone would do is not settled"
+            return None if least.closed else f"{trial.name}: whether {value} value alone would do is not settled"
         if trial.kind == PIN:
-            return self._repinned(self.question.pins[trial.name], found, found.design)
-        own = self.question.own_limit(trial.name) if trial.kind == LIMIT else None
-        way = self._moved(trial, own, found, found.design)
-        if way.patch is None and (trial.kind == REQUIREMENT or own is not None):
+            return self._repinned(self.question.pins[trial.name], least, least.design)
+        limit = self.question.user_limit(trial.name) if trial.kind == LIMIT else None
+        way = self._moved(trial, limit, least, least.design)
+        if way.patch is None and (trial.kind == REQUIREMENT or limit is not None):
             # Within the tolerance of a limit both sides of a refusal look allowed.
-            return None if found.amount <= nothing else f"{way.sentence}: not shown to do as it is written"
+            return None if least.amount <= nothing else f"{way.sentence}: not shown to do as it is written"
         return way
 
     def _giving(self, trial: Trial, most: float) -> Giving:
@@ -122,13 +122,13 @@ class SingleWays:
 
     # -- other values --------------------------------------------------------------------------
 
-    def _moved(self, trial: Trial, own: Constraint | None, found: LeastAmount, design: Design) -> Relaxation:
+    def _moved(self, trial: Trial, limit: Constraint | None, least: LeastAmount, design: Design) -> Relaxation:
         """Return the way out by another value of a requirement, a limit or a column of a part."""
-        up, factor = trial.sign > 0, math.exp(trial.sign * found.amount)
+        up, factor = trial.sign > 0, math.exp(trial.sign * least.amount)
         if trial.kind == REQUIREMENT:
             value = self._requirement(trial.name, up, factor, design)
-        elif own is not None:
-            value = self._own_limit(own, up, factor, design)
+        elif limit is not None:
+            value = self._user_limit(limit, up, factor, design)
         elif trial.kind == LIMIT:
             value = self._family_limit(trial.name, up, factor, design)
         else:
@@ -138,87 +138,87 @@ class SingleWays:
             kind={REQUIREMENT: "requirement", LIMIT: "limit", COLUMN: "part"}[trial.kind],
             name=trial.name,
             sense="at_least" if up else "at_most",
-            given=value.given,
+            given=value.present,
             needed=value.needed,
             unit=value.unit,
             amount=amount,
             # The part that would do is none of the table: what it would give is the design of the relaxed question.
             # So it is of a limit of the family, too.
-            design=design if value.patch is None else self.patches.as_asked(design, value.patch),
-            proven=found.closed,
+            design=design if value.patch is None else self.patches.original(design, value.patch),
+            proven=least.closed,
             sentence=f"{value.words} ({more_or_less(amount, up)})",
             patch=value.patch,
         )
 
     def _requirement(self, name: str, up: bool, factor: float, design: Design) -> _Value:
         instance = self.question.instance
-        given, unit = instance.values.requirements[name], instance.model.declaration.requirements[name].unit
+        present, unit = instance.values.requirements[name], instance.model.declaration.requirements[name].unit
         patch, needed = self.patches.first_that_works(
-            lambda text: self.patches.requirement(name, text), given * factor, unit, up, design
+            lambda text: self.patches.requirement(name, text), present * factor, unit, up, design
         )
-        words = f"{name} {needed} instead of {as_given(given, unit)}"
-        return _Value(given, given * factor, unit, words, patch)
+        words = f"{name} {needed} instead of {present_value(present, unit)}"
+        return _Value(present, present * factor, unit, words, patch)
 
-    def _own_limit(self, own: Constraint, up: bool, factor: float, design: Design) -> _Value:
-        given = own.bound
-        factor = 1 / factor if given < 0 else factor
+    def _user_limit(self, limit: Constraint, up: bool, factor: float, design: Design) -> _Value:
+        bound = limit.bound
+        factor = 1 / factor if bound < 0 else factor
         patch, needed = self.patches.first_that_works(
-            lambda text: self.patches.limits({own.name: text}), given * factor, own.unit, up, design
+            lambda text: self.patches.limits({limit.name: text}), bound * factor, limit.unit, up, design
         )
-        words = f"limit {own.quantity} {SIGNS[own.sense]} {needed} instead of {as_given(given, own.unit)}"
-        return _Value(given, given * factor, own.unit, words, patch)
+        words = f"limit {limit.quantity} {SYMBOLS[limit.sense]} {needed} instead of {present_value(bound, limit.unit)}"
+        return _Value(bound, bound * factor, limit.unit, words, patch)
 
     def _family_limit(self, name: str, up: bool, factor: float, design: Design) -> _Value:
-        unit, given = self.question.by_name[name].unit, self.patches.as_asked(design).limits[name][1]
-        factor = 1 / factor if given < 0 else factor
-        needed = rounded(given * factor, unit, "at_least" if up else "at_most")
-        return _Value(given, given * factor, unit, f"limit {name} {needed} instead of {as_given(given, unit)}")
+        unit, bound = self.question.by_name[name].unit, self.patches.original(design).limits[name][1]
+        factor = 1 / factor if bound < 0 else factor
+        needed = rounded(bound * factor, unit, "at_least" if up else "at_most")
+        return _Value(bound, bound * factor, unit, f"limit {name} {needed} instead of {present_value(bound, unit)}")
 
     def _column(self, name: str, up: bool, factor: float, design: Design) -> _Value:
         part, column = self.question.columns[name], name.split(".", 1)[1]
         row = design.parts[part.slot]
-        given = next(row[c] for c in column.split("|") if row.get(c) is not None)
+        present = next(row[c] for c in column.split("|") if row.get(c) is not None)
         tables = self.question.request.catalogs
         unit = tables.table(part.table).columns[column.split("|")[0]].unit or "-"
-        needed = rounded(given * factor, unit, "at_least" if up else "at_most")
+        needed = rounded(present * factor, unit, "at_least" if up else "at_most")
         words = f"a {part.slot} with {column} {'>=' if up else '<='} {needed} would do; "
-        return _Value(given, given * factor, unit, f"{words}{row} has {as_given(given, unit)}")
+        return _Value(present, present * factor, unit, f"{words}{row} has {present_value(present, unit)}")
 
     # -- what was asked outright ---------------------------------------------------------------
 
-    def _repinned(self, pin: Pin, found: LeastAmount, design: Design) -> Relaxation | None:
+    def _repinned(self, pin: Pin, least: LeastAmount, design: Design) -> Relaxation | None:
         """Return the way out by another value of what is pinned."""
         value = design.values[pin.name]
-        given = pin.high if value > pin.high else pin.low
+        present = pin.high if value > pin.high else pin.low
         patch = self.patches.pin(pin, typed_quantity(value, pin.unit, None))
         if not self.patches.works(patch, design):
             return None
-        amount, more = abs(value / given - 1.0), value > given
-        shown = f"{pin.name} {as_given(value, pin.unit)} instead of {as_given(given, pin.unit)}"
+        amount, more = abs(value / present - 1.0), value > present
+        shown = f"{pin.name} {present_value(value, pin.unit)} instead of {present_value(present, pin.unit)}"
         return Relaxation(
             kind="fix" if pin.key == "fix" else "limit",
             name=pin.name,
             sense="at_least" if more else "at_most",
-            given=given,
+            given=present,
             needed=value,
             unit=pin.unit,
             amount=amount,
-            design=self.patches.as_asked(design, patch),
-            proven=found.closed,
+            design=self.patches.original(design, patch),
+            proven=least.closed,
             sentence=f"{shown} ({more_or_less(amount, more)})",
             patch=patch,
         )
 
     def _chosen(self, name: str) -> Relaxation | str | None:
         """Return the way out by another part or word than those asked for."""
-        found = self.search.least(Giving(give={}, free=[name]))
-        if found.design is None:
-            return None if found.closed else f"{name}: whether another choice alone would do is not settled"
-        patch = self.patches.choices(found.design, [name])
-        if not self.patches.works(patch, found.design):
+        least = self.search.least(Giving(give={}, free=[name]))
+        if least.design is None:
+            return None if least.closed else f"{name}: whether another choice alone would do is not settled"
+        patch = self.patches.choices(least.design, [name])
+        if not self.patches.works(patch, least.design):
             return None
-        words = f"{name} {chosen_in(found.design, name)} in place of what was asked"
-        design = self.patches.as_asked(found.design, patch)
+        words = f"{name} {chosen_in(least.design, name)} in place of what was asked"
+        design = self.patches.original(least.design, patch)
         return Relaxation("choice", name, "", math.nan, math.nan, "-", math.nan, design, True, words, patch)
 
 
@@ -226,7 +226,7 @@ class SingleWays:
 class _Value:
     """A value as asked and as needed, in SI, in words, and as entries of a spec where one can state it."""
 
-    given: float
+    present: float
     needed: float
     unit: str
     words: str

@@ -196,7 +196,7 @@ class PriceStore:
             raise InputError("output", str(self.folder), f"a folder that can be written ({error.strerror})") from error
 
 
-def report_progress(
+def price_sentence(
     quantity: str,
     kind: str,
     objective: str,

@@ -26,7 +26,7 @@ from synth.text.numbers import typed_number
 
 @dataclass(frozen=True)
 class Move:
-    """One requirement, limit or range of a size, multiplied by a factor; ``refused``: why that cannot be asked."""
+    """One requirement, limit or range of a size, multiplied by a factor; ``refused``: why that is not admissible."""
 
     kind: str
     name: str
@@ -101,33 +101,33 @@ class Resolver:
 
     def _moves(self, step: float) -> list[Move]:
         """Return all that is moved by a step: upwards, downwards, in turn."""
-        found, asked, model = [], self.instance.values, self.instance.model
+        moves, values, model = [], self.instance.values, self.instance.model
         for k, name in enumerate(self.positions):
             for factor in (1.0 + step, 1.0 - step):
-                own, why = asked, ""
+                moved_values, why = values, ""
                 try:
-                    moved = asked.moved(model, name, asked.requirements[name] * factor)
+                    moved = values.moved(model, name, values.requirements[name] * factor)
                     refuse_requirements(model, moved)
-                    own = moved
+                    moved_values = moved
                 except InputError as error:
                     why = f"cannot be asked ({error})"
-                found.append(Move("requirement", name, k, factor, own, why))
+                moves.append(Move("requirement", name, k, factor, moved_values, why))
         for j, name in enumerate(self.limit_names):
-            found += [Move("limit", name, j, f, asked) for f in (1.0 + step, 1.0 - step)]
+            moves += [Move("limit", name, j, f, values) for f in (1.0 + step, 1.0 - step)]
         for r, (_, x) in enumerate(self.ranges):
-            found += [Move("range", x.name, r, f, asked) for f in (1.0 + step, 1.0 - step)]
-        return found
+            moves += [Move("range", x.name, r, f, values) for f in (1.0 + step, 1.0 - step)]
+        return moves
 
-    def others(self, own: int) -> np.ndarray:
-        """Return the combinations that are tried beside that of a design."""
+    def others(self, combination: int) -> np.ndarray:
+        """Combinations that are tried in addition to that of a design."""
         total = self.instance.combinations.count
         if total <= self.limits.all:
             tried = np.arange(total, dtype=np.int64)
         else:
-            tried = np.concatenate([self.instance.combinations.neighbours(own), self.known])
-        return self._offered(tried, np.array([own]))
+            tried = np.concatenate([self.instance.combinations.neighbours(combination), self.known])
+        return self._offered(tried, np.array([combination]))
 
-    def beside(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
+    def around(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Return the combinations that differ in one part from some, but for those known."""
         near = [self.instance.combinations.neighbours(int(c)) for c in combinations]
         return self._offered(np.concatenate([np.empty(0, dtype=np.int64), *near]), known)
@@ -162,7 +162,7 @@ class Resolver:
         if form.n:
             low, high = self._ends(moves)
             possible = np.all(low <= high, axis=1)
-            found = form.continuous.solve_batch(
+            solved = form.continuous.solve_batch(
                 tasks, combinations, start, np.minimum(low, high), high, self.fixed, data
             )
         else:
@@ -172,11 +172,11 @@ class Resolver:
             reached = form.objectives.phi_of(signed)
             over = np.max(np.where(np.isfinite(tasks.cutoffs), reached - tasks.cutoffs, 0.0), axis=1, initial=0.0)
             none = np.zeros((count, len(form.node_constraints)))
-            found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= missed)
-        broken = self._broken(found.variables, moves, data)
-        kept = (found.violation <= missed) & np.isfinite(found.phi[:, k]) & (broken < 0) & possible
+            solved = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= missed)
+        broken = self._broken(solved.variables, moves, data)
+        kept = (solved.violation <= missed) & np.isfinite(solved.phi[:, k]) & (broken < 0) & possible
         kept[kept] &= self._allowed(combinations[kept], moves[kept])
-        return found, kept, broken
+        return solved, kept, broken
 
     def _shifts(self, moves: np.ndarray, start: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
         """Return by how much the rows of limits give way."""
@@ -184,13 +184,13 @@ class Resolver:
         rows = np.flatnonzero((moves >= 0) & (self.limit_of[moves] >= 0))
         if len(rows):
             limits, factors = self.limit_of[moves[rows]], self.factors[moves[rows]]
-            given = np.log(factors)
+            shift = np.log(factors)
             plain = ~self.logs[limits]
             if plain.any():
                 sizes, bounds = sides(self.form, np.clip(start, self.form.lower, self.form.upper), data)
                 with np.errstate(all="ignore"):
-                    given = np.where(plain, (factors - 1.0) * bounds[rows, limits] / sizes[rows, limits], given)
-            shifts[rows, limits] = self.directions[limits] * np.nan_to_num(given)
+                    shift = np.where(plain, (factors - 1.0) * bounds[rows, limits] / sizes[rows, limits], shift)
+            shifts[rows, limits] = self.directions[limits] * np.nan_to_num(shift)
         return shifts
 
     def _broken(self, points: np.ndarray, moves: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
@@ -224,9 +224,9 @@ class Resolver:
                 allowed[rows] = not move.refused and allowed_rows(model, every, data, int(rows.sum()))
         return allowed
 
-    def difference(self, own: int, other: int) -> str:
-        """Return in words what is other than in the own combination."""
-        mine, its = self.instance.combinations.describe(own), self.instance.combinations.describe(other)
+    def difference(self, reference: int, other: int) -> str:
+        """Differences of another combination from the reference, in words."""
+        mine, its = self.instance.combinations.describe(reference), self.instance.combinations.describe(other)
         words = [
             f"{slot} {mine[0][slot][0].designations[mine[0][slot][1]]} -> {table.designations[row]}"
             for slot, (table, row) in its[0].items()

@@ -38,7 +38,7 @@ from synth.studies.prices.price_list import (
     Price,
     Prices,
     PriceStore,
-    report_progress,
+    price_sentence,
 )
 from synth.studies.prices.resolve import Move, Resolver
 from synth.studies.settings import PRICES, PriceLimits
@@ -95,10 +95,10 @@ def prices(
     share = read_step(step)
     instance = question_of(front, problem, catalogs)
     digest = front.result_digest
-    own = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().whole])
+    key = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().combined])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
-        store = PriceStore.of(place, own, str(digest))
+        store = PriceStore.of(place, key, str(digest))
         return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
@@ -118,7 +118,7 @@ def read_step(step: Any) -> float:
 
 
 def chosen_designs(front: ParetoFront, design: Any) -> list[Design]:
-    """Return the designs of a front that are asked for by rank; all where none is named.
+    """Requested designs of a front by rank; all where none is named.
 
     Raises
     ------
@@ -128,13 +128,13 @@ def chosen_designs(front: ParetoFront, design: Any) -> list[Design]:
     if not front.designs:
         raise InputError("front", "no designs", "a front with designs")
     ranks = {d.rank: d for d in front.designs}
-    asked = list(ranks) if design is None else list(design) if isinstance(design, (list, tuple)) else [design]
-    for rank in asked:
+    requested = list(ranks) if design is None else list(design) if isinstance(design, (list, tuple)) else [design]
+    for rank in requested:
         if isinstance(rank, bool) or not isinstance(rank, (int, np.integer)) or rank not in ranks:
             raise InputError("design", rank, f"a rank from 1 to {len(front.designs)}", ("design",))
-    if not asked:
-        raise InputError("design", asked, f"at least one rank from 1 to {len(front.designs)}", ("design",))
-    return [ranks[rank] for rank in dict.fromkeys(asked)]
+    if not requested:
+        raise InputError("design", requested, f"at least one rank from 1 to {len(front.designs)}", ("design",))
+    return [ranks[rank] for rank in dict.fromkeys(requested)]
 
 
 @dataclass(frozen=True)
@@ -190,9 +190,9 @@ class _Pricing:
             "kept": kept,
             "seconds": time.monotonic() - self.started,
         }
-        asked, makeable = tuple(int(d.rank or 0) for d in designs), bool(self.again.form.gridded.any())
+        ranks, makeable = tuple(int(d.rank or 0) for d in designs), bool(self.again.form.gridded.any())
         return Prices(
-            self.frame, asked, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted, store.front
+            self.frame, ranks, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted, store.front
         )
 
     def _say(self, number: int, of: int, share: float) -> None:
@@ -210,15 +210,15 @@ class _Pricing:
 
     def _design(self, design: Design, number: int, of: int) -> list[Price]:
         again, form = self.again, self.again.form
-        own = self.instance.combinations.number(design)
+        combination = self.instance.combinations.number(design)
         point = np.array([[design.values[v.name] for v in self.instance.model.variables]]).reshape(1, form.n)
-        _, phi = form.points.feasible_rows(point, np.array([own]))
-        others = again.others(own)
+        _, phi = form.points.feasible_rows(point, np.array([combination]))
+        others = again.others(combination)
         rows: list[Price] = []
         for k in range(again.m):
             self._say(number, of, k / again.m)
-            best = optima(form, np.array([own]), point, phi, again.m, k)
-            rows += _Case(again, design, own, phi[0], k, best, others).rows()
+            best = optima(form, np.array([combination]), point, phi, again.m, k)
+            rows += _Case(again, design, combination, phi[0], k, best, others).rows()
         return rows
 
 
@@ -226,9 +226,9 @@ class _Case:
     """The prices in one objective of one design."""
 
     def __init__(
-        self, again: Resolver, design: Design, own: int, phi: np.ndarray, k: int, best: Optima, others: np.ndarray
+        self, again: Resolver, design: Design, chosen: int, phi: np.ndarray, k: int, best: Optima, others: np.ndarray
     ) -> None:
-        self.again, self.design, self.own, self.phi, self.k, self.best = again, design, own, phi, k, best
+        self.again, self.design, self.chosen, self.phi, self.k, self.best = (again, design, chosen, phi, k, best)
         form = again.form
         self.goal = form.goals[k]
         self.objective = form.names[k]
@@ -250,38 +250,38 @@ class _Case:
             why = f"{self.objective} is 0 here: there is no per cent of it"
         if why:
             return [self._withheld(up, why) for up in self.again.moves[: self.again.count : 2]]
-        own = self._own()
-        better = self._elsewhere(own)
+        held = self._with_parts_held()
+        better = self._elsewhere(held)
         if self.already:
             self.compared += f"; {self._ahead()}"
-        return [self._row(number, own, better) for number in range(0, self.again.count, 2)]
+        return [self._row(number, held, better) for number in range(0, self.again.count, 2)]
 
     # -- re-solves -----------------------------------------------------------------------------
 
-    def _own(self) -> tuple[Solutions, np.ndarray, np.ndarray]:
+    def _with_parts_held(self) -> tuple[Solutions, np.ndarray, np.ndarray]:
         """Solve again with the parts of the design, each thing moved."""
         count = len(self.again.moves)
         start = np.repeat(self.best.variables, count, axis=0)
-        return self.again.solved(np.full(count, self.own), start, np.arange(count), self.phi, self.k)
+        return self.again.solved(np.full(count, self.chosen), start, np.arange(count), self.phi, self.k)
 
-    def _elsewhere(self, own: tuple[Solutions, np.ndarray, np.ndarray]) -> list[tuple[float, int] | None]:
+    def _elsewhere(self, held: tuple[Solutions, np.ndarray, np.ndarray]) -> list[tuple[float, int] | None]:
         """Return, per move, how good the best of the other parts become there, if they overtake; and which."""
         best: list[tuple[float, int] | None] = [None] * self.again.count
         if self.again.instance.combinations.count == 1:
             self.compared = "no other parts are offered"
         if not len(self.others):
             return best
-        reached = self._reached(own, *self._still())
+        reached = self._reached(held, *self._still())
         for number in range(self.again.count):
             c = int(np.argmin(reached[:, number]))
             if reached[c, number] == np.inf:
                 continue
-            room = np.inf
-            if own[1][number]:
-                mine = float(own[0].phi[number, self.k])
-                room = (mine - reached[c, number]) * self.unit / self.again.step
-                room -= self.again.limits.share * abs(self._price(mine, number)) + self.again.limits.room
-            if room > 0:
+            gain = np.inf
+            if held[1][number]:
+                mine = float(held[0].phi[number, self.k])
+                gain = (mine - reached[c, number]) * self.unit / self.again.step
+                gain -= self.again.limits.share * abs(self._price(mine, number)) + self.again.limits.slack
+            if gain > 0:
                 best[number] = float(reached[c, number]), int(self.others[c])
         return best
 
@@ -289,21 +289,21 @@ class _Case:
         """Results of :meth:`_without_a_step` for other parts, and for more that are like the best of them."""
         total = self.again.instance.combinations.count
         values, start, near = self._without_a_step(self.others)
-        whole, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]
-        if not whole:
-            further = self.again.beside(self.others[parents[near[parents]]], np.append(self.others, self.own))
+        every, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]
+        if not every:
+            further = self.again.around(self.others[parents[near[parents]]], np.append(self.others, self.chosen))
             more = self._without_a_step(further)
             values, start, near = (np.concatenate(pair) for pair in zip((values, start, near), more, strict=True))
             self.others = np.concatenate([self.others, further])
         self.compared = (
             f"over all {total} combinations tried"
-            if whole
+            if every
             else f"over the {len(self.others) + 1} combinations tried, of {total}"
         )
         return values, start, near
 
     def _reached(
-        self, own: tuple[Solutions, np.ndarray, np.ndarray], values: np.ndarray, start: np.ndarray, near: np.ndarray
+        self, held: tuple[Solutions, np.ndarray, np.ndarray], values: np.ndarray, start: np.ndarray, near: np.ndarray
     ) -> np.ndarray:
         """Gain by other parts per move (parts, moves); infinite where they are not worth a look.
 
@@ -311,11 +311,11 @@ class _Case:
         """
         # Where a step leaves nothing of these parts, others may be far worse and still the best.
         refused = np.array([bool(m.refused) for m in self.again.moves])
-        tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
+        tried = near[:, None] | (~held[1] & ~refused)[None, : self.again.count]
         rows, moves = np.nonzero(tried)
-        found, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
+        solutions, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
         reached = np.full(tried.shape, np.inf)
-        reached[rows[kept], moves[kept]] = found.phi[kept, self.k]
+        reached[rows[kept], moves[kept]] = solutions.phi[kept, self.k]
         ahead = (values - self.base) * self.unit < -self.again.limits.even
         self.already = {int(self.others[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
         reached[ahead] = np.inf
@@ -326,8 +326,8 @@ class _Case:
         form, k, count = self.again.form, self.k, len(others)
         still = np.full(count, -1)
         start = np.repeat(self.best.variables, count, axis=0)
-        found, kept, _ = self.again.solved(others, start, still, self.phi, k)
-        values, start = np.where(kept, found.phi[:, k], np.inf), found.variables.copy()
+        solutions, kept, _ = self.again.solved(others, start, still, self.phi, k)
+        values, start = np.where(kept, solutions.phi[:, k], np.inf), solutions.variables.copy()
         reach = self.again.step * self.again.limits.reach / self.unit
         near = values - self.base <= reach
         lost = np.flatnonzero(~kept)
@@ -375,11 +375,11 @@ class _Case:
         else:
             slopes = self.best.limits if move.kind == "limit" else self.best.requirements
             slope = float(slopes[0, move.position])
-        found = self.goal.sign * slope * self.unit
-        return found if math.isnan(found) or abs(found) > self.noise else 0.0
+        price = self.goal.sign * slope * self.unit
+        return price if math.isnan(price) or abs(price) > self.noise else 0.0
 
     def _row(
-        self, number: int, own: tuple[Solutions, np.ndarray, np.ndarray], better: list[tuple[float, int] | None]
+        self, number: int, held: tuple[Solutions, np.ndarray, np.ndarray], better: list[tuple[float, int] | None]
     ) -> Price:
         move = self.again.moves[number]
         missing = self._no_per_cent(move)
@@ -387,7 +387,7 @@ class _Case:
             return self._withheld(move, missing)
         slope = self._slope(move)
         slope = 0.0 if math.isnan(slope) else slope  # void: the limit says nothing of these parts
-        up, down = (self._side(n, slope, own, better[n]) for n in (number, number + 1))
+        up, down = (self._side(n, slope, held, better[n]) for n in (number, number + 1))
         changed = bool(up.change or down.change)
         if up.price is None and down.price is None:
             status = WITHHELD
@@ -405,7 +405,7 @@ class _Case:
             else [f"{side}wards {x.reason}" for side, x in (("up", up), ("down", down)) if x.reason]
         )
         shares = (up.share, down.share)
-        return self._told(
+        return self._priced(
             move,
             slope,
             up.price,
@@ -424,7 +424,7 @@ class _Case:
             limit = self.again.ranges[move.position][1].bound
             return "" if limit else f"the limit {move.name} is 0: there is no per cent of it"
         void = bool(
-            void_limits(self.again.form.constraints, self.again.instance.data(np.array([self.own])), 1)[
+            void_limits(self.again.form.constraints, self.again.instance.data(np.array([self.chosen])), 1)[
                 0, move.position
             ]
         )
@@ -436,7 +436,7 @@ class _Case:
         self,
         number: int,
         slope: float,
-        own: tuple[Solutions, np.ndarray, np.ndarray],
+        held: tuple[Solutions, np.ndarray, np.ndarray],
         better: tuple[float, int] | None,
     ) -> _Side:
         move = self.again.moves[number]
@@ -445,56 +445,56 @@ class _Case:
             return _Side(None, f"{way} {move.refused}")
         if better is not None:
             reached, other = better
-            parts = self.again.difference(self.own, other)
-            kept = bool(own[1][number])
+            parts = self.again.difference(self.chosen, other)
+            kept = bool(held[1][number])
             why = "other parts become better" if kept else f"with {way} these parts cannot keep all limits, others can"
             return _Side(self._jump(reached, number), f"{why}: {parts}", parts)
-        why = self._trouble(number, slope, own)
+        why = self._trouble(number, slope, held)
         if not why:
             return _Side(slope)
         fine = number + self.again.count
-        again = self._trouble(fine, slope, own)
+        again = self._trouble(fine, slope, held)
         if not again:
             return _Side(
                 slope,
                 f"holds for {percent(self.again.limits.fine * self.again.step)}; {why}",
                 share=self.again.limits.fine,
             )
-        told = f"the multipliers say {number_text(slope, 3)}, but " if own[1][number] else ""
-        return _Side(None, f"{told}{why}" if again == why else f"{told}{why}, {again}")
+        prefix = f"the multipliers say {number_text(slope, 3)}, but " if held[1][number] else ""
+        return _Side(None, f"{prefix}{why}" if again == why else f"{prefix}{why}, {again}")
 
     def _way(self, move: Move) -> str:
         return more_or_less(abs(move.factor - 1.0), move.factor > 1)
 
-    def _trouble(self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray]) -> str:
+    def _trouble(self, number: int, slope: float, held: tuple[Solutions, np.ndarray, np.ndarray]) -> str:
         """Reason why solving again with the parts of the design does not confirm a price; empty where it does."""
-        found, kept, broken = own
+        solutions, kept, broken = held
         way = self._way(self.again.moves[number])
         if not kept[number] and broken[number] >= 0:
             return f"{way} breaks {self.again.limit_names[broken[number]]}, which no size of these parts can restore"
         if not kept[number]:
             others = " and the other objectives" if self.again.m > 1 else ""
             return f"with {way} no design of these parts was found that keeps all limits{others}"
-        if not bool(found.converged[number]):
+        if not bool(solutions.converged[number]):
             return f"with {way} the solver does not confirm the optimum"
-        again = self._price(float(found.phi[number, self.k]), number)
+        again = self._price(float(solutions.phi[number, self.k]), number)
         if self._agree(again, slope):
             return ""
-        return f"solving again with {way} gives {number_text(again, 3)}{self._what_binds(found, number)}"
+        return f"solving again with {way} gives {number_text(again, 3)}{self._what_binds(solutions, number)}"
 
     def _agree(self, again: float, slope: float) -> bool:
         limits = self.again.limits
-        return abs(again - slope) <= limits.share * max(abs(again), abs(slope)) + limits.room
+        return abs(again - slope) <= limits.share * max(abs(again), abs(slope)) + limits.slack
 
-    def _what_binds(self, found: Solutions, number: int) -> str:
+    def _what_binds(self, solutions: Solutions, number: int) -> str:
         """Limits that begin or end to bind on the way, as the reasons of a bend."""
-        before, after = self.best.multipliers[0], found.constraint_multipliers[number]
+        before, after = self.best.multipliers[0], solutions.constraint_multipliers[number]
         names = self.again.limit_names
         binds = self.again.limits.binds
         begins = [names[j] for j in np.flatnonzero((np.abs(after) > binds) & (np.abs(before) <= binds))]
         ends = [names[j] for j in np.flatnonzero((np.abs(before) > binds) & (np.abs(after) <= binds))]
         form = self.again.form
-        old, new = (self._at_end(form, x) for x in (self.best.variables[0], found.variables[number]))
+        old, new = (self._at_end(form, x) for x in (self.best.variables[0], solutions.variables[number]))
         begins += [f"the range of {form.model.variables[j].name}" for j in sorted(new - old)]
         ends += [f"the range of {form.model.variables[j].name}" for j in sorted(old - new)]
         words = [f"{' and '.join(begins)} begin{'s' if len(begins) == 1 else ''} to bind"] if begins else []
@@ -510,7 +510,7 @@ class _Case:
     def _ahead(self) -> str:
         """Return in words which parts would be better without any step, were sizes continuous."""
         other = max(self.already, key=lambda c: self.already[c])
-        parts, share = self.again.difference(self.own, other), percent(self.already[other])
+        parts, share = self.again.difference(self.chosen, other), percent(self.already[other])
         more = f" (and {len(self.already) - 1} more)" if len(self.already) > 1 else ""
         within = (
             "with sizes that need not be makeable" if self.again.form.gridded.any() else "within the gap of the front"
@@ -520,9 +520,9 @@ class _Case:
     # -- rows ----------------------------------------------------------------------------------
 
     def _withheld(self, move: Move, why: str) -> Price:
-        return self._told(move, None, None, None, WITHHELD, why, ("", ""))
+        return self._priced(move, None, None, None, WITHHELD, why, ("", ""))
 
-    def _told(
+    def _priced(
         self,
         move: Move,
         slope: float | None,
@@ -538,7 +538,7 @@ class _Case:
         if move.kind == "requirement" and self.again.instance.model.declaration.requirements[move.name].unit == "degC":
             shown = f"{move.name} (in kelvin)"
         steps = (shares[0] * self.again.step, shares[1] * self.again.step)
-        sentence = report_progress(shown, kind, self.objective, sense, steps, up, down, changes)
+        sentence = price_sentence(shown, kind, self.objective, sense, steps, up, down, changes)
         compared = self.compared if status != WITHHELD else ""
         return Price(
             int(self.design.rank or 0),

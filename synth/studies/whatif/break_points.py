@@ -31,7 +31,7 @@ UNPROVEN = "the search on one side did not finish"
 NOT_ROBUST = "the design on one side is not shown to keep all limits over the whole range"
 INTERRUPTED = "interrupted"
 
-Left = Callable[[], float | None]
+Remaining = Callable[[], float | None]
 Shown = Callable[[Mapping[str, Any]], None] | None
 
 
@@ -49,9 +49,9 @@ def find_breaks(
     steps: Steps,
     along: int,
     answered: Sequence[StudyStep],
-    found: list[Break],
+    collected: list[Break],
     kept: Kept,
-    left: Left,
+    remaining: Remaining,
     shown: Shown,
     limits: BreakLimits = BREAKS,
 ) -> None:
@@ -64,30 +64,30 @@ def find_breaks(
         The position of the number that is varied.
     answered : list of StudyStep
         All steps, answered.
-    found : list of Break
+    collected : list of Break
         Filled as breaks are found, some intervals at a time, so that they stay where time is over.
     kept : Kept
-    left : callable
-        Returns the seconds left; raises Stopped.
+    remaining : callable
+        Returns the remaining seconds; raises Stopped.
     shown : callable, optional
         Progress.
     limits : BreakLimits
     """
     pairs = [(a, b) for a, b in neighbours(along, answered) if a.front is not None and b.front is not None]
     for first in range(0, len(pairs), limits.at_once):
-        some = pairs[first : first + limits.at_once]
-        left()
+        batch = pairs[first : first + limits.at_once]
+        remaining()
         if shown is not None:
-            says = f"{steps.stated(some[0][0].values)} to {steps.stated(some[-1][1].values)}"
-            shown({"stage": says, "done": first / len(pairs)})
-        known = [kept.value(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}") for a, b in some]
+            stage = f"{steps.text(batch[0][0].values)} to {steps.text(batch[-1][1].values)}"
+            shown({"stage": stage, "done": first / len(pairs)})
+        known = [kept.value(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}") for a, b in batch]
         if all(entries is not None for entries in known):
-            found += [_read(entry) for entries in known for entry in entries]
+            collected += [_read(entry) for entries in known for entry in entries]
             continue
-        own = _Oracle(steps, along, left, limits).breaks(some)
-        for (a, b), breaks in zip(some, own, strict=True):
+        batch_breaks = _Oracle(steps, along, remaining, limits).breaks(batch)
+        for (a, b), breaks in zip(batch, batch_breaks, strict=True):
             kept.keep(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}", [asdict(x) for x in breaks])
-            found += breaks
+            collected += breaks
 
 
 def neighbours(along: int, answered: Sequence[StudyStep]) -> list[tuple[StudyStep, StudyStep]]:
@@ -127,24 +127,24 @@ class _Best:
 
 
 @dataclass(frozen=True)
-class _Wanted:
-    """The best design in one objective at some values: over all parts, or with those of one design alone."""
+class _Query:
+    """The best design in one objective at some values: over all parts, or with the parts of one design."""
 
     objective: str
     values: tuple[Value, ...]
-    alone: str = ""  # what the one design is made of, in words
+    composition: str = ""  # what the one design is made of, in words
     hint: bool = False  # a good design will do, as it only tells where to look
 
 
 class _Oracle:
-    """Answers what is wanted to know of best designs, for many intervals at a time."""
+    """Answers queries for best designs, for many intervals at a time."""
 
-    def __init__(self, steps: Steps, along: int, left: Left, limits: BreakLimits) -> None:
+    def __init__(self, steps: Steps, along: int, remaining: Remaining, limits: BreakLimits) -> None:
         self.limits = limits
-        self.steps, self.along, self.left = steps, along, left
+        self.steps, self.along, self.remaining = steps, along, remaining
         self.senses: dict[str, str] = {}
-        self.known: dict[_Wanted, _Best] = {}
-        self.made: dict[str, Design] = {}  # a design of each composition asked about alone
+        self.known: dict[_Query, _Best] = {}
+        self.made: dict[str, Design] = {}  # a design of each composition of a query
         self.places: Iterable[tuple[Value, ...]] = ()  # the values at the steps
         self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
         self.moving = different([q.instance for q in steps.questions])
@@ -152,46 +152,46 @@ class _Oracle:
 
     def breaks(self, pairs: Sequence[tuple[StudyStep, StudyStep]]) -> list[list[Break]]:
         """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
-        found: list[list[Break]] = [[] for _ in pairs]
+        by_pair: list[list[Break]] = [[] for _ in pairs]
         self.places = dict.fromkeys(step.values for pair in pairs for step in pair)
         for a, b in pairs:
             self.senses |= _objectives(a.front, b.front)
         under_way = []
-        for (a, b), own in zip(pairs, found, strict=True):
+        for (a, b), pair_breaks in zip(pairs, by_pair, strict=True):
             for objective in _objectives(a.front, b.front):
                 for step in (a, b):
                     design = best_design(step.front, objective)
                     if design is not None:
                         self.ideas.setdefault(objective, {}).setdefault(_words(design), design)
-                under_way.append(_Between(self, objective, a, b).search(own))
-        wanted = [next(search, None) for search in under_way]
-        while any(w is not None for w in wanted):
-            self._answer(dict.fromkeys(w for some in wanted for w in some or ()))
-            wanted = [None if w is None else next(search, None) for search, w in zip(under_way, wanted, strict=True)]
+                under_way.append(_Between(self, objective, a, b).search(pair_breaks))
+        queries = [next(search, None) for search in under_way]
+        while any(w is not None for w in queries):
+            self._answer(dict.fromkeys(w for batch in queries for w in batch or ()))
+            queries = [None if w is None else next(search, None) for search, w in zip(under_way, queries, strict=True)]
         order = list(self.senses)
-        return [sorted(own, key=lambda b: order.index(b.objective)) for own in found]
+        return [sorted(pair_breaks, key=lambda b: order.index(b.objective)) for pair_breaks in by_pair]
 
-    def _answer(self, wanted: Iterable[_Wanted]) -> None:
+    def _answer(self, queries: Iterable[_Query]) -> None:
         """Search what is not known yet; what is alike is searched together."""
-        new = [w for w in wanted if w not in self.known]
-        posed: dict[tuple[str, tuple[Value, ...]], Question] = {}
+        new = [w for w in queries if w not in self.known]
+        by_place: dict[tuple[str, tuple[Value, ...]], Question] = {}
         for w in new:
             place = w.objective, w.values
             try:
-                posed[place] = posed.get(place) or self._question(w)
+                by_place[place] = by_place.get(place) or self._question(w)
             except InputError:
                 self.known[w] = _Best(None, True)  # refused: the family says that there is no such design
-        places = list(posed)
-        for group in groups_of(list(posed.values()), least=1):
+        places = list(by_place)
+        for group in groups_of(list(by_place.values()), least=1):
             position = {places[k]: number for number, k in enumerate(group)}
-            own = [w for w in new if (w.objective, w.values) in position]
-            ideas = list(self.ideas.get(own[0].objective, {}).values())
-            questions = [posed[places[k]] for k in group]
-            search = JointSearch(questions, None, self.left(), ideas, self._shared_bounds(questions[0]))
-            self._together(search, own, [position[w.objective, w.values] for w in own])
+            grouped = [w for w in new if (w.objective, w.values) in position]
+            ideas = list(self.ideas.get(grouped[0].objective, {}).values())
+            questions = [by_place[places[k]] for k in group]
+            search = JointSearch(questions, None, self.remaining(), ideas, self._shared_bounds(questions[0]))
+            self._together(search, grouped, [position[w.objective, w.values] for w in grouped])
         for w in new:
             if w not in self.known:
-                front = self._alone(w)
+                front = self._searched_singly(w)
                 proven = front is None or front.certificate.kind == "global"
                 self._take(w, _Best(best_design(front, w.objective), proven))
 
@@ -208,53 +208,53 @@ class _Oracle:
         for values in self.places:
             # What the family refuses has no design.
             with suppress(InputError):
-                yield self._question(_Wanted(objective, values))
+                yield self._question(_Query(objective, values))
 
-    def _together(self, search: JointSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
+    def _together(self, search: JointSearch, queries: Sequence[_Query], positions: Sequence[int]) -> None:
         """Take what can be answered together."""
-        best = [(w, k) for w, k in zip(wanted, positions, strict=True) if not w.alone]
+        best = [(w, k) for w, k in zip(queries, positions, strict=True) if not w.composition]
         if best:
             for (w, _), (design, proven) in zip(best, search.best([k for _, k in best]), strict=True):
                 if proven:
                     self._take(w, _Best(design, True))
-        alone = [(w, k) for w, k in zip(wanted, positions, strict=True) if w.alone]
+        fixed = [(w, k) for w, k in zip(queries, positions, strict=True) if w.composition]
         for (w, _), (design, proven) in zip(
-            alone, search.best_with([(k, self.made[w.alone]) for w, k in alone]), strict=True
+            fixed, search.best_with([(k, self.made[w.composition]) for w, k in fixed]), strict=True
         ):
             if proven or (w.hint and design is not None):
                 self.known[w] = _Best(design, proven)
 
-    def _question(self, w: _Wanted, alone: bool = False) -> Question:
+    def _question(self, w: _Query, fixed: bool = False) -> Question:
         slots, pins = dict[str, list[str]](), dict[str, Any]()
-        if alone and w.alone:
-            made = Composition.of(self.made[w.alone], w.objective)
+        if fixed and w.composition:
+            made = Composition.of(self.made[w.composition], w.objective)
             slots, pins = {slot: [word] for slot, word in made.parts.items()}, {**made.counts, **made.choices}
         return self.steps.one_best(w.values, {w.objective: self.senses[w.objective]}, self.limits.gap, slots, pins)
 
-    def _alone(self, w: _Wanted) -> ParetoFront | None:
-        """Search what cannot be answered together with other things; None where the family refuses it."""
-        left = self.left()
+    def _searched_singly(self, w: _Query) -> ParetoFront | None:
+        """Front of a query that has no joint answer; None where the family refuses it."""
+        remaining = self.remaining()
         longest = self.limits.seconds
-        seconds = longest if left is None else min(longest, left)
+        seconds = longest if remaining is None else min(longest, remaining)
         ideas = list(self.ideas.get(w.objective, {}).values())
         try:
-            question = self._question(w, alone=True)
+            question = self._question(w, fixed=True)
         except InputError:
             return None
         front = question.within(seconds).answer(None, ideas, explained=False)
         if front.interrupted == INTERRUPTED:
             raise Stopped(front.interrupted)
         if front.interrupted:
-            self.left()
+            self.remaining()
         return front
 
-    def _take(self, w: _Wanted, best: _Best) -> None:
+    def _take(self, w: _Query, best: _Best) -> None:
         self.known[w] = best
-        if best.design is not None and not w.alone:
+        if best.design is not None and not w.composition:
             self.ideas.setdefault(w.objective, {}).setdefault(_words(best.design), best.design)
 
 
-Asking = Generator[list[_Wanted], None, Any]  # a search that yields what it wants to know
+Asking = Generator[list[_Query], None, Any]  # a search that yields its queries
 
 
 class _Between:
@@ -265,13 +265,13 @@ class _Between:
         self.sign = 1.0 if oracle.senses[objective] == "min" else -1.0
         self.low, self.high = (float(s.values[oracle.along]) for s in (one, two))  # type: ignore[arg-type]
 
-    def search(self, found: list[Break]) -> Generator[list[_Wanted], None, None]:
+    def search(self, breaks: list[Break]) -> Generator[list[_Query], None, None]:
         """Find the breaks from the lower to the upper step."""
-        yield [self._wanted(self.low), self._wanted(self.high)]
+        yield [self._query(self.low), self._query(self.high)]
         place, holder, count = self.low, self._best(self.low).design, 0
         while not (yield from self._holds(holder, self.high)):
             if count == self.oracle.limits.most:
-                found[-1] = replace(found[-1], remark=f"more changes follow up to {typed_number(self.high)}")
+                breaks[-1] = replace(breaks[-1], remark=f"more changes follow up to {typed_number(self.high)}")
                 return
             low, high = yield from self._break(holder, place)
             before, after = yield from self._sides(holder, low, high)
@@ -285,13 +285,13 @@ class _Between:
                 proven, remark = False, NOT_ROBUST
             old, new = (None if d is None else Composition.of(d, self.objective) for d in (before, after))
             others = other_values(self.one, self.oracle.along)
-            found.append(Break(self.objective, others, low, high, old, new, proven, remark))
+            breaks.append(Break(self.objective, others, low, high, old, new, proven, remark))
             place, holder, count = high, after, count + 1
 
     def _break(self, holder: Design | None, low: float) -> Asking:
         """Return a narrow range at whose lower end a holder still holds, and at whose upper end it does not.
 
-        Where it lies is first told by what holder and rival can do alone; only its ends are searched over everything.
+        The parts of holder and rival locate it first; only its ends are searched over all parts.
         """
         high, rival, guesses = self.high, self._best(self.high).design, 0
         while high - low > self._narrow(low, high):
@@ -300,7 +300,7 @@ class _Between:
                 guesses += 1
             else:
                 first = last = 0.5 * (low + high)
-            yield [self._wanted(first), self._wanted(last)]
+            yield [self._query(first), self._query(last)]
             if first > low and not (yield from self._holds(holder, first)):
                 high, rival = first, self._best(first).design
             elif last < high and (yield from self._holds(holder, last)):
@@ -318,8 +318,8 @@ class _Between:
         while high - low > self._narrow(low, high):
             parts = self.oracle.limits.parts
             inner = [low + (high - low) * k / parts for k in range(1, parts)]
-            yield [self._wanted(x, d, hint=True) for x in inner for d in (holder, rival) if d is not None]
-            beaten = [self._beats(self._own(rival, x, True), self._own(holder, x, True)) for x in inner]
+            yield [self._query(x, d, hint=True) for x in inner for d in (holder, rival) if d is not None]
+            beaten = [self._beats(self._with(rival, x, True), self._with(holder, x, True)) for x in inner]
             k = beaten.index(True) if True in beaten else len(inner)
             low, high = [low, *inner][k], [*inner, high][k]
         return low, high
@@ -328,26 +328,26 @@ class _Between:
         """Return the designs on both sides of a break."""
         before = self._best(low).design
         if holder is not None and (before is None or _words(before) != _words(holder)):
-            yield [self._wanted(low, holder)]
-            before = self._own(holder, low)
+            yield [self._query(low, holder)]
+            before = self._with(holder, low)
         return (before if holder is not None else None), self._best(high).design
 
-    def _wanted(self, value: float, alone: Design | None = None, hint: bool = False) -> _Wanted:
+    def _query(self, value: float, design: Design | None = None, hint: bool = False) -> _Query:
         along, words = self.oracle.along, ""
-        if alone is not None:
-            words = _words(alone)
-            self.oracle.made.setdefault(words, alone)
+        if design is not None:
+            words = _words(design)
+            self.oracle.made.setdefault(words, design)
         values = tuple(value if k == along else v for k, v in enumerate(self.one.values))
-        return _Wanted(self.objective, values, words, hint)
+        return _Query(self.objective, values, words, hint)
 
     def _stands(self, design: Design | None, value: float) -> bool:
-        return design is None or self.oracle.steps.stands(self._wanted(value).values, design)
+        return design is None or self.oracle.steps.stands(self._query(value).values, design)
 
     def _best(self, value: float) -> _Best:
-        return self.oracle.known[self._wanted(value)]
+        return self.oracle.known[self._query(value)]
 
-    def _own(self, design: Design | None, value: float, hint: bool = False) -> Design | None:
-        return None if design is None else self.oracle.known[self._wanted(value, design, hint)].design
+    def _with(self, design: Design | None, value: float, hint: bool = False) -> Design | None:
+        return None if design is None else self.oracle.known[self._query(value, design, hint)].design
 
     def _beats(self, one: Design | None, other: Design | None) -> bool:
         """True if a design is better than another by more than counts as equal; none is worse than any."""
@@ -358,15 +358,15 @@ class _Between:
 
     def _holds(self, holder: Design | None, value: float) -> Asking:
         """True if a design's parts are (still) the best at a value, or as good as the best."""
-        yield [self._wanted(value)]
+        yield [self._query(value)]
         best = self._best(value).design
         if holder is None or best is None:
             return holder is best
         if _words(best) == _words(holder):
             return True
-        yield [self._wanted(value, holder)]
-        own = self._own(holder, value)
-        return own is not None and not self._beats(best, own)
+        yield [self._query(value, holder)]
+        held = self._with(holder, value)
+        return held is not None and not self._beats(best, held)
 
 
 def _words(design: Design) -> str:

@@ -153,21 +153,21 @@ class _Run:
         self.folder = folder
         self.store = StudyStore(None)
         self.questions = steps.questions
-        asked = list(zip(self.questions, steps.raters, strict=True))
-        self.alone = [_fingerprint(question, rater) for question, rater in asked]
+        pairs = list(zip(self.questions, steps.raters, strict=True))
+        self.single = [_fingerprint(question, rater) for question, rater in pairs]
         weighted = any(x.kind == "weight" for x in steps.varied)
-        self.unweighted = [_fingerprint(q, r, weights=False) for q, r in asked] if weighted else self.alone
+        self.unweighted = [_fingerprint(q, r, weights=False) for q, r in pairs] if weighted else self.single
         self.answered: list[StudyStep] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
         self.fingerprints: list[str] = []
         self.stored: list[ParetoFront | None] = []  # answers of an earlier run, by position
-        self.ahead: dict[int, ParetoFront] = {}  # answers that were found together, by position
+        self.ahead: dict[int, ParetoFront] = {}  # answers of joint searches, by position
         self.kept = 0
         self.share_of_steps = 1.0
 
     def study(self, breaks: bool) -> Study:
         """Answer the steps, then find the breaks; what is finished when time is over is kept."""
-        stopped, found = "", list[Break]()
+        stopped, bends = "", list[Break]()
         self.share_of_steps = 0.5 if breaks else 1.0
         try:
             with until(self.deadline):
@@ -175,22 +175,22 @@ class _Run:
                 for position in range(len(self.steps)):
                     self.answered.append(self._answer(position))
                 if breaks:
-                    self._find_breaks(found)
+                    self._find_breaks(bends)
         except Stopped as stop:
             stopped = stop.reason
         except KeyboardInterrupt:
             stopped = INTERRUPTED
-        rest = [
+        unanswered = [
             StudyStep(k + 1, values, None, stopped=stopped)
             for k, values in enumerate(self.steps.values)
             if k >= len(self.answered)
         ]
-        statistics = {"steps": len(self.steps), "answered": len(self.answered), "kept": self.kept, "breaks": len(found)}
+        statistics = {"steps": len(self.steps), "answered": len(self.answered), "kept": self.kept, "breaks": len(bends)}
         seconds = {"seconds": time.monotonic() - self.started}
         return Study(
             tuple(self.steps.varied),
-            (*self.answered, *rest),
-            tuple(found),
+            (*self.answered, *unanswered),
+            tuple(bends),
             self._along(),
             stopped,
             {**statistics, **seconds},
@@ -200,62 +200,62 @@ class _Run:
     # -- steps ---------------------------------------------------------------------------------
 
     def _search_together(self) -> None:
-        """Answer steps that are alike at once, where any of them is not kept; what is left is searched step by step."""
+        """Answer steps that are alike jointly, where any of them is not kept; the others are searched one by one."""
         groups = joint_groups(self.questions)
         marks = dict[int, str]()
         for group in groups:
-            marks |= dict.fromkeys(group, joined([self.alone[k] for k in group]))
-        for position, alone in enumerate(self.alone):
+            marks |= dict.fromkeys(group, joined([self.single[k] for k in group]))
+        for position, fingerprint in enumerate(self.single):
             ideas = [self.fingerprints[k] for k in self._neighbours(position)]
             group_mark = [marks[position]] if position in marks else []
-            self.fingerprints.append(joined([alone, *ideas, *group_mark]))
+            self.fingerprints.append(joined([fingerprint, *ideas, *group_mark]))
         self.store = StudyStore.of(self.folder, self.fingerprints)
-        self.stored = [self.store.get(k + 1, own) for k, own in enumerate(self.fingerprints)]
+        self.stored = [self.store.get(k + 1, mark) for k, mark in enumerate(self.fingerprints)]
         for group in groups:
             missing = [k for k in group if self.stored[k] is None]
             if missing:
                 shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
-                answers = joint_answers([self.questions[k] for k in group], shown, self._left())
-                found = dict(zip(group, answers, strict=True))
-                self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
+                answers = joint_answers([self.questions[k] for k in group], shown, self._remaining())
+                fronts = dict(zip(group, answers, strict=True))
+                self.ahead |= {k: front for k in missing if (front := fronts[k]) is not None}
 
     def _answer(self, position: int) -> StudyStep:
         number, values, question = position + 1, self.steps.values[position], self.questions[position]
-        own, unweighted = self.fingerprints[position], self.unweighted[position]
+        fingerprint, unweighted = self.fingerprints[position], self.unweighted[position]
         front = self.stored[position]
         if front is not None:
             self.kept += 1
         else:
-            found, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
-            front = self._search(position, found) if known is None else _reranked(known, question)
+            joint_front, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
+            front = self._search(position, joint_front) if known is None else _reranked(known, question)
             record = front_record(front)
-            self.store.put(number, own, record)
+            self.store.put(number, fingerprint, record)
             # As it would be read again: a study that goes on is the same to the last digit.
             front = front_of_record(json.loads(json.dumps(record, allow_nan=False)), Path(RECORD))
-        front = replace(front, question=self._asked(position, front).instance, record=None, folder=None)
+        front = replace(front, question=self._answered_question(position, front).instance, record=None, folder=None)
         self.same_but_weights.setdefault(unweighted, front)
-        return StudyStep(number, values, front, own)
+        return StudyStep(number, values, front, fingerprint)
 
     def _search(self, position: int, front: ParetoFront | None) -> ParetoFront:
         """Return the front of a step; ``front`` is that found together with others, not rated yet."""
         question, rater = self.questions[position], self.steps.raters[position]
         before = [self.answered[k] for k in self._neighbours(position)]
         known = [d for s in before if s.front is not None for d in s.front.designs]
-        says = f"step {position + 1} of {len(self.steps)}, {self.steps.stated(self.steps.values[position])}"
+        stage = f"step {position + 1} of {len(self.steps)}, {self.steps.text(self.steps.values[position])}"
         share = self.share_of_steps / len(self.steps)
-        shown = self._shown(says, position * share, share)
+        shown = self._shown(stage, position * share, share)
         if rater is not None:
             front = robust_front(
-                lambda block: self.steps.question(position, block), rater, shown, self._left(), known, front
+                lambda block: self.steps.question(position, block), rater, shown, self._remaining(), known, front
             )
         elif front is None:
-            front = question.within(self._left()).answer(shown, known)
+            front = question.within(self._remaining()).answer(shown, known)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return front
 
-    def _asked(self, position: int, front: ParetoFront) -> Question:
-        """Return the question that the front of a step answers, with the limits that were posed on the way."""
+    def _answered_question(self, position: int, front: ParetoFront) -> Question:
+        """Question that the front of a step answers, with the limits added during its search."""
         block = front.settings.get("robust") or {}
         if not block.get("scenarios"):
             return self.questions[position]
@@ -265,31 +265,31 @@ class _Run:
 
     def _neighbours(self, position: int) -> list[int]:
         """Return the steps before one that differ in one place by one value: their designs are ideas for this one."""
-        found, stride = list[int](), 1
+        positions, stride = list[int](), 1
         for varied in reversed(self.steps.varied):
             if position // stride % len(varied.values):
-                found.append(position - stride)
+                positions.append(position - stride)
             stride *= len(varied.values)
-        return found[::-1]
+        return positions[::-1]
 
-    def _left(self) -> float | None:
-        """Return the seconds that are left, None where there is no limit."""
+    def _remaining(self) -> float | None:
+        """Remaining seconds, None where there is no limit."""
         if math.isinf(self.deadline):
             return None
-        left = self.deadline - time.monotonic()
-        if left <= 0:
+        remaining = self.deadline - time.monotonic()
+        if remaining <= 0:
             raise Stopped("time limit")
-        return left
+        return remaining
 
-    def _shown(self, says: str, begin: float, share: float) -> Progress | None:
+    def _shown(self, stage: str, begin: float, share: float) -> Progress | None:
         """Progress callback of one part, mapped to the study; ``begin`` and ``share`` of the whole."""
-        tell = self.progress
-        if tell is None:
+        report = self.progress
+        if report is None:
             return None
 
         def show(state: Mapping[str, Any]) -> None:
             done = begin + share * float(state.get("done") or 0.0)
-            tell({**state, "stage": f"{says}: {state.get('stage', '')}", "done": min(done, 1.0)})
+            report({**state, "stage": f"{stage}: {state.get('stage', '')}", "done": min(done, 1.0)})
 
         return show
 
@@ -299,20 +299,20 @@ class _Run:
         """Return the position of what breaks are sought along: the first that is a number."""
         return next((k for k, x in enumerate(self.steps.varied) if x.numeric), None)
 
-    def _find_breaks(self, found: list[Break]) -> None:
+    def _find_breaks(self, bends: list[Break]) -> None:
         along = self._along()
         if along is None:
             return
         if self.steps.varied[along].kind == "weight":
-            found += weight_breaks(self.steps, along, self.answered)
+            bends += weight_breaks(self.steps, along, self.answered)
             return
         find_breaks(
             self.steps,
             along,
             self.answered,
-            found,
+            bends,
             self.store,
-            self._left,
+            self._remaining,
             self._shown("break points", self.share_of_steps, 1.0 - self.share_of_steps),
         )
 
@@ -329,5 +329,5 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
     settings = {k: repr(v) for k, v in question.record().items() if weights or k != "weights"}
     robust = None if rater is None else rater.uncertainty.block()
     return hash_of(
-        [STUDY_FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust]
+        [STUDY_FORMAT, question.instance.fingerprint().combined, list(question.chosen.items()), settings, robust]
     )

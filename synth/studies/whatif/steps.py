@@ -28,20 +28,20 @@ from synth.studies.whatif.vary import Value, Varied, read_vary
 
 
 def at_value(request: Request, varied: Varied, value: Value) -> Request:
-    """Return a request with one thing at a value, which takes the place of what was said of it before."""
-    name, asked = varied.name, varied.asked(value)
+    """Request with one entry at a value, which replaces an earlier one."""
+    name, typed = varied.name, varied.spec_value(value)
     if varied.kind == "requirement":
-        return replace(request, requirements={**_without(request, request.requirements, name), name: asked})
+        return replace(request, requirements={**_without(request, request.requirements, name), name: typed})
     if varied.kind == "weight":
-        return replace(request, weights={**_without(request, request.weights, name), name: asked})
+        return replace(request, weights={**_without(request, request.weights, name), name: typed})
     if varied.kind == "part":
-        return replace(request, parts={**_without(request, request.parts, name), name: asked})
+        return replace(request, parts={**_without(request, request.parts, name), name: typed})
     if varied.kind == "option":
         return replace(request, problem=_with_option(request, name, str(value)))
     if varied.kind == "scatter":
         return replace(request, robust=_scattering(request, name, str(value)))
     kept = _other_limits(request, varied)
-    return replace(request, limits={**_without(request, request.limits, name), name: [*kept, f"{varied.sign} {asked}"]})
+    return replace(request, limits={**_without(request, request.limits, name), name: [*kept, f"{varied.sign} {typed}"]})
 
 
 def _rater_of(request: Request) -> Rater | None:
@@ -78,10 +78,10 @@ def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
     return read_remaining({**block, name: text})
 
 
-def _without(request: Request, given: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _without(request: Request, entries: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Values given by name or symbol, without one name."""
     spellings = _declared(request).names()
-    return {word: value for word, value in given.items() if spellings.get(str(word)) != name}
+    return {word: value for word, value in entries.items() if spellings.get(str(word)) != name}
 
 
 def _declared(request: Request) -> Declaration:
@@ -166,16 +166,16 @@ class Steps:
         self.request, self.settings, self.tuning = request, settings, tuning
         d = _declared(request)
         keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
-        given = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
-        model = request.problem.model(frozenset(n for n in given if n is not None), request.catalogs)
+        named = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
+        model = request.problem.model(frozenset(n for n in named if n is not None), request.catalogs)
         self.varied = read_vary(vary, model, list(chosen_objectives(model, request.objectives)))
-        whole = list(product(*(x.values for x in self.varied)))
-        self.values = whole if most is None else _spread(whole, most)
+        grid = list(product(*(x.values for x in self.varied)))
+        self.values = grid if most is None else _spread(grid, most)
         self._problems: dict[Value, DesignProblem] = {}
         self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}
         self._learned: dict[tuple[str, ...], Uncertainty] = {}
         self.raters: list[Rater | None] = []  # by step; None where nothing scatters
-        self.questions = self._posed()
+        self.questions = self._questions()
         self.combinations = max(q.instance.combinations.count for q in self.questions)  # of the largest step
 
     def __len__(self) -> int:
@@ -203,17 +203,17 @@ class Steps:
         pins : mapping
             Counts and choices -> the value that they must have.
         """
-        asked = replace(self._at(values), objectives=dict(objective), weights={})
+        request = replace(self._at(values), objectives=dict(objective), weights={})
         for slot, rows in slots.items():
-            asked = replace(asked, parts={**_without(asked, asked.parts, slot), slot: rows})
+            request = replace(request, parts={**_without(request, request.parts, slot), slot: rows})
         for name, value in pins.items():
-            asked = replace(asked, fix={**_without(asked, asked.fix, name), name: value})
-        return self._pose(self._with_learned(asked), replace(self.settings, points=1, gap=gap))
+            request = replace(request, fix={**_without(request, request.fix, name), name: value})
+        return self._pose(self._with_learned(request), replace(self.settings, points=1, gap=gap))
 
     def question(self, position: int, robust: Uncertainty) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""
-        asked = replace(self._at(self.values[position]), robust=robust)
-        return self._pose(asked, self.settings)
+        request = replace(self._at(self.values[position]), robust=robust)
+        return self._pose(request, self.settings)
 
     def learn(self, robust: Uncertainty) -> None:
         """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
@@ -225,41 +225,41 @@ class Steps:
         rater = _rater_of(self._at(values))
         return rater is None or rater.uncertainty.mode == RATE or bool(rater.one(design)["holds"])
 
-    def _with_learned(self, asked: Request) -> Request:
-        if asked.robust is None or asked.robust.names not in self._learned:
-            return asked
-        return replace(asked, robust=asked.robust.with_scenarios(self._learned[asked.robust.names].scenarios))
+    def _with_learned(self, request: Request) -> Request:
+        if request.robust is None or request.robust.names not in self._learned:
+            return request
+        return replace(request, robust=request.robust.with_scenarios(self._learned[request.robust.names].scenarios))
 
-    def _pose(self, asked: Request, settings: SearchSettings) -> Question:
+    def _pose(self, request: Request, settings: SearchSettings) -> Question:
         """Return a question; limits that are posed alike at several steps are traced once."""
-        key = asked.problem, repr((asked.robust, asked.limits))
+        key = request.problem, repr((request.robust, request.limits))
         if key not in self._with_limits:
-            self._with_limits[key] = robust_counterpart(asked.problem, asked.robust, asked.limits)
-        return pose(asked, settings.within(None), self._with_limits[key], self.tuning)
+            self._with_limits[key] = robust_counterpart(request.problem, request.robust, request.limits)
+        return pose(request, settings.within(None), self._with_limits[key], self.tuning)
 
-    def stated(self, values: Sequence[Value]) -> str:
+    def text(self, values: Sequence[Value]) -> str:
         """Return the values of a step for people."""
-        return ", ".join(x.stated(v) for x, v in zip(self.varied, values, strict=True))
+        return ", ".join(x.text(v) for x, v in zip(self.varied, values, strict=True))
 
     def _at(self, values: Sequence[Value]) -> Request:
-        asked = self.request
+        request = self.request
         for varied, value in zip(self.varied, values, strict=True):
             if varied.kind == "option":
                 # One problem per word, so that each is traced once.
                 if value not in self._problems:
-                    self._problems[value] = at_value(asked, varied, value).problem
-                asked = replace(asked, problem=self._problems[value])
+                    self._problems[value] = at_value(request, varied, value).problem
+                request = replace(request, problem=self._problems[value])
             else:
-                asked = at_value(asked, varied, value)
-        return asked
+                request = at_value(request, varied, value)
+        return request
 
-    def _posed(self) -> list[Question]:
+    def _questions(self) -> list[Question]:
         """Return the question of every step; what is wrong with all of them is no matter of the values."""
         questions, faults = list[Question](), dict[int, InputError]()
         for k, values in enumerate(self.values):
             try:
-                asked = self._at(values)
-                rater, question = _rater_of(asked), self._pose(asked, self.settings)
+                request = self._at(values)
+                rater, question = _rater_of(request), self._pose(request, self.settings)
                 if rater is not None:
                     check_rows(rater.quantities, question.instance.selection.slots)
                 questions.append(question)
@@ -272,5 +272,5 @@ class Steps:
         same = len({(e.path, e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
         if same and len(faults) == len(self.values) > 1:
             raise fault
-        where = f"vary, {self.stated(self.values[first])}: {fault.field}"
+        where = f"vary, {self.text(self.values[first])}: {fault.field}"
         raise InputError(where, fault.value, fault.expected, fault.path)

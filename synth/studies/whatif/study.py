@@ -64,22 +64,22 @@ class Study(StudyAnswers):
         """Show the study in a notebook: its steps, and where other parts become best."""
         columns, rows = steps_table(self)
         heads, breaks = breaks_table(self)
-        told = [
+        sentences = [
             f"{len(self.steps)} steps, {len(breaks)} break points",
             self.interrupted and f"stopped: {self.interrupted}",
         ]
-        steps = notebook_html("What-if study", told, columns, rows, "open" if self.interrupted else "")
+        steps = notebook_html("What-if study", sentences, columns, rows, "open" if self.interrupted else "")
         return steps + (notebook_html("Break points", (), heads, breaks) if breaks else "")
 
     # -- files ---------------------------------------------------------------------------------
 
     def files(self) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text."""
-        found = {"whatif.csv": csv_text(*steps_table(self)), "breaks.csv": csv_text(*breaks_table(self))}
+        files = {"whatif.csv": csv_text(*steps_table(self)), "breaks.csv": csv_text(*breaks_table(self))}
         draw = report("figure")
         if draw is not None and self.feasible:
-            found |= {f"{key}.svg": draw(frame) for key, frame in self.curves().items()}
-        return found
+            files |= {f"{key}.svg": draw(frame) for key, frame in self.curves().items()}
+        return files
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
         """Write whatif.csv, breaks.csv and the drawings; return the folder.

@@ -21,9 +21,9 @@ NO_DESIGN = "no design"
 
 def curves_of(study: StudyAnswers) -> dict[str, pd.DataFrame]:
     """Drawings by file name, as the hooks of families make them."""
-    found = {"whatif": _objective_curves(study)}
+    frames = {"whatif": _objective_curves(study)}
     fronts = _front_curves(study)
-    return found if fronts is None else {**found, "fronts": fronts}
+    return frames if fronts is None else {**frames, "fronts": fronts}
 
 
 # -- objectives over what is varied ----------------------------------------------------------------
@@ -43,13 +43,13 @@ def _objective_curves(study: StudyAnswers) -> pd.DataFrame:
     ticks = [] if numeric else [{"x": n, "label": varied.shown(v)} for n, v in enumerate(varied.values, start=1)]
     marks, notes = _marks(study)
     spans = _without_design(study, along)
-    legend = _left_out(len(drawn), len(groups), "lines") + _nowhere(study, k, groups)
+    legend = _omitted(len(drawn), len(groups), "lines") + _nowhere(study, k, groups)
     legend += ["lines: the best design of each step"] if len(study.varied) > 1 else []
     listed = "" if notes else ", each told in breaks.csv"
     legend += [f"vertical lines: break points, where the best parts or counts change{listed}"] if marks else []
     legend += [f"grey: {NO_DESIGN}"] if spans else []
     frame.attrs.update(
-        title=f"{_title(study, study.objectives())} over {varied.in_words}{_beside(study, k)}",
+        title=f"{_title(study, study.objectives())} over {varied.in_words}{_by_others(study, k)}",
         x=x,
         panels=panels,
         ticks=_spread(ticks, STUDY_TEXTS.ticks),
@@ -121,9 +121,9 @@ def _note(study: StudyAnswers, k: int, group: Sequence[Break]) -> str:
     """Description of a break point: where, for which objective, and from which parts and counts to which."""
     first = group[0]
     place = study.varied[k].measured(first.value)
-    beside = f" ({_words(study, k, first.others)})" if first.others else ""
+    others = f" ({_words(study, k, first.others)})" if first.others else ""
     if first.before is None or first.after is None:
-        return f"{place}{beside}: {first.change}"
+        return f"{place}{others}: {first.change}"
     old, new = first.before.named, first.after.named
     changed = [
         f"{n.replace('_', ' ')} {old.get(n, '-')} \u2192 {new.get(n, '-')}"
@@ -131,7 +131,7 @@ def _note(study: StudyAnswers, k: int, group: Sequence[Break]) -> str:
         if old.get(n) != new.get(n)
     ]
     best = _and([b.objective for b in group], list(study.objectives()).index)
-    return f"{place}{beside}, best {best}: {', '.join(changed)}"
+    return f"{place}{others}, best {best}: {', '.join(changed)}"
 
 
 def _without_design(study: StudyAnswers, along: Sequence[float]) -> list[dict[str, Any]]:
@@ -173,7 +173,7 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
     single = len(study.varied) == 1
     labels = [
         header(
-            ", ".join(v.valued(w) if single else _said(v, w) for v, w in zip(study.varied, s.values, strict=True)),
+            ", ".join(v.valued(w) if single else _valued(v, w) for v, w in zip(study.varied, s.values, strict=True)),
             other,
         )
         for s in shown
@@ -200,7 +200,7 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
         title=f"{_title(study, [f'fronts of {first}', second])} by {names}",
         x=x,
         panels=[panel],
-        source=_footer(study, *_left_out(len(shown), len(steps), "fronts"), "lines: what the designs reach at least"),
+        source=_footer(study, *_omitted(len(shown), len(steps), "fronts"), "lines: what the designs reach at least"),
     )
     return frame
 
@@ -224,16 +224,16 @@ def _with_designs(study: StudyAnswers) -> list[StudyStep]:
 
 def _words(study: StudyAnswers, k: int, group: Sequence[Value]) -> str:
     others = [x for j, x in enumerate(study.varied) if j != k]
-    return ", ".join(_said(x, v) for x, v in zip(others, group, strict=True))
+    return ", ".join(_valued(x, v) for x, v in zip(others, group, strict=True))
 
 
-def _said(varied: Varied, value: Value) -> str:
-    """Return a value as it is told beside others: parts, options and ranges by themselves, numbers with their names."""
-    alone = not isinstance(value, float)
-    return varied.valued(value) if alone else f"{varied.in_words} {varied.valued(value)}"
+def _valued(varied: Varied, value: Value) -> str:
+    """Value in a list: parts, options and ranges by themselves, numbers with their names."""
+    self_explanatory = not isinstance(value, float)
+    return varied.valued(value) if self_explanatory else f"{varied.in_words} {varied.valued(value)}"
 
 
-def _beside(study: StudyAnswers, k: int) -> str:
+def _by_others(study: StudyAnswers, k: int) -> str:
     others = [x.in_words for j, x in enumerate(study.varied) if j != k]
     return f", by {_and(others)}" if others else ""
 
@@ -282,8 +282,8 @@ def _value(design: Design | None, name: str) -> float:
     return math.nan if design is None else design.values[name]
 
 
-def _left_out(drawn: int, count: int, what: str) -> list[str]:
-    """Footer where not all is drawn."""
+def _omitted(drawn: int, count: int, what: str) -> list[str]:
+    """Footer with the number of omitted lines; none where all are drawn."""
     return [f"{drawn} of {count} {what} drawn"] if drawn < count else []
 
 

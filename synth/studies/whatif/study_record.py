@@ -52,7 +52,7 @@ def _step(study: Study, step: StudyStep) -> dict[str, Any]:
     return {
         "number": step.number,
         "values": [_value(value) for value in step.values],
-        "stated": [x.asked(value) for x, value in zip(study.varied, step.values, strict=True)],
+        "stated": [x.spec_value(value) for x, value in zip(study.varied, step.values, strict=True)],
         "status": step.status.value,
         "reason": step.reason,
         "front": None if step.front is None else front_record(step.front),
@@ -75,12 +75,12 @@ def _break(x: Break) -> dict[str, Any]:
     }
 
 
-def _composition(found: Composition | None) -> dict[str, Any] | None:
-    if found is None:
+def _composition(composition: Composition | None) -> dict[str, Any] | None:
+    if composition is None:
         return None
     return {
-        "parts": dict(found.parts),
-        "counts": {name: float(value) for name, value in found.counts.items()},
-        "choices": dict(found.choices),
-        "value": finite(float(found.value)),
+        "parts": dict(composition.parts),
+        "counts": {name: float(value) for name, value in composition.counts.items()},
+        "choices": dict(composition.choices),
+        "value": finite(float(composition.value)),
     }

@@ -26,7 +26,7 @@ COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one c
 TIGHT = re.compile(r"(\d+),(?=(\d+))")
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
-SAID = {"<=": "largest {} allowed", ">=": "least {} asked for", "==": "{} asked for"}
+LIMIT_NAMES = {"<=": "largest {} allowed", ">=": "least {} asked for", "==": "{} asked for"}
 PLACES = {"weight": "weights.", "part": "parts.", "option": "options.", "scatter": "robust."}
 
 Value = float | str | tuple[str, ...]
@@ -67,7 +67,7 @@ class Varied:
             return f"weight of {name}"
         if self.kind == "scatter":
             return f"scatter of {name}"
-        return SAID[self.sign].format(name) if self.sign else name
+        return LIMIT_NAMES[self.sign].format(name) if self.sign else name
 
     def valued(self, value: Value) -> str:
         """Return a value as people write it: designations as they are, units without signs."""
@@ -77,8 +77,8 @@ class Varied:
         """Number in the unit of what is varied, with its unit, for people."""
         return f"{number_text(value)} {self.unit.replace('*', ' ')}".removesuffix(" -").rstrip()
 
-    def asked(self, value: Value) -> Any:
-        """Return a value as it stands in a spec."""
+    def spec_value(self, value: Value) -> Any:
+        """Value as it stands in a spec."""
         if not isinstance(value, float):
             return value if isinstance(value, str) else list(value)
         return float(f"{value:.{DIGITS}g}") if self.kind == "weight" else _written(value, self.unit)
@@ -87,9 +87,9 @@ class Varied:
         """Return a value for people."""
         if isinstance(value, tuple):
             return ", ".join(value)
-        return typed_number(float(value), DIGITS) if self.kind == "weight" else str(self.asked(value))
+        return typed_number(float(value), DIGITS) if self.kind == "weight" else str(self.spec_value(value))
 
-    def stated(self, value: Value) -> str:
+    def text(self, value: Value) -> str:
         """Return name and value for people: ``mass <= 40 kg``."""
         return f"{self.label} {'' if self.sign else '= '}{self.shown(value)}"
 
@@ -117,7 +117,7 @@ def read_vary(vary: Any, model: Model, chosen: Sequence[str]) -> list[Varied]:
     vary : mapping
         Name (or symbol) -> values, as ``synth.whatif`` describes.
     model : Model
-        With all that is asked, for names and units.
+        Model of the question, for names and units.
     chosen : list of str
         The objectives, which alone have weights.
 
@@ -130,15 +130,15 @@ def read_vary(vary: Any, model: Model, chosen: Sequence[str]) -> list[Varied]:
         raise InputError("vary", vary, "names with values, for example {'load_torque': '500:700:50 N*m'}", ("vary",))
     if len(vary) > 2:
         raise InputError("vary", ", ".join(map(str, vary)), "one or two things at a time", ("vary",))
-    found = []
+    varied = []
     for key, values in vary.items():
         with at("vary", str(key)):
-            found.append(_read_one(str(key), values, model, chosen))
-    if len({(x.kind, x.name, x.sign) for x in found}) < len(found):
-        raise InputError("vary", found[0].label, "each thing once (name and symbol mean the same)", ("vary",))
+            varied.append(_read_one(str(key), values, model, chosen))
+    if len({(x.kind, x.name, x.sign) for x in varied}) < len(varied):
+        raise InputError("vary", varied[0].label, "each thing once (name and symbol mean the same)", ("vary",))
     with at("vary"):
-        _check_number("vary", math.prod(len(x.values) for x in found))
-    return found
+        _check_number("vary", math.prod(len(x.values) for x in varied))
+    return varied
 
 
 def _check_number(field: str, steps: float) -> None:
@@ -215,15 +215,15 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
         pieces = values.split(":")
         if len(pieces) == 3:
             ends = [_number(field, x, declared, seen, values) for x in pieces]
-            found = _steps(field, values, ends)
-            remark = _end_missed(ends, found[-1], seen[0] if seen else declared)
+            numbers = _steps(field, values, ends)
+            remark = _end_missed(ends, numbers[-1], seen[0] if seen else declared)
         elif len(pieces) > 1:
             raise InputError(field, values, f"three numbers from:to:step, as in {RANGE}")
         else:
             _check_number(field, values.count(",") + 1)
             _refuse_decimal_comma(field, values)
-            found = [_number(field, x, declared, seen, values) for x in values.split(",")]
-    elif isinstance(values, tuple) and len(values) == 3 and _whole(values[2]):
+            numbers = [_number(field, x, declared, seen, values) for x in values.split(",")]
+    elif isinstance(values, tuple) and len(values) == 3 and _is_integer(values[2]):
         first, last, count = values
         if not isinstance(first, str) and not isinstance(last, str):
             raise InputError(field, values, f"a list, {list(values)}, or ends with a unit: {RANGE}")
@@ -231,43 +231,43 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
             raise InputError(field, values, "a count of at least 2 as the third entry: ('200 mm', '300 mm', 11)")
         _check_number(field, count)
         low, high = (_number(field, x, declared, seen, values) for x in (first, last))
-        found = [float(f"{low + (high - low) * k / (count - 1):.{DIGITS}g}") for k in range(count)]
+        numbers = [float(f"{low + (high - low) * k / (count - 1):.{DIGITS}g}") for k in range(count)]
     elif isinstance(values, (list, tuple)) and not isinstance(values, str):
         if isinstance(values, tuple) and len(values) == 3 and not isinstance(values[2], (str, int, float)):
             raise InputError(field, values, f"a list of values, or {RANGE}")
         _check_number(field, len(values))
-        found = [_number(field, x, declared, seen, values) for x in values]
+        numbers = [_number(field, x, declared, seen, values) for x in values]
     else:
         raise InputError(field, values, f"values such as {RANGE}")
-    if not found:
+    if not numbers:
         raise InputError(field, values, "at least one value")
-    if len(set(found)) < len(found):
+    if len(set(numbers)) < len(numbers):
         raise InputError(field, values, "each value once")
-    for number in found:
+    for number in numbers:
         parse_quantity(f"{number:.{DIGITS}g} {seen[0]}" if seen else number, declared, field)
-    return (seen[0] if seen else declared), tuple(found), remark
+    return (seen[0] if seen else declared), tuple(numbers), remark
 
 
-def _whole(value: Any) -> bool:
+def _is_integer(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) -> float:
+def _number(field: str, value: Any, declared: str, seen: list[str], source: Any) -> float:
     """Return one number; its unit, if it has one, is that of all."""
     if not isinstance(value, str):
         parse_quantity(value, declared, field)
         return float(value)
-    match, said = NUMBER.match(as_decimal(value)), whole if isinstance(whole, str) else value
+    match, shown = NUMBER.match(as_decimal(value)), source if isinstance(source, str) else value
     if match is None or not math.isfinite(float(match.group(1))):
-        raise InputError(field, said, f"numbers with one unit, as in {RANGE}")
+        raise InputError(field, shown, f"numbers with one unit, as in {RANGE}")
     number, unit = match.groups()
     if re.match(r",\s*[0-9]", unit):
-        raise InputError(field, said, "a decimal point instead of a decimal comma")
+        raise InputError(field, shown, "a decimal point instead of a decimal comma")
     if unit:
         parse_quantity(f"{number} {unit}", declared, field)
         unit = parse_unit(unit, parse_unit(declared).kind).text
         if seen and seen[0] != unit:
-            raise InputError(field, whole, f"one unit for all values, here {seen[0]} and {unit}")
+            raise InputError(field, source, f"one unit for all values, here {seen[0]} and {unit}")
         seen[:] = [unit]
     return float(number)
 
@@ -279,18 +279,18 @@ def _refuse_decimal_comma(field: str, text: str) -> None:
     match = COMMA.match(text)
     if match is None or not _may_be_decimal(match.group(1).lstrip("+-"), match.group(2)):
         return
-    whole, decimals, unit = (shortened(x or "") for x in match.groups())
+    integer, decimals, unit = (shortened(x or "") for x in match.groups())
     raise InputError(
         field,
         text,
-        f"a decimal point for one number ({whole}.{decimals}{unit}), a blank after the comma for two values "
-        f"({whole}, {decimals}{unit})",
+        f"a decimal point for one number ({integer}.{decimals}{unit}), a blank after the comma for two values "
+        f"({integer}, {decimals}{unit})",
     )
 
 
-def _may_be_decimal(whole: str, decimals: str) -> bool:
+def _may_be_decimal(integer: str, decimals: str) -> bool:
     """True if digits on both sides of a comma may be one number; ``500,600`` is none that anybody types."""
-    return not (len(decimals) >= len(whole) >= 3 and int(decimals) >= int(whole))
+    return not (len(decimals) >= len(integer) >= 3 and int(decimals) >= int(integer))
 
 
 def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
@@ -328,17 +328,17 @@ def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
     if not isinstance(entries, (list, tuple)) or not entries:
         raise InputError(field, values, "words with commas between them, or a list of them")
     _check_number(field, len(entries))
-    found: list[Value] = []
+    words: list[Value] = []
     for entry in entries:
         if isinstance(entry, str) and entry.strip():
-            found.append(entry)
+            words.append(entry)
         elif several and isinstance(entry, (list, tuple)) and entry and all(isinstance(x, str) for x in entry):
-            found.append(tuple(entry))
+            words.append(tuple(entry))
         else:
             raise InputError(field, entry, "a word" + (", or a list of designations" if several else ""))
-    if len(set(found)) < len(found):
+    if len(set(words)) < len(words):
         raise InputError(field, values, "each value once")
-    return tuple(found)
+    return tuple(words)
 
 
 def _ranges(key: str, values: Any) -> tuple[Value, ...]:
@@ -346,19 +346,19 @@ def _ranges(key: str, values: Any) -> tuple[Value, ...]:
 
     As of numbers, a unit counts for those before it that have none.
     """
-    field, found, unit = f"vary {key}", list[str](), ""
+    field, ranges, unit = f"vary {key}", list[str](), ""
     entries = values.split(",") if isinstance(values, str) else values
     if not isinstance(entries, (list, tuple)) or not all(isinstance(x, str) and x.strip() for x in entries):
         raise InputError(field, values, "ranges as text, such as '+-10 %' or '60 .. 80 N*m', or 'none'")
     _check_number(field, len(entries))
     for entry in reversed(entries):
         more, unit = _one_range(field, entry.strip(), unit)
-        found[:0] = more
-    if not found:
+        ranges[:0] = more
+    if not ranges:
         raise InputError(field, values, "at least one range, or 'none'")
-    if len(set(found)) < len(found):
+    if len(set(ranges)) < len(ranges):
         raise InputError(field, values, "each value once")
-    return tuple(found)
+    return tuple(ranges)
 
 
 def _one_range(field: str, text: str, unit: str) -> tuple[list[str], str]:
@@ -369,12 +369,12 @@ def _one_range(field: str, text: str, unit: str) -> tuple[list[str], str]:
         match = NUMBER.match(as_decimal(end))
         if match is None or end == text:
             return [text], unit
-        own = match.group(2)
-        return [text if own or not unit else f"{text} {unit}"], own or unit
+        range_unit = match.group(2)
+        return [text if range_unit or not unit else f"{text} {unit}"], range_unit or unit
     matches = [NUMBER.match(as_decimal(x)) for x in around.group(1).split(":")]
     units = {m.group(2) for m in matches if m is not None} - {""}
     if None in matches or len(matches) not in (1, 3) or len(units) > 1:
         raise InputError(field, text, "a range such as '+-10 %', or from, to and step with one unit: '+-5:20:5 %'")
-    own, numbers = (units or {unit}).pop(), [float(m.group(1)) for m in matches if m is not None]
+    range_unit, numbers = (units or {unit}).pop(), [float(m.group(1)) for m in matches if m is not None]
     numbers = _steps(field, text, numbers) if len(numbers) == 3 else numbers
-    return [f"+-{_written(x, own or '-')}" for x in numbers], own
+    return [f"+-{_written(x, range_unit or '-')}" for x in numbers], range_unit

@@ -47,8 +47,8 @@ def _leader(front: ParetoFront, name: str) -> Leader:
     values = np.array([[d.values[n] for n in names] for d in front.designs])
 
     def leader(weight: float) -> Design | None:
-        own = [weight if n == name else weights[n] for n in names]
-        order = rank(front.frame.objectives, values, own, scale=front.scale).order if any(own) else []
+        trial = [weight if n == name else weights[n] for n in names]
+        order = rank(front.frame.objectives, values, trial, scale=front.scale).order if any(trial) else []
         return front.designs[order[0]] if order else None
 
     return leader

@@ -1,4 +1,4 @@
-"""What tenants have brought: part tables in versions that are never overwritten, and files for batches."""
+"""Files of tenants: part tables in versions that are never overwritten, and uploads for batches."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REFERENCE = re.compile(r"([A-Za-z0-9_][A-Za-z0-9_.-]{0,59})@([1-9][0-9]{0,8})")
 DEPTH = 3  # jobs that refer to jobs: a report of prices of a front
 
 
-class Shelf:
+class TenantFiles:
     """The tables and files of tenants, in the database of their jobs.
 
     Parameters
@@ -40,23 +40,23 @@ class Shelf:
     def catalogues(self, tenant: int) -> list[Catalogue]:
         """Return all versions of all tables of a tenant, by name, the latest version first; without their content."""
         light = sa.orm.defer(Catalogue.content), sa.orm.defer(Catalogue.schema)
-        asked = sa.select(Catalogue).where(Catalogue.tenant == tenant).options(*light)
+        query = sa.select(Catalogue).where(Catalogue.tenant == tenant).options(*light)
         with Session(self._engine, expire_on_commit=False) as session:
-            return list(session.scalars(asked.order_by(Catalogue.name, Catalogue.version.desc())))
+            return list(session.scalars(query.order_by(Catalogue.name, Catalogue.version.desc())))
 
     def catalogue(self, tenant: int, name: str, version: int | None = None) -> Catalogue | None:
         """Return one version of a table, the latest where none is named; None where there is none."""
-        asked = sa.select(Catalogue).where(Catalogue.tenant == tenant, Catalogue.name == name)
+        query = sa.select(Catalogue).where(Catalogue.tenant == tenant, Catalogue.name == name)
         if version is not None:
-            asked = asked.where(Catalogue.version == version)
+            query = query.where(Catalogue.version == version)
         with Session(self._engine, expire_on_commit=False) as session:
-            return session.scalar(asked.order_by(Catalogue.version.desc()).limit(1))
+            return session.scalar(query.order_by(Catalogue.version.desc()).limit(1))
 
     def table_text(self, tenant: int, reference: str) -> TableText | None:
         """Return the text of a table by name and version, ``my_linings@3``; None where there is none."""
         match = REFERENCE.fullmatch(reference)
-        found = None if match is None else self.catalogue(tenant, match[1], int(match[2]))
-        return None if found is None else text_of(found)
+        version = None if match is None else self.catalogue(tenant, match[1], int(match[2]))
+        return None if version is None else text_of(version)
 
     def add_catalogue(
         self, tenant: int, name: str, table: str, csv: str, schema: str, rows: int, note: str = ""
@@ -80,8 +80,8 @@ class Shelf:
             The name is none.
         """
         if not NAME.fullmatch(name):
-            wanted = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
-            raise InputError("name", name, wanted, ("name",))
+            expected = "up to 60 letters, digits, _, . or -, the first a letter, digit or _"
+            raise InputError("name", name, expected, ("name",))
         digest = TableText(reference=name, csv=csv, schema=schema).digest
         while True:
             latest = self.catalogue(tenant, name)
@@ -111,16 +111,16 @@ class Shelf:
     def uses(self, tenant: int, reference: str) -> list[str]:
         """Return the jobs of a tenant that name a version of a table."""
         with Session(self._engine) as session:
-            asked = sa.select(Job.id, Job.request).where(
+            query = sa.select(Job.id, Job.request).where(
                 Job.tenant == tenant, sa.cast(Job.request, sa.Text).contains(reference, autoescape=True)
             )
-            return [job for job, request in session.execute(asked) if reference in mentioned(request).tables]
+            return [job for job, request in session.execute(query) if reference in mentioned(request).tables]
 
     def remove_catalogue(self, tenant: int, name: str, version: int) -> bool:
         """Remove a version of a table; tell whether there was one."""
-        wanted = (Catalogue.tenant == tenant, Catalogue.name == name, Catalogue.version == version)
+        conditions = (Catalogue.tenant == tenant, Catalogue.name == name, Catalogue.version == version)
         with self._engine.begin() as connection:
-            return connection.execute(sa.delete(Catalogue).where(*wanted)).rowcount == 1
+            return connection.execute(sa.delete(Catalogue).where(*conditions)).rowcount == 1
 
     # -- files ---------------------------------------------------------------------------------
 
@@ -146,8 +146,8 @@ class Shelf:
     def upload(self, tenant: int, upload: str) -> Upload | None:
         """Return a file; None where there is none, or no more."""
         with Session(self._engine, expire_on_commit=False) as session:
-            asked = sa.select(Upload).where(Upload.id == upload, Upload.tenant == tenant, Upload.expires > moment())
-            return session.scalar(asked)
+            query = sa.select(Upload).where(Upload.id == upload, Upload.tenant == tenant, Upload.expires > moment())
+            return session.scalar(query)
 
     # -- what requests refer to ----------------------------------------------------------------
 
@@ -162,8 +162,8 @@ class Shelf:
         tables: dict[str, TableText] = {}
         records: dict[str, Mapping[str, bytes]] = {}
         self._collect(tenant, request, tables, records, DEPTH)
-        found = {name: self.upload(tenant, name) for name in mentioned(request).files}
-        files = {name: Record(name=file.name, media="", content=file.content) for name, file in found.items() if file}
+        uploads = {name: self.upload(tenant, name) for name in mentioned(request).files}
+        files = {name: Record(name=file.name, media="", content=file.content) for name, file in uploads.items() if file}
         database = self._engine.url.render_as_string(hide_password=False)
         return Sources(tables=tables, records=records, files=files, database=database)
 
@@ -178,15 +178,15 @@ class Shelf:
         named = mentioned(request)
         tables.update(self._texts(tenant, named.tables))
         for job in named.jobs if depth else ():
-            found = self._queue.job(job, tenant)
-            if found is not None and job not in records:
+            source_job = self._queue.job(job, tenant)
+            if source_job is not None and job not in records:
                 kept = self._queue.records(job)
                 records[job] = {name: record.content for name, record in kept.items()}
-                self._collect(tenant, found.request, tables, records, depth - 1)
+                self._collect(tenant, source_job.request, tables, records, depth - 1)
 
     def _texts(self, tenant: int, references: Iterable[str]) -> dict[str, TableText]:
-        found = {reference: self.table_text(tenant, reference) for reference in references}
-        return {reference: text for reference, text in found.items() if text is not None}
+        texts = {reference: self.table_text(tenant, reference) for reference in references}
+        return {reference: text for reference, text in texts.items() if text is not None}
 
 
 def text_of(catalogue: Catalogue) -> TableText:
