@@ -98,7 +98,7 @@ class JointFrontSearch:
             return [None] * len(self.questions)
         second = self._search(every, self.reverse)
         self.others.append((second, every))
-        ends = self._ends(first.optima(first.distinct()), self._turned(second.optima(second.told_apart())))
+        ends = self._ends(first.optima(first.distinct()), self._turned(second.optima(second.distinct())))
         pools = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
             numbers, codec = list(ends), first.instance.combinations
