@@ -25,7 +25,6 @@ class Sources:
     ring_ratios: ClassVar[tuple[float, float]] = (0.11, 0.13)
     mass_of: ClassVar[str] = "Pressure plates, linings and cores, without flywheel, springs and cover"
     along: ClassVar[str] = "Length of the released discs and pressure plates, without flywheel, springs and cover"
-
     shaft: ShaftRequirements | None = None
 
     def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:

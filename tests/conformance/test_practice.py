@@ -162,10 +162,15 @@ def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
 LAYERED = [f for f in CASES if hasattr(import_module(type(synth.load(f)).__module__), "LAYERS")]
 
 
-@pytest.mark.parametrize("family", LAYERED)
-def test_practice_is_asked_by_the_layer_alone(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
+OTHER_STRUCTURES = [("electromagnetic_clutch", {"pack": "disc"}), ("centrifugal_two_spring", {"mechanism": "lever"})]
+
+
+@pytest.mark.parametrize(("family", "options"), [*((family, {}) for family in LAYERED), *OTHER_STRUCTURES])
+def test_practice_is_asked_by_the_layer_alone(
+    family: str, options: Mapping[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def traced(practice: str) -> list[Any]:
-        problem = type(synth.load(family))(practice=practice)
+        problem = type(synth.load(family))(practice=practice, **options)
         program = instance_of(problem, CASES[family].requirements, Catalogs()).model.program
         return [(node.op, tuple(node.args), node.constant) for node in program.nodes]
 
