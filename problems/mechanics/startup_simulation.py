@@ -177,11 +177,6 @@ class StartupRun:
     question: _Question = field(repr=False)
     pieces: tuple[_Piece, ...] = field(repr=False)
 
-    def energy_error(self) -> float:
-        """Return driver work less load work, kinetic and friction work, over the largest of them."""
-        parts = (self.driver_work, self.load_work, self.kinetic_work, self.friction_work)
-        return (parts[0] - parts[1] - parts[2] - parts[3]) / max(max(abs(x) for x in parts), 1e-300)
-
     def phases(self) -> list[tuple[float, float, str]]:
         """Return beginning, end and name of every phase."""
         found: list[tuple[float, float, str]] = []

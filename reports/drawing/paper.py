@@ -161,16 +161,6 @@ class PaperSheet:
     views: tuple[PlacedView, ...]
     boxes: tuple[Box2, ...] = field(default=())  # of title block, parts list and notes
 
-    def all_texts(self) -> list[tuple[str, Text]]:
-        """Return all texts with the place that they belong to."""
-        texts = [("sheet", text) for text in self.texts]
-        for k, placed in enumerate(self.views):
-            place = placed.view.name + (f" {placed.detail.letter}" if placed.detail else "")
-            texts += [(f"{k} {place}", m.text) for m in placed.measures]
-            texts += [(f"{k} {place}", c.text) for c in placed.callouts]
-            texts += [(f"{k} {place}", placed.heading)] if placed.heading else []
-        return texts
-
 
 def scale_label(scale: float) -> str:
     """Return a scale in words.
@@ -201,8 +191,3 @@ def overlap(a: Sequence[XY], b: Sequence[XY], slack: float = 1e-6) -> bool:
             if min(sides[1]) >= max(sides[0]) - slack or min(sides[0]) >= max(sides[1]) - slack:
                 return False
     return True
-
-
-def corners_of(box: Box2) -> list[XY]:
-    """Return the corners of a box."""
-    return [(box[0], box[1]), (box[2], box[1]), (box[2], box[3]), (box[0], box[3])]

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
 
 
+Source = ParetoFront | RemoteJob | str  # a front of a job, the job, or its id
+
+
 def connect(url: str, token: str | None = None, *, settings: ClientSettings = CLIENT) -> ServiceClient:
     """Return a service that does what ``synth`` does, by the same verbs.
 
@@ -203,20 +206,14 @@ class ServiceClient:
         return self.submit("explain", _spec(p, requirements, **asked)).wait(progress)
 
     def prices(
-        self,
-        front: ParetoFront | RemoteJob | str,
-        design: Any = None,
-        step: Any = None,
-        *,
-        progress: Progress | None = None,
-        **asked: Any,
+        self, front: Source, design: Any = None, step: Any = None, *, progress: Progress | None = None, **asked: Any
     ) -> RemoteJob:
         """Tell what a per cent of everything costs: as ``synth.prices``."""
         return self._of("prices", front, progress, design=design, step=step, **asked)
 
     def near_equals(
         self,
-        front: ParetoFront | RemoteJob | str,
+        front: Source,
         design: int,
         within: Any = None,
         *,
@@ -227,30 +224,15 @@ class ServiceClient:
         """Find designs of other parts that are nearly as good: as ``synth.near_equals``."""
         return self._of("near_equals", front, progress, design=design, within=within, count=count, **asked)
 
-    def rate(
-        self,
-        front: ParetoFront | RemoteJob | str,
-        robust: Any = None,
-        *,
-        progress: Progress | None = None,
-        **asked: Any,
-    ) -> RemoteJob:
+    def rate(self, front: Source, robust: Any = None, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
         """Tell how designs stand what scatters: as ``synth.rate``."""
         return self._of("rate", front, progress, robust=robust, **asked)
 
-    def verify(
-        self,
-        front: ParetoFront | RemoteJob | str,
-        time_limit: float | None = None,
-        *,
-        progress: Progress | None = None,
-    ) -> RemoteJob:
+    def verify(self, front: Source, time_limit: float | None = None, *, progress: Progress | None = None) -> RemoteJob:
         """Check a front again without the search: as ``synth.verify``."""
         return self._of("verify", front, progress, time_limit=time_limit)
 
-    def report(
-        self, front: ParetoFront | RemoteJob | str, *, progress: Progress | None = None, **asked: Any
-    ) -> RemoteJob:
+    def report(self, front: Source, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
         """Write the report of a front, as ``ParetoFront.report`` does.
 
         Parameters
@@ -262,14 +244,7 @@ class ServiceClient:
         """
         return self._of("report", front, progress, **asked)
 
-    def batch(
-        self,
-        p: str | None,
-        table: Any,
-        *,
-        progress: Progress | None = None,
-        **asked: Any,
-    ) -> RemoteJob:
+    def batch(self, p: str | None, table: Any, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
         """Find the designs for every row of a table: as ``synth.batch``; ``frame("designs.csv")`` returns them.
 
         Parameters

@@ -243,8 +243,7 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
     if asked.family is not None:
         load(asked.family)
     settings = SearchSettings(points=asked.points, gap=asked.gap, seed=asked.seed, time_limit=asked.time_limit)
-    common: dict[str, Any] = {"parts": asked.parts, "limits": asked.limits, "fix": asked.fix}
-    common |= {"objectives": asked.objectives, "grid": asked.grid}
+    common = {name: getattr(asked, name) for name in ("parts", "limits", "fix", "objectives", "grid")}
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:
         yield BatchJob(
             asked.family,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from synth.analysis.design_spec import must_be_a_design
+from synth.analysis.design_spec import design_of_spec, must_be_a_design
 from synth.errors import InputError
 from synth.kinds.asked import (
     about_front,

@@ -48,6 +48,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
         For everything that is wrong with it.
     """
     of, asked = about_front(request, FrontReportRequest)
+    options_of(asked)
     for word in asked.formats:
         if not can_make(word):
             raise ExtraNeededError(word, EXTRAS[word][2])

@@ -149,12 +149,12 @@ def _objectives(model: Model, stated: Any) -> list[str]:
         return list(chosen_objectives(model, None))
 
 
-def _vary(stated: Mapping[str, Any]) -> dict[str, Any]:
+def _vary(stated: Mapping[str, object]) -> dict[str, Any]:
     """Varied quantity as the verb takes it: ends and a count as a tuple."""
     return {str(name): _ends(values) if isinstance(values, Mapping) else values for name, values in stated.items()}
 
 
-def _ends(values: Mapping[str, Any]) -> tuple[Any, ...]:
+def _ends(values: Mapping[str, object]) -> tuple[object, ...]:
     return tuple(values[key] for key in VARIED_ENDS)
 
 

@@ -32,13 +32,13 @@ class ValueKind:
         What it accepts, null apart. What fits may still be refused by its reader.
     read : callable
         Value as stated -> value as used; the first argument names the field in messages.
-    option : type
-        Of its option on the command line.
+    option : type, optional
+        Of its option on the command line; without one it has none.
     """
 
     schema: Schema
     read: Reader
-    option: Any = str
+    option: Any = None
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class RequestField:
     examples : tuple
         Accepted values.
     flag : str
-        Spelling on the command line where it is not the name; empty where it is no option.
+        Spelling on the command line where it is not the name.
     metavar : str, optional
         Placeholder for its value on the command line.
     needed : str
@@ -72,7 +72,7 @@ class RequestField:
     unit: str = "-"
     usual: Any = None
     examples: tuple[Any, ...]
-    flag: str | None = None
+    flag: str = ""
     metavar: str | None = None
     needed: str = ""
 
@@ -357,7 +357,7 @@ RANK = whole(1, INPUT_LIMITS.points)
 LISTED = whole(1, INPUT_LIMITS.listed)
 SEED = whole(0, INPUT_LIMITS.seed)
 GAP = ValueKind({**NUMBER, "minimum": LEAST_GAP, "maximum": LARGEST_GAP}, _gap, float)
-SECONDS = ValueKind(some({"type": "number", "exclusiveMinimum": 0}, TEXT), _seconds)
+SECONDS = ValueKind(some({"type": "number", "exclusiveMinimum": 0}, TEXT), _seconds, str)
 GRID = ValueKind({"type": "boolean"}, _grid, bool)
 SPREAD: Schema = by_name(
     {"type": "string"},
@@ -398,7 +398,7 @@ FIELDS: Mapping[str, RequestField] = _by_name(
     ),
     RequestField(
         "objectives",
-        ValueKind(some(TEXT, listed({"type": "string"}), by_name(one_of(("min", "max")))), _objectives, list[str]),
+        ValueKind(some(TEXT, listed({"type": "string"}), by_name(one_of(("min", "max")))), _objectives),
         "What is minimised or maximised; by default what the family names.",
         examples=(["mass", "actuation_force"], {"mass": "min"}, "mass"),
     ),

@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from synth.errors import InputError, whole_number
-from synth.question.request_fields import GAP_EXPECTED, SEARCHED, is_gap, is_number
+from synth.errors import InputError
+from synth.question.request_fields import FIELDS, SEARCHED
 from synth.question.spec_keys import read_keys
-from synth.text.input_limits import INPUT_LIMITS
 
 Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
 LEAST_SECONDS = 1e-3  # for a search when all that goes before it has taken the time there is
@@ -46,19 +45,11 @@ class SearchSettings:
     time_limit: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no setting of a search."""
-        self._hold("points", whole_number(self.points, "points", INPUT_LIMITS.points, path=("points",)))
-        if not is_gap(self.gap):
-            raise InputError("gap", self.gap, GAP_EXPECTED, ("gap",))
-        self._hold("gap", float(self.gap))
-        self._hold("workers", whole_number(self.workers, "workers", INPUT_LIMITS.workers, path=("workers",)))
-        self._hold("seed", whole_number(self.seed, "seed", INPUT_LIMITS.seed, least=0, path=("seed",)))
-        limit = self.time_limit
-        if limit is not None and not (is_number(limit) and limit > 0):
-            raise InputError("time_limit", limit, "a positive number of seconds", ("time_limit",))
-
-    def _hold(self, name: str, value: float) -> None:
-        object.__setattr__(self, name, value)
+        """Read what is stated; None is the default."""
+        for name in SEARCHED:
+            field, value = FIELDS[name], getattr(self, name)
+            if value is not None or field.usual is not None:
+                object.__setattr__(self, name, field.read(name, field.usual if value is None else value))
 
     def since(self, begun: float) -> SearchSettings:
         """Return the same with what is left of the time limit, which began at a time as of ``time.monotonic``."""

@@ -13,33 +13,19 @@ from synth.folders.csv_style import CsvStyle, csv_style
 from synth.folders.output_folder import BATCH
 from synth.system.interrupts import heard_again
 from synth.tables.table_file import read_as
-from synth.terminal.options import (
-    Csv,
-    Encoding,
-    Gap,
-    Grid,
-    Headings,
-    Objectives,
-    Quiet,
-    RowFamily,
-    RowPoints,
-    RowsFolder,
-    RowTime,
-    Seed,
-    VisibleRows,
-)
+from synth.terminal.options import BatchOptions, Csv, Encoding, Headings, Quiet, RowsFolder, VisibleRows, takes
 from synth.terminal.session import (
     INFEASIBLE,
     INTERNAL,
     STOPPED,
     check_output,
     claim_output,
-    objectives,
     own_tables,
     rows_folder,
     tell,
 )
 from synth.text.input_limits import INPUT_LIMITS
+from synth.verbs.requests import BatchRequest
 
 if TYPE_CHECKING:
     from synth.batches.batch import BatchJob
@@ -74,18 +60,13 @@ def register(app: typer.Typer) -> None:
     app.add_typer(jobs_app, name="jobs")
 
 
+@takes(BatchOptions)
 def batch(
+    asked: BatchOptions,
     *,
     rows: RowsFile,
     folder: RowsFolder = None,
-    family: RowFamily = None,
     mapping: Headings = None,
-    points: RowPoints = None,
-    gap: Gap = None,
-    grid: Grid[bool] = True,
-    seed: Seed[int] = 0,
-    time_limit: RowTime = None,
-    objective: Objectives = None,
     catalogs: Annotated[Path | None, typer.Option(help="Folder with your own tables.", metavar="DIR")] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -102,39 +83,28 @@ def batch(
     rows = Path(read_as(str(rows), encoding, visible_rows))
 
     def make() -> BatchJob:
-        return batch_job(
-            rows, place, family, mapping, points, gap, grid, seed, time_limit, objective, own, database, style
-        )
+        return batch_job(asked, rows, place, mapping, own, database, style)
 
     raise typer.Exit(finish(make, workers, scheduler, quiet, named=folder is not None))
 
 
 def batch_job(
+    asked: BatchRequest,
     rows: Path,
     folder: Path,
-    family: str | None,
     mapping: Path | None,
-    points: int | None,
-    gap: float | None,
-    grid: bool,
-    seed: int,
-    time_limit: str | None,
-    objective: list[str] | None,
-    catalogs: Any,
+    tables: Any,
     database: str | None,
     csv: CsvStyle,
 ) -> BatchJob:
-    """Return the batch that flags describe."""
+    """Return the batch that options describe."""
     from synth.batches.batch import BatchJob
     from synth.question.settings import SearchSettings
-    from synth.units import parse_quantity
 
     check_output(folder)
-    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
-    stated: dict[str, Any] = {"points": points, "gap": gap, "seed": seed, "time_limit": seconds}
-    settings = SearchSettings(**{name: value for name, value in stated.items() if value is not None})
-    common = {"parts": None, "limits": None, "fix": None, "objectives": objectives(objective or []), "grid": grid}
-    return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common, csv=csv)
+    settings = SearchSettings(points=asked.points, gap=asked.gap, seed=asked.seed, time_limit=asked.time_limit)
+    common = {name: getattr(asked, name) for name in ("parts", "limits", "fix", "objectives", "grid")}
+    return BatchJob(asked.family, rows, folder, mapping, tables, database, settings, common, csv=csv)
 
 
 def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool, named: bool) -> int:

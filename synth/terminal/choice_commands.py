@@ -39,12 +39,7 @@ def register(app: typer.Typer) -> None:
 
 @takes(NearEqualsRequest)
 def near_equals(
-    asked: NearEqualsRequest,
-    *,
-    source: FrontFolder,
-    folder: Folder = None,
-    csv: Csv = "en",
-    quiet: Quiet = False,
+    asked: NearEqualsRequest, *, source: FrontFolder, folder: Folder = None, csv: Csv = "en", quiet: Quiet = False
 ) -> None:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
     style = csv_style(csv, "--csv")

@@ -38,15 +38,10 @@ from synth.terminal.options import (
     Family,
     Folder,
     FrontFolder,
-    Gap,
-    Grid,
-    Objectives,
     Plot,
-    Points,
     Quiet,
-    Seed,
+    SearchOptions,
     SpecFile,
-    Threads,
     TimeLimit,
     VisibleRows,
     takes,
@@ -67,7 +62,6 @@ from synth.terminal.session import (
     derived_told,
     explaining,
     frame_files,
-    objectives,
     one_command,
     own_tables,
     pair,
@@ -225,17 +219,12 @@ def describe(
 
 
 @app.command()
+@takes(SearchOptions)
 def run(
+    options: SearchOptions,
     *,
     spec: SpecFile,
     folder: Folder = None,
-    points: Points = None,
-    gap: Gap = None,
-    grid: Grid[bool | None] = None,
-    seed: Seed[int | None] = None,
-    time_limit: TimeLimit = None,
-    workers: Threads = None,
-    objective: Objectives = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
     more: Annotated[
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
@@ -253,15 +242,7 @@ def run(
     from synth.terminal.console import explanation_text
 
     style = csv_style(csv, "--csv")
-    asked = read_spec(spec).merged(
-        points=points,
-        gap=gap,
-        grid=grid,
-        seed=seed,
-        time_limit=time_limit,
-        workers=workers,
-        objectives=objectives(objective or []),
-    )
+    asked = read_spec(spec).merged(**options.of_spec())
     must_be_a_question(asked)
     asked = asked.merged(catalogs=own_tables(asked.catalogs, asked.folder, encoding, visible_rows))
     claim_output(folder, FRONT)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar
 
 import typer
 
-from synth.question.request_fields import FIELDS, RequestField
+from synth.errors import InputError
+from synth.question.request_fields import FIELDS, RequestField, ValueKind
+from synth.terminal.session import pair
 from synth.text.notices import ignore_notices
 from synth.text.numbers import typed_number
-from synth.verbs.request import VerbRequest, as_flag
-from synth.verbs.requests import BatchRequest
+from synth.verbs.request import VerbRequest, as_flag, shared
+from synth.verbs.requests import BatchRequest, WhatIfRequest
 
 T = TypeVar("T")
 P = ParamSpec("P")
@@ -31,19 +34,17 @@ def option(record: RequestField, **other: Any) -> Any:
 def _help(record: RequestField) -> str:
     """Help in one line; a list is given by repeating its option."""
     text = record.help.replace("`", "")
-    return f"{text[:-1]}; repeat it." if record.value.option in (list[int], list[str]) else text
+    return text if record.value.option not in (list[int], list[str]) or "repeat" in text else f"{text[:-1]}; repeat it."
 
 
-def takes(
-    request: type[Asked],
-) -> Callable[[Callable[Concatenate[Asked, P], None]], Callable[..., None]]:
+def takes(request: type[Asked]) -> Callable[[Callable[Concatenate[Asked, P], None]], Callable[..., None]]:
     """Command whose options are the fields of a request; its first argument is the request that they state.
 
     They come behind what the command is about and where its results go.
     """
 
     def decorated(command: Callable[Concatenate[Asked, P], None]) -> Callable[..., None]:
-        fields = {name: record for name, record in request.fields().items() if record.flag != ""}
+        fields = {name: record for name, record in request.fields().items() if record.value.option is not None}
 
         def run(*args: P.args, **values: P.kwargs) -> None:
             stated = {name: values.pop(name) for name in fields}
@@ -61,7 +62,7 @@ def takes(
     return decorated
 
 
-ABOUT = ("source", "spec", "folder")
+ABOUT = ("source", "spec", "rows", "vary", "folder")
 
 
 def _parameter(record: RequestField) -> inspect.Parameter:
@@ -88,6 +89,64 @@ Family = Annotated[
 SpecFile = Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")]
 FrontFolder = Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")]
 
+
+def _objectives(where: str, texts: list[str]) -> list[str] | dict[str, str]:
+    """Objectives from repeated options: names, or names with min or max."""
+    if not any("=" in text for text in texts):
+        return texts
+    pairs = [pair(where, text) if "=" in text else (text, "") for text in texts]
+    unsaid = next((name for name, sense in pairs if not sense), None)
+    if unsaid is not None:
+        raise InputError(where, unsaid, f"{unsaid}=min or {unsaid}=max: all objectives with a sense, or none")
+    return dict(pairs)
+
+
+OBJECTIVE = replace(
+    FIELDS["objectives"],
+    value=ValueKind({}, _objectives, list[str]),
+    help="An objective, name or name=min or name=max; repeat it.",
+    flag="--objective",
+    metavar="NAME[=SENSE]",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchOptions(VerbRequest):
+    """What the command line says in place of a spec."""
+
+    points: int | None = shared(FIELDS["points"], usual=None)
+    gap: float | None = shared(FIELDS["gap"], usual=None)
+    grid: bool | None = shared(FIELDS["grid"], usual=None)
+    seed: int | None = shared(FIELDS["seed"], usual=None)
+    time_limit: float | None = shared(FIELDS["time_limit"])
+    workers: int | None = shared(FIELDS["workers"], usual=None)
+    objectives: Any = shared(OBJECTIVE)
+
+    def of_spec(self) -> dict[str, Any]:
+        """Entries of a spec that are stated."""
+        return {name: value for name, value in self.to_json().items() if name in FIELDS}
+
+
+@dataclass(frozen=True, kw_only=True)
+class WhatIfOptions(SearchOptions):
+    """The same of a study, and what is searched between its steps."""
+
+    points: int | None = shared(
+        FIELDS["points"], usual=None, help="At most this many designs per step; 3 unless the spec says otherwise."
+    )
+    time_limit: float | None = shared(
+        FIELDS["time_limit"], help="Stop after this time for all steps, in seconds or such as '2 min'."
+    )
+    breaks: bool = shared(WhatIfRequest.fields()["breaks"])
+
+
+@dataclass(frozen=True, kw_only=True)
+class BatchOptions(BatchRequest):
+    """The same of a batch."""
+
+    objectives: Any = shared(OBJECTIVE)
+
+
 # Without -o a result is shown and nothing is written; of a table that is worked off the result is files, see session.
 Folder = Annotated[
     Path | None,
@@ -103,26 +162,15 @@ RowFamily = Annotated[str | None, option(BatchRequest.fields()["family"])]
 Headings = Annotated[
     Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
 ]
-RowPoints = Annotated[int | None, option(BatchRequest.fields()["points"])]
-RowTime = Annotated[str | None, option(BatchRequest.fields()["time_limit"])]
-Points = Annotated[int | None, option(FIELDS["points"])]
+RowPoints = Annotated[int, option(BatchRequest.fields()["points"])]
 Encoding = Annotated[
     str | None, typer.Option(help="Of CSV files where it is not recognised, such as cp1250.", metavar="NAME")
 ]
 VisibleRows = Annotated[bool, typer.Option("--visible-rows", help="Leave out hidden and filtered rows of workbooks.")]
-Gap = Annotated[float | None, option(FIELDS["gap"])]
-Grid = Annotated[T, option(FIELDS["grid"])]
-Seed = Annotated[T, option(FIELDS["seed"])]
 TimeLimit = Annotated[str | None, option(FIELDS["time_limit"])]
-Threads = Annotated[int | None, option(FIELDS["workers"])]
-Objectives = Annotated[
-    list[str] | None,
-    typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),
-]
 Plot = Annotated[bool, typer.Option("--plot", help="Draw the front here, and with -o into front.svg as well.")]
 Csv = Annotated[
-    str,
-    typer.Option("--csv", help="How CSV is written: en, or de (semicolons, decimal commas).", metavar="en|de"),
+    str, typer.Option("--csv", help="How CSV is written: en, or de (semicolons, decimal commas).", metavar="en|de")
 ]
 Quiet = Annotated[
     bool, typer.Option("--quiet", "-q", help="Show nothing; files and exit code tell.", callback=_without_notices)

@@ -10,7 +10,7 @@ import typer
 from synth.errors import InputError
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import RATING
-from synth.terminal.options import Csv, Folder, Quiet, TimeLimit
+from synth.terminal.options import Csv, Folder, Quiet, takes
 from synth.terminal.session import (
     INFEASIBLE,
     STOPPED,
@@ -20,6 +20,7 @@ from synth.terminal.session import (
     tell_readings,
     tell_written,
 )
+from synth.verbs.requests import RateRequest
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
@@ -32,7 +33,9 @@ def register(app: typer.Typer) -> None:
     app.command(name="rate")(rate)
 
 
+@takes(RateRequest)
 def rate(
+    asked: RateRequest,
     *,
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
     folder: Folder = None,
@@ -47,7 +50,6 @@ def rate(
     samples: Annotated[int | None, typer.Option(help="Points of the range, a power of 2.")] = None,
     confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
-    time_limit: TimeLimit = None,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -61,9 +63,7 @@ def rate(
     from synth.robust.rate import rate as rate_designs
     from synth.terminal.console import output, progress_display
     from synth.terminal.robust_console import print_ratings
-    from synth.units import parse_quantity
 
-    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     flags = {"samples": samples, "confidence": confidence, "seed": seed}
     told = {name: value for name, value in flags.items() if value is not None}
     designs, problem, catalogs, known = _designs(source, quiet)
@@ -78,7 +78,7 @@ def rate(
             problem=problem,
             catalogs=catalogs,
             progress=progress,
-            time_limit=seconds,
+            time_limit=asked.time_limit,
         )
     target = None if folder is None else found.save(folder, style)
     if not quiet:

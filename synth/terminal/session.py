@@ -89,21 +89,6 @@ def pair(flag: str, text: str) -> tuple[str, str]:
     return name.strip(), value.strip()
 
 
-def objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
-    """Objectives from repeated flags: names, or names with min or max."""
-    if not texts:
-        return None
-    if not any("=" in text for text in texts):
-        return texts
-    pairs = [pair("--objective", text) if "=" in text else (text, "") for text in texts]
-    unsaid = [name for name, sense in pairs if not sense]
-    if unsaid:
-        raise InputError(
-            "--objective", unsaid[0], f"{unsaid[0]}=min or {unsaid[0]}=max: all objectives with a sense, or none"
-        )
-    return dict(pairs)
-
-
 def frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
     """Files for frames: file name -> text, a table and a drawing of each."""
     draw = report("figure")

@@ -14,7 +14,7 @@ from synth.tables.table_file import read_as
 from synth.terminal.batch_commands import Database, Workers, batch_job, finish
 from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowFamily, RowPoints, VisibleRows, takes
 from synth.terminal.session import STOPPED, claim_output, rows_folder, tell_written
-from synth.verbs.requests import SizeRangeRequest
+from synth.verbs.requests import BatchRequest, SizeRangeRequest
 
 
 def register(app: typer.Typer) -> None:
@@ -35,7 +35,7 @@ def size_range(
     ] = None,
     family: RowFamily = None,
     mapping: Headings = None,
-    points: RowPoints = None,
+    points: RowPoints = BatchRequest.points,
     workers: Workers = None,
     database: Database = None,
     encoding: Encoding = None,
@@ -51,8 +51,9 @@ def size_range(
     if not source.is_dir():
         place = rows_folder(source, folder)
         objectives = None if asked.objective is None else [asked.objective]
+        searched = BatchRequest(family=family, points=points, objectives=objectives)
         rows = Path(read_as(str(source), encoding, visible_rows))
-        job = batch_job(rows, place, family, mapping, points, None, True, 0, None, objectives, None, database, style)
+        job = batch_job(searched, rows, place, mapping, None, database, style)
         job_id = job.id
         code = finish(lambda: job, workers, None, quiet, named=folder is not None)
         if code == STOPPED:

@@ -11,20 +11,17 @@ from synth.analysis.design_spec import must_be_a_question, must_be_one_family
 from synth.errors import InputError
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import STUDY
-from synth.question.request_fields import FIELDS
-from synth.terminal.options import Csv, Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, Threads, option
+from synth.terminal.options import Csv, Folder, Quiet, SpecFile, WhatIfOptions, takes
 from synth.terminal.session import (
     INFEASIBLE,
     STOPPED,
     blamed_on,
     claim_output,
-    objectives,
     tell,
     tell_not_kept,
     tell_readings,
     tell_written,
 )
-from synth.verbs.requests import WhatIfRequest
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -36,7 +33,9 @@ def register(app: typer.Typer) -> None:
     app.command(name="whatif")(whatif)
 
 
+@takes(WhatIfOptions)
 def whatif(
+    options: WhatIfOptions,
     *,
     spec: SpecFile,
     vary: Annotated[
@@ -48,20 +47,6 @@ def whatif(
         ),
     ],
     folder: Folder = None,
-    points: Annotated[
-        int | None,
-        option(FIELDS["points"], help="At most this many designs per step; 3 unless the spec says otherwise."),
-    ] = None,
-    gap: Gap = None,
-    grid: Grid[bool | None] = None,
-    seed: Seed[int | None] = None,
-    time_limit: Annotated[
-        str | None,
-        option(FIELDS["time_limit"], help="Stop after this time for all steps, in seconds or such as '2 min'."),
-    ] = None,
-    workers: Threads = None,
-    objective: Objectives = None,
-    breaks: Annotated[bool, option(WhatIfRequest.fields()["breaks"])] = WhatIfRequest.breaks,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -69,20 +54,12 @@ def whatif(
     from synth.question.spec import read_spec
 
     style = csv_style(csv, "--csv")
-    asked = read_spec(spec).merged(
-        points=points,
-        gap=gap,
-        grid=grid,
-        seed=seed,
-        time_limit=time_limit,
-        workers=workers,
-        objectives=objectives(objective or []),
-    )
+    asked = read_spec(spec).merged(**options.of_spec())
     must_be_a_question(asked)
     must_be_one_family(asked)
     claim_output(folder, STUDY)
     tell_not_kept(folder, quiet)
-    study = _study(asked, vary, folder, breaks, quiet)
+    study = _study(asked, vary, folder, options.breaks, quiet)
     target = None if folder is None else study.save(folder, style)
     if not quiet:
         from synth.studies.study_store import STEPS

@@ -62,13 +62,13 @@ def _fraction(where: str, value: object) -> float:
     return float(value)
 
 
-def _text(right: str) -> ValueKind:
+def _text(right: str, option: Any = None) -> ValueKind:
     def read(where: str, value: object) -> str:
         if not isinstance(value, str) or not value.strip():
             raise InputError(where, shown_kind(value), right)
         return value
 
-    return ValueKind(TEXT, read)
+    return ValueKind(TEXT, read, option)
 
 
 def _names(where: str, value: object) -> tuple[str, ...]:
@@ -111,12 +111,9 @@ def _length(where: str, value: object) -> str:
 def _about(where: str, value: object) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
         raise InputError(where, shown_kind(value), "names with texts, {'project': 'Crane 4'}")
-    for name, label in value.items():
-        if name == LOGO:
-            raise InputError(where, name, "no logo: requests name no files", (LOGO,))
-        if label is not None and not isinstance(label, (str, int, float)):
-            raise InputError(f"{where}: {name}", shown_kind(label), "a text", (str(name),))
-    return dict(value)
+    if LOGO in value:
+        raise InputError(where, LOGO, "no logo: requests name no files", (LOGO,))
+    return {name: label if label is None or isinstance(label, bool) else str(label) for name, label in value.items()}
 
 
 def _headings(where: str, value: object) -> Mapping[str, str]:
@@ -127,7 +124,7 @@ def _headings(where: str, value: object) -> Mapping[str, str]:
 
 
 FLAG = ValueKind({"type": "boolean"}, _flag, bool)
-SHARE = ValueKind(some(NUMBER, TEXT), as_stated)
+SHARE = ValueKind(some(NUMBER, TEXT), as_stated, str)
 FRACTION = ValueKind({**NUMBER, "minimum": 0, "exclusiveMaximum": 1}, _fraction, float)
 RANKS = ValueKind(some(RANK.schema, listed(RANK.schema, 1)), as_stated, list[int])
 NAMES = ValueKind(listed({"type": "string"}), _names, list[str])
@@ -153,7 +150,7 @@ VARIED = ValueKind(
 WORD: Schema = {"type": ["string", "integer"]}
 SHEETS = ValueKind(some(WORD, listed(WORD)), _sheets)
 FORMATS = ValueKind(some(one_of(REPORT_FORMATS), listed(one_of(REPORT_FORMATS), 1)), _formats)
-LENGTH = ValueKind(one_of(REPORT_LENGTHS), _length)
+LENGTH = ValueKind(one_of(REPORT_LENGTHS), _length, str)
 ABOUT = ValueKind(by_name({"type": ["string", "number", "boolean"]}), _about)
 ROWS = ValueKind(listed({"type": "object"}, 1), as_stated)
 HEADINGS = ValueKind(by_name({"type": "string"}), _headings)
@@ -192,13 +189,11 @@ class FrontRequest(VerbRequest):
         "Id of a job that has found a front.",
         examples=(JOB,),
         needed="the id of a job that has found a front",
-        flag="",
     )
     family: str | None = field(
         _text("the name of a family"),
         "Of a job that compares several: which front is meant.",
         examples=(*family_names()[:1],),
-        flag="",
     )
 
 
@@ -215,7 +210,6 @@ class CompareRequest(VerbRequest):
         SEVERAL,
         "Families that are compared: `any` for all, or a list of names, each perhaps with entries of its own.",
         examples=("any", [*family_names()[:2]]),
-        flag="",
     )
 
 
@@ -230,7 +224,6 @@ class WhatIfRequest(VerbRequest):
         unit="that of what varies",
         examples=({"load_torque": "500:700:50 N*m"}, {"mass <=": {"from": "40 kg", "to": "60 kg", "count": 3}}),
         needed=VARIES,
-        flag="",
     )
     breaks: bool = field(
         FLAG, "Find where the best parts or counts change.", usual=True, examples=(False,), flag="--breaks/--no-breaks"
@@ -270,8 +263,8 @@ class NearEqualsRequest(VerbRequest):
 class RateRequest(VerbRequest):
     """Which designs, and what scatters."""
 
-    design: tuple[int, ...] | None = field(RANKS, "Ranks of designs, all by default.", examples=(1, [1, 2]), flag="")
-    robust: Mapping[str, Any] | None = shared(FIELDS["robust"], flag="")
+    design: tuple[int, ...] | None = field(RANKS, "Ranks of designs, all by default.", examples=(1, [1, 2]))
+    robust: Mapping[str, Any] | None = shared(FIELDS["robust"])
     time_limit: float | None = shared(FIELDS["time_limit"])
 
 
@@ -298,12 +291,10 @@ class FrontReportRequest(VerbRequest):
     full: int = field(
         whole(0, INPUT_LIMITS.points), "Designs that report.html tells in full.", usual=5, examples=(0, 10)
     )
-    formats: tuple[str, ...] = field(
-        FORMATS, "What is written.", usual=("html",), examples=("pdf", ["html", "xlsx"]), flag=""
-    )
+    formats: tuple[str, ...] = field(FORMATS, "What is written.", usual=("html",), examples=("pdf", ["html", "xlsx"]))
     length: str = field(LENGTH, "Of the sheets: summary, normal or full.", usual="normal", examples=("full",))
     about: Mapping[str, Any] | None = field(
-        ABOUT, "Whom the report is for: `project`, `author` and the like.", examples=({"project": "Crane 4"},), flag=""
+        ABOUT, "Whom the report is for: `project`, `author` and the like.", examples=({"project": "Crane 4"},)
     )
 
 
@@ -312,17 +303,13 @@ class BatchRequest(VerbRequest):
     """A table, and what is asked of all its rows."""
 
     upload: str | None = field(
-        _text("the id of a file that was uploaded, or rows"),
-        "Id of a file that was uploaded.",
-        examples=(JOB,),
-        flag="",
+        _text("the id of a file that was uploaded, or rows"), "Id of a file that was uploaded.", examples=(JOB,)
     )
-    rows: Any = field(ROWS, "The rows, by names of requirements.", examples=([{"load_torque": "600 N*m"}],), flag="")
+    rows: Any = field(ROWS, "The rows, by names of requirements.", examples=([{"load_torque": "600 N*m"}],))
     mapping: Mapping[str, str] | None = field(
         HEADINGS,
         "What headings of your own mean: the name of a requirement, or `carry`.",
         examples=({"Lastmoment [Nm]": "load_torque"},),
-        flag="",
     )
     family: str | None = field(
         _text("the name of a family"),
@@ -350,7 +337,7 @@ class SizeRangeRequest(VerbRequest):
 
     variants: int | None = field(LISTED, "How many variants; by default the fewest that serve all rows.", examples=(3,))
     objective: str | None = field(
-        _text("the name of a quantity"),
+        _text("the name of a quantity", str),
         "What should exceed each row's own best as little as possible.",
         examples=("mass",),
         metavar="NAME",

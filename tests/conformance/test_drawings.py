@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from synth.reports.drawing.dxf import dxf_document
 from synth.reports.drawing.page import paper_sheet
-from synth.reports.drawing.paper import corners_of, overlap
+from synth.reports.drawing.paper import overlap
 from synth.reports.drawing.svg import drawing_svg
 
 import synth
@@ -23,6 +23,7 @@ from synth.testing.properties import Properties
 from tests.conformance.cases import CASES, front_of, question
 from tests.repetitions import repetitions
 from tests.reports.dxf_measures import drawn_measure, measured_in
+from tests.reports.sheet_places import corners_of, texts_of
 
 pytestmark = pytest.mark.slow
 of_drawings = Properties()
@@ -135,7 +136,7 @@ def test_drawings_of_an_option_set_keep_every_property(drawn):
 
 def assert_readable(sheet):
     x0, y0, x1, y1 = sheet.frame
-    texts = sheet.all_texts()
+    texts = texts_of(sheet)
     boxes = [(place, text.text, text.corners) for place, text in texts]
     for k, view in enumerate(sheet.views):
         place = f"{k} {view.view.name}" + (f" {view.detail.letter}" if view.detail else "")

@@ -14,6 +14,7 @@ from synth.reports.drawing.svg import drawing_svg
 from synth.drawing import Area, Balloon, Detail, Dimension, Drawing, Item, View, diameter, disc, rectangle
 from synth.results.report_request import About
 from synth.text.plain_text import one_line
+from tests.reports.sheet_places import texts_of
 
 HOSTILE = (
     "<script>alert(1)</script>",
@@ -34,7 +35,7 @@ def drawing(shapes=None, dimensions=(), words="Ring", **more):
 
 
 def assert_apart(sheet):
-    texts = [text for _, text in sheet.all_texts()]
+    texts = [text for _, text in texts_of(sheet)]
     x0, y0, x1, y1 = sheet.frame
     for text in texts:
         assert all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in text.corners), text

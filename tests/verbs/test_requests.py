@@ -49,8 +49,6 @@ def test_schemas_are_schemas() -> None:
         jsonschema.Draft202012Validator.check_schema(verb.schema())
 
 
-# Of a table they stand in files, or come from one.
-NO_OPTIONS = ("parts", "limits", "fix", "objectives", "catalogs")
 # Python takes them in another form: designs and tables themselves.
 OTHERWISE = {"rate": {"robust", "design"}, "batch": {"upload", "rows", "family"}, "compare": {"family"}}
 
@@ -59,7 +57,7 @@ def options(verb: Verb) -> dict[str, RequestField]:
     """Fields that are options of the command of a verb."""
     searched = {name: FIELDS[name] for name in ("points", "gap", "grid", "seed", "time_limit", "workers")}
     fields = {**(searched if verb.name in ("synthesis", "compare", "whatif") else {}), **verb.request.fields()}
-    return {name: one for name, one in fields.items() if one.flag != "" and name not in NO_OPTIONS}
+    return {name: one for name, one in fields.items() if one.value.option is not None}
 
 
 @pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
