@@ -197,7 +197,7 @@ def test_one_design_that_is_best_in_both_objectives_needs_no_levels(
     """Nothing can lie between the ends; looking for it would take longer than proving them."""
     looked: list[np.ndarray] = []
     monkeypatch.setattr(stage, "_prove_ends", lambda _: True)
-    monkeypatch.setattr(stage, "_look_at", lambda _, first: looked.append(first))
+    monkeypatch.setattr(stage, "_explore_levels", lambda _, first: looked.append(first))
     state = FrontState(pose(Strut(), NEEDED, catalogs={"rods": RODS}, points=4).search().state.task)
     state.set_pool()
     form = state.form
@@ -250,7 +250,7 @@ def test_first_levels_are_taught_by_the_designs_known_and_later_ones_are_not(mon
     kept = LevelProof.try_known
     monkeypatch.setattr(LevelProof, "try_known", lambda self: tried.append(len(self.cutoffs)) or kept(self))
     for _ in range(2):
-        stage._look_at(state, phi[:, 0])
+        stage._explore_levels(state, phi[:, 0])
     assert tried == [2]
     assert state.learned_at_levels is not None
 
@@ -265,7 +265,7 @@ def test_where_few_designs_are_known_gaps_are_proven_and_not_looked_at(
     proven: list[int] = []
     monkeypatch.setattr(stage, "few_known", lambda _: few)
     monkeypatch.setattr(stage, "_prove_ends", lambda _: True)
-    monkeypatch.setattr(stage, "_look_at", lambda _, first: looked.append(len(first)))
+    monkeypatch.setattr(stage, "_explore_levels", lambda _, first: looked.append(len(first)))
     monkeypatch.setattr(stage, "_prove", lambda _, first, *others: not proven.append(len(first)))
     assert stage.fill_levels(state)
     assert looked == ([] if few else [1])

@@ -135,8 +135,8 @@ def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, 
 PROCESS = """
 import sys
 from pathlib import Path
-from synth.system.file_locks import alone
-with alone(Path(sys.argv[1])) as own:
+from synth.system.file_locks import exclusive_access
+with exclusive_access(Path(sys.argv[1])) as own:
     print(own, flush=True)
     sys.stdin.read()
 """

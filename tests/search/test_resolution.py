@@ -142,7 +142,9 @@ def test_no_claim_is_finer_than_what_settling_ties_gives_away():
     assert finest.tolist() == [0.0, FINEST, FINEST]
     assert np.allclose(units * finest, [0.0, 5 * FINEST, 1e-12])
     distance = gap_tolerance(1e-3, log, finest, np.array([1.0, 0.0, 1e3]))
-    assert distance == pytest.approx([-math.log1p(-1e-3), FINEST - resolution.ROOM, 1.0 - resolution.ROOM], rel=1e-12)
+    assert distance == pytest.approx(
+        [-math.log1p(-1e-3), FINEST - resolution.ROUNDING, 1.0 - resolution.ROUNDING], rel=1e-12
+    )
     assert ranges(np.array([[1.0, 2.0], [4.0, 2.0]])).tolist() == [3.0, 2.0]
 
 
