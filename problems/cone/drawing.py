@@ -55,7 +55,7 @@ class _Face:
         return self.at(0.0, low), self.at(self.wide, low), self.at(self.wide, high), self.at(0.0, high)
 
 
-def cone_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
+def cone_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
     """Return the drawing of a cone clutch.
 
     Parameters
@@ -63,9 +63,7 @@ def cone_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> 
     spec : mapping
         What the hook is told.
     design : Design
-        The design.
-    complete : bool
-        Whether mass and length are those of the whole clutch, so that the shaft is known.
+        The design; where its length is that of the whole clutch, the shaft is drawn.
     """
     size = Sizes(spec, design)
     face = _Face(size)
@@ -87,7 +85,7 @@ def cone_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> 
         diameter(0.0, face.narrow_radius, "narrow_end_diameter", side="left"),
     ]
     omitted = ["spring, release gear and bearings"]
-    if complete:
+    if "pack_length" in design.values:
         shaft = size("shaft_diameter") / 2
         end = start + size("length")
         shapes += shaft_end(start, end, shaft, broken=2 * shaft * SHAFT_OUT)

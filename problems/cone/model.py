@@ -218,7 +218,7 @@ class ConeClutch(DesignProblem):
         """Return the section through the engaged cones."""
         from . import drawing as cone_drawing  # costly to import; searches do without
 
-        return cone_drawing.cone_drawing(spec, design, complete=self.option("mass_scope") == "complete")
+        return cone_drawing.cone_drawing(spec, design)
 
     def _declare_objectives(self, d: Declaration) -> None:
         d.headline(

@@ -119,7 +119,7 @@ def disc_detail(size: Sizes, discs: DrawnDiscs, letter: str = "X") -> Detail:
     )
 
 
-def disc_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> Drawing:
+def disc_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
     """Return the drawing of a disc clutch.
 
     Parameters
@@ -127,9 +127,7 @@ def disc_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> 
     spec : mapping
         What the hook is told.
     design : Design
-        The design.
-    complete : bool
-        Whether mass and length are those of the whole clutch: hubs, cover and spring.
+        The design; where its length is that of the whole clutch, hubs and shaft are drawn.
     """
     size = Sizes(spec, design)
     discs = drawn_discs(size, 0.0)
@@ -155,7 +153,7 @@ def disc_drawing(spec: Mapping[str, Any], design: Design, *, complete: bool) -> 
         "flywheel but for its face",
         "rivets and cushion springs of the linings, torsion damper",
     ]
-    if complete:
+    if "pack_length" in design.values:
         shaft, long = size("shaft_diameter") / 2, size("shaft_diameter")
         count = size.count("discs")
         middle = (discs.cores[0][0] + discs.cores[-1][1]) / 2

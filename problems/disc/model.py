@@ -131,7 +131,7 @@ class DiscClutch(DesignProblem):
         """Return the section through the released discs, with their hubs where the whole clutch is counted."""
         from . import drawing as disc_drawing  # costly to import; searches do without
 
-        return disc_drawing.disc_drawing(spec, design, complete=self.option("mass_scope") == "complete")
+        return disc_drawing.disc_drawing(spec, design)
 
     def simulate(self, spec: Mapping[str, Any], design: Design) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""

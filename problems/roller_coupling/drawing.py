@@ -52,7 +52,7 @@ class _Shape:
         self.roller, self.pin = size("roller.outer_diameter") / 2, size("roller.bore") / 2
         self.half, self.outside = size("guide_half_length"), size("float_radius")
         self.wide, self.roller_width = size("float_width"), size("roller.width")
-        self.complete = "length" in size.design.values
+        self.has_bosses = "length" in size.design.values
         self.counter = size.number("counter_floats") > 0
         # Faces of the arms: a gap beside what is wider, float or roller; a counter float takes room before arm 2.
         beside = max(self.wide, self.roller_width) / 2
@@ -124,7 +124,7 @@ def coupling_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
         "how pins are fastened to the arms and rollers held on the pins, inside of the rollers",
         "keys, and what holds the arms along their shafts",
     ]
-    if shape.complete:
+    if shape.has_bosses:
         items.append(Item(BOSS, "Boss of an arm", 2, "steel", "place as the length counts it", Hatch.RIGHT))
         weights.append(Weight((BOSS,), ("boss_mass",), "steel_density", SECTION, times=2.0))
     else:
@@ -213,7 +213,7 @@ def _behind(shape: _Shape) -> list[Drawable]:
     (x, y), long, bar = shape.along_2, shape.size("arm_length") / 2, shape.size("arm_width") / 2
     ends = ((long, bar), (-long, bar), (-long, -bar), (long, -bar))
     arm = Area(tuple((u * x - v * y, u * y + v * x) for u, v in ends), ARM, cut=False, depth=0.0)
-    if not shape.complete:
+    if not shape.has_bosses:
         return [arm]
     return [Area(disc((0.0, 0.0), shape.size("boss_diameter") / 2), BOSS, cut=False, depth=0.0), arm]
 
@@ -265,7 +265,7 @@ def _section(shape: _Shape) -> View:
         dimensions.append(Dimension((end_2, -bar), (end_2, bar), "arm_width", "right"))
     balloons = [Balloon(((end_1 + shape.face_1) / 2, e - 0.8 * arm_half), ARM, "bottom")]
     left, right = end_1, end_2
-    if shape.complete:
+    if shape.has_bosses:
         shaft, boss, out = size("shaft_diameter") / 2, size("boss_diameter") / 2, size("boss_length")
         left, right = end_1 - out, end_2 + out
         broken = 2 * shaft * SHAFT_OUT

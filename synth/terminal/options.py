@@ -141,7 +141,7 @@ class WhatIfOptions(SearchOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BatchOptions(BatchRequest):
+class RowsOptions(BatchRequest):
     """The same of a batch."""
 
     objectives: Any = shared(OBJECTIVE)

@@ -145,7 +145,6 @@ VARIED = ValueKind(
         maxProperties=2,
     ),
     _vary,
-    list[str],
 )
 WORD: Schema = {"type": ["string", "integer"]}
 SHEETS = ValueKind(some(WORD, listed(WORD)), _sheets)
@@ -263,7 +262,9 @@ class NearEqualsRequest(VerbRequest):
 class RateRequest(VerbRequest):
     """Which designs, and what scatters."""
 
-    design: tuple[int, ...] | None = field(RANKS, "Ranks of designs, all by default.", examples=(1, [1, 2]))
+    design: tuple[int, ...] | None = field(
+        ValueKind(RANKS.schema, as_stated), "Ranks of designs, all by default.", examples=(1, [1, 2])
+    )
     robust: Mapping[str, Any] | None = shared(FIELDS["robust"])
     time_limit: float | None = shared(FIELDS["time_limit"])
 
@@ -312,7 +313,7 @@ class BatchRequest(VerbRequest):
         examples=({"Lastmoment [Nm]": "load_torque"},),
     )
     family: str | None = field(
-        _text("the name of a family"),
+        _text("the name of a family", str),
         "Family of the rows that name none.",
         examples=(*family_names()[:1],),
         metavar="FAMILY",

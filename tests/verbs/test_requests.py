@@ -60,6 +60,26 @@ def options(verb: Verb) -> dict[str, RequestField]:
     return {name: one for name, one in fields.items() if one.value.option is not None}
 
 
+SEARCHED = "points gap grid seed time_limit workers"
+OPTIONS = {
+    "synthesis": SEARCHED,
+    "compare": SEARCHED,
+    "whatif": f"{SEARCHED} breaks",
+    "explain": "physics",
+    "prices": "design step time_limit",
+    "near_equals": "design within count seed time_limit",
+    "rate": "time_limit",
+    "verify": "time_limit",
+    "report": "full length",
+    "batch": "family points gap grid seed time_limit",
+    "size_range": "variants objective per_row candidates gap time_limit",
+}
+
+
+def test_no_option_is_lost() -> None:
+    assert {name: " ".join(options(verb)) for name, verb in VERBS.items()} == OPTIONS
+
+
 @pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
 def test_the_command_line_takes_what_the_record_says(verb: Verb) -> None:
     params = {one.name: one for one in COMMANDS[COMMAND.get(verb.name, verb.name.replace("_", "-"))].params}
