@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share; ``Grid`` and ``Seed`` take their type in brackets."""
+"""Arguments and options that several commands share, and those that come from the records of the verbs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from synth.text.numbers import typed_number
 from synth.verbs.request import VerbRequest, as_flag, shared
 from synth.verbs.requests import BatchRequest, WhatIfRequest
 
-T = TypeVar("T")
 P = ParamSpec("P")
 Asked = TypeVar("Asked", bound=VerbRequest)
 
@@ -47,9 +46,8 @@ def takes(request: type[Asked]) -> Callable[[Callable[Concatenate[Asked, P], Non
         fields = {name: record for name, record in request.fields().items() if record.value.option is not None}
 
         def run(*args: P.args, **values: P.kwargs) -> None:
-            stated = {name: values.pop(name) for name in fields}
-            asked = request.read({name: value for name, value in stated.items() if value != []}, as_flag)
-            command(asked, *args, **values)
+            stated = {name: value for name in fields if (value := values.pop(name)) != []}
+            command(request.read(stated, as_flag), *args, **values)
 
         own = list(inspect.signature(command, eval_str=True).parameters.values())[1:]
         behind = 1 + max(k for k, one in enumerate(own) if one.name in ABOUT)

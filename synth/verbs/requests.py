@@ -89,9 +89,8 @@ def _vary(where: str, value: object) -> Mapping[str, Any]:
 
 def _sheets(where: str, value: object) -> tuple[str, ...]:
     words = value if isinstance(value, (list, tuple)) else [value]
-    for word in words:
-        if isinstance(word, bool) or not isinstance(word, (int, str)):
-            raise InputError(where, shown_kind(word), "ranks, or knee")
+    if any(isinstance(word, bool) or not isinstance(word, (int, str)) for word in words):
+        raise InputError(where, shown_kind(value), "ranks, or knee")
     return tuple(map(str, words))
 
 
@@ -111,8 +110,10 @@ def _length(where: str, value: object) -> str:
 def _about(where: str, value: object) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
         raise InputError(where, shown_kind(value), "names with texts, {'project': 'Crane 4'}")
-    if LOGO in value:
-        raise InputError(where, LOGO, "no logo: requests name no files", (LOGO,))
+    for name, label in value.items():
+        if name == LOGO or not isinstance(label, (str, int, float, type(None))):
+            right = "a text, and no logo: requests name no files"
+            raise InputError(f"{where}: {name}", shown_kind(label), right, (str(name),))
     return {name: label if label is None or isinstance(label, bool) else str(label) for name, label in value.items()}
 
 
