@@ -89,7 +89,7 @@ def _listed(names: Sequence[str], count: int) -> str:
 
     Examples
     --------
-    >>> _some(["a", "b", "c"], 2), _some(["a", "b", "c"], 3), _some(["a"], 0)
+    >>> _listed(["a", "b", "c"], 2), _listed(["a", "b", "c"], 3), _listed(["a"], 0)
     ('a, b and 1 more', 'a, b, c', '1 input')
     """
     unnamed = len(names) - count

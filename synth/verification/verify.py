@@ -49,7 +49,6 @@ from synth.special import expanded
 from synth.text.numbers import gap_text, percent, typed_number
 from synth.text.plain_text import counted
 from synth.units import typed_quantity
-from synth.verbs.requests import VerifyRequest
 from synth.verification.contradictions import contradiction
 from synth.verification.pareto_regions import uncovered
 from synth.verification.ranking import ranking_faults
@@ -65,7 +64,7 @@ def verify(
     front: ParetoFront,
     problem: str | type[DesignProblem] | DesignProblem | None = None,
     catalogs: Any = None,
-    time_limit: float = VerifyRequest.time_limit,
+    time_limit: float = 120.0,
 ) -> Verification:
     """Check a front without help of the search that made it.
 

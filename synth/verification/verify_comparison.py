@@ -26,7 +26,6 @@ from synth.results import ParetoFront
 from synth.results.loading import COMPARISON, unchecked_front
 from synth.results.verification import Verification
 from synth.robust.counterpart import robust_counterpart
-from synth.verbs.requests import VerifyRequest
 from synth.verification.verify import checked
 
 
@@ -77,9 +76,7 @@ def is_comparison(folder: str | Path) -> bool:
     return (Path(folder) / COMPARISON).is_file()
 
 
-def verify_comparison(
-    folder: str | Path, time_limit: float = VerifyRequest.time_limit, catalogs: Any = None
-) -> Verification:
+def verify_comparison(folder: str | Path, time_limit: float = 120.0, catalogs: Any = None) -> Verification:
     """Check a saved comparison without help of the search that made it.
 
     Parameters
