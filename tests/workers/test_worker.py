@@ -316,7 +316,7 @@ class Looks:
 
 def test_a_process_that_waits_for_its_turn_is_not_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     """What counts is the time that it has had on a processor: none, however long the machine was busy."""
-    engine = EngineProcess(EngineSettings(look=0.02, stuck=1e6))
+    engine = EngineProcess(EngineSettings(poll=0.02, stuck=1e6))
     try:
         assert engine.warm(60.0)
         engine.call(FILES_TASK, {"kind": "batch"}, 60.0)
@@ -330,7 +330,7 @@ def test_a_process_that_waits_for_its_turn_is_not_ended(monkeypatch: pytest.Monk
 
 
 def test_a_process_that_is_stuck_is_ended() -> None:
-    engine = EngineProcess(EngineSettings(look=0.02, stuck=1.0))
+    engine = EngineProcess(EngineSettings(poll=0.02, stuck=1.0))
     assert engine.warm(60.0)
     os.kill(engine.pid, signal.SIGSTOP)
     with pytest.raises(EngineTimeoutError):
@@ -397,12 +397,12 @@ def test_a_job_that_no_program_can_do_fails_without_telling_the_program(tmp_path
     with Store(file_url(tmp_path / "jobs.sqlite")) as store:
         job = submit(store, engines, "synthesis", QUICK)
         with store.engine.begin() as connection:
-            connection.execute(sa.update(Job).where(Job.id == job).values(kind="verify"))
+            connection.execute(sa.update(Job).where(Job.id == job).values(kind="size_range"))
         with serving(store, say=said.append):
             found = ended(store, job)
     assert found.state == FAILED
     assert "KeyError" not in json.dumps(found.error)
-    assert any("KeyError" in line and "verify.py" in line for line in said)
+    assert any("KeyError" in line and "size_range.py" in line for line in said)
 
 
 def test_a_process_that_was_ended_says_how() -> None:
