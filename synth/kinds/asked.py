@@ -44,10 +44,10 @@ TABLE_EXPECTED = (
 )
 
 
-# ---- keys -----------------------------------------------------------------------------------------------------------
-
-
 Own = TypeVar("Own", bound=VerbRequest)
+
+
+# ---- keys -----------------------------------------------------------------------------------------------------------
 
 
 def about_front(request: Any, verb: type[Own]) -> tuple[FrontRequest, Own]:
@@ -314,9 +314,8 @@ def question_of(spec: Mapping[str, Any], sources: Sources, **usual: Any) -> tupl
     """
     content = {key: value for key, value in spec.items() if key != CATALOGS}
     refuse_several(content.get(FAMILY, ""), WHERE)
-    faults: list[InputError] = []
+    faults, tables = list[InputError](), as_catalogs(None)
     with gathered(faults):
-        tables = as_catalogs(None)
         tables = catalogs_of(spec.get(CATALOGS), sources)
     with gathered(faults):
         request = Request.from_json(content, WHERE, catalogs=tables)

@@ -239,9 +239,10 @@ def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator
         asked = BatchRequest.read(stated, in_request)
     with gathered(faults):
         catalogs = catalogs_of(stated.get("catalogs"), sources)
+    with gathered(faults):
+        if isinstance(family := stated.get("family"), str):
+            load(family)
     refuse_gathered(faults)
-    if asked.family is not None:
-        load(asked.family)
     settings = SearchSettings(points=asked.points, gap=asked.gap, seed=asked.seed, time_limit=asked.time_limit)
     common = {name: getattr(asked, name) for name in ("parts", "limits", "fix", "objectives", "grid")}
     with tempfile.TemporaryDirectory(prefix="clutchsynth-") as folder:

@@ -79,14 +79,17 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     """
     spec = {key: value for key, value in request.items() if key not in (VARY, BREAKS)}
     faults: list[InputError] = []
-    with gathered(faults):
-        WhatIfRequest.read({name: request.get(name) for name in (VARY, BREAKS)}, in_request)
     stated, vary = request.get(VARY), dict[str, Any]()
+    with gathered(faults):
+        if (breaks := request.get(BREAKS)) is not None:
+            WhatIfRequest.fields()[BREAKS].read(in_request(BREAKS), breaks)
     if not isinstance(stated, Mapping) or not stated:
+        with gathered(faults):
+            WhatIfRequest.read({VARY: stated}, in_request)
         return spec, faults
     for name, values in stated.items():
-        with gathered([]):  # of its ends: told already
-            vary |= _vary({name: values})
+        with gathered(faults):
+            vary |= _vary(WhatIfRequest.read({VARY: {name: values}}, in_request).vary)
     with gathered([]):  # of the spec: its check tells it
         known = {key: value for key, value in spec.items() if key in (*SPEC, OF)}
         whole, _ = spec_of(known, sources)

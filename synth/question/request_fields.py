@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import Described, InputError, at, whole_number
-from synth.plugins import family_names
 from synth.text.input_limits import INPUT_LIMITS
 
 Schema = Mapping[str, Any]
@@ -28,15 +27,16 @@ class ValueKind:
 
     Parameters
     ----------
-    schema : mapping
-        What it accepts, null apart. What fits may still be refused by its reader.
+    schema : mapping, or callable that returns one
+        What it accepts, null apart. What fits may still be refused by its reader. A callable looks for what is
+        installed, which no command should do when it starts.
     read : callable
         Value as stated -> value as used; the first argument names the field in messages.
     option : type, optional
         Of its option on the command line; without one it has none.
     """
 
-    schema: Schema
+    schema: Schema | Callable[[], Schema]
     read: Reader
     option: Any = None
 
@@ -56,7 +56,7 @@ class RequestField:
     usual : object
         Default; None where there is none.
     examples : tuple
-        Accepted values.
+        Accepted values; none where the schema lists all.
     flag : str
         Spelling on the command line where it is not the name.
     metavar : str, optional
@@ -71,7 +71,7 @@ class RequestField:
     _: KW_ONLY
     unit: str = "-"
     usual: Any = None
-    examples: tuple[Any, ...]
+    examples: tuple[Any, ...] = ()
     flag: str = ""
     metavar: str | None = None
     needed: str = ""
@@ -89,7 +89,8 @@ class RequestField:
 
     def schema(self) -> dict[str, Any]:
         """JSON Schema of the field."""
-        return {**self.value.schema, "description": self.help}
+        schema = self.value.schema
+        return {**(schema() if callable(schema) else schema), "description": self.help}
 
 
 # ---- readers --------------------------------------------------------------------------------------------------------
@@ -121,16 +122,24 @@ def shown_kind(value: Any) -> Any:
     return value
 
 
-def _text(where: str, value: Any) -> str:
-    if not isinstance(value, str) or not value.strip():
-        raise InputError(where, shown_kind(value), "a name")
-    return value
+def text(right: str = "a name") -> Reader:
+    """Reader of a text that is not empty; ``right`` is what messages expect."""
+
+    def read(where: str, value: Any) -> str:
+        if not isinstance(value, str) or not value.strip():
+            raise InputError(where, shown_kind(value), right)
+        return value
+
+    return read
+
+
+_name = text()
 
 
 def _family(where: str, value: Any) -> Any:
     """Return a name, or several: names, and mappings with what concerns one family alone."""
     if not isinstance(value, (list, tuple)):
-        return _text(where, value)
+        return _name(where, value)
     if not value:
         raise InputError(where, shown_kind(value), "a name, 'any', or a list with at least one name")
     entries = []
@@ -142,7 +151,7 @@ def _family(where: str, value: Any) -> Any:
 
 def _one_family(where: str, entry: Any) -> Any:
     if not isinstance(entry, Mapping):
-        return _text(where, entry)
+        return _name(where, entry)
     for key in entry:
         if key not in OWN:
             raise InputError(f"{where}: key", key, f"one of {', '.join(OWN)}", (str(key),))
@@ -152,7 +161,7 @@ def _one_family(where: str, entry: Any) -> Any:
     for key, value in entry.items():
         with at(key):
             named = f"{where}: {key}"
-            checked[key] = _text(where, value) if key == "family" else FIELDS[key].value.read(named, value)
+            checked[key] = _name(where, value) if key == "family" else FIELDS[key].value.read(named, value)
     return MappingProxyType(checked)
 
 
@@ -322,13 +331,18 @@ def by_name(of: Schema, **more: Any) -> Schema:
     return {"type": "object", "additionalProperties": of, **more}
 
 
+def whole_schema(least: int, most: int) -> Schema:
+    """Schema of a whole number between two bounds."""
+    return {"type": "integer", "minimum": least, "maximum": most}
+
+
 def whole(least: int, most: int) -> ValueKind:
     """Whole number between two bounds."""
 
     def read(where: str, value: Any) -> int | None:
         return None if value is None else whole_number(shown_kind(value), where, most, least)
 
-    return ValueKind({"type": "integer", "minimum": least, "maximum": most}, read, int)
+    return ValueKind(whole_schema(least, most), read, int)
 
 
 TEXT: Schema = {"type": "string", "minLength": 1}
@@ -353,6 +367,15 @@ TABLES: Schema = {
         listed({"type": "string", "pattern": rf"^(\+|{REFERENCE})$"}, 2),
     ),
 }
+
+
+def family_schema() -> Schema:
+    """Schema of the name of a registered family."""
+    from synth.plugins import family_names  # importlib.metadata comes with it; --help does without
+
+    return one_of(family_names())
+
+
 RANK = whole(1, INPUT_LIMITS.points)
 LISTED = whole(1, INPUT_LIMITS.listed)
 SEED = whole(0, INPUT_LIMITS.seed)
@@ -365,7 +388,7 @@ SPREAD: Schema = by_name(
         "tolerance": by_name({"type": "string"}),
         "mode": one_of(("limits", "rate")),
         "samples": {"type": "integer"},
-        "seed": SEED.schema,
+        "seed": whole_schema(0, INPUT_LIMITS.seed),
         "confidence": QUANTITY,
         "scenarios": by_name(listed(listed({**NUMBER, "minimum": 0, "maximum": 1}))),
     },
@@ -380,9 +403,7 @@ def _by_name(*fields: RequestField) -> Mapping[str, RequestField]:
 
 
 FIELDS: Mapping[str, RequestField] = _by_name(
-    RequestField(
-        "family", ValueKind(one_of(family_names()), _family), "Name of a family.", examples=(*family_names()[:1],)
-    ),
+    RequestField("family", ValueKind(family_schema, _family), "Name of a family."),
     RequestField(
         "options",
         ValueKind(by_name({"type": ["string", "boolean"]}), _options),

@@ -7,7 +7,6 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from synth.errors import InputError, gathered, refuse_gathered
-from synth.plugins import family_names
 from synth.question.request_fields import FIELDS, shown_kind
 
 # What would be right, where whoever knows of commands may say which.
@@ -18,6 +17,8 @@ A_DESIGN = "the variables, counts and choices of the design; without them it is 
 
 def no_family(where: str) -> InputError:
     """Message for a spec that names no family; ``where`` is its name."""
+    from synth.plugins import family_names  # importlib.metadata comes with it; --help does without
+
     return InputError(f"{where}: family", None, f"the name of a family: {', '.join(family_names())}", ("family",))
 
 

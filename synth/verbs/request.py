@@ -102,7 +102,7 @@ def known_keys(request: object, keys: Collection[str]) -> dict[str, Any]:
     faults: list[InputError] = []
     for key in request:
         with gathered(faults):
-            if key == WORKERS and key not in keys:
+            if key == WORKERS:
                 one_thread(request[key])
             elif key not in keys:
                 raise InputError(f"{WHERE}: key", key, f"one of {', '.join(keys)}", (str(key),))

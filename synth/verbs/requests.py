@@ -9,7 +9,6 @@ from types import MappingProxyType
 from typing import Any
 
 from synth.errors import InputError
-from synth.plugins import family_names
 from synth.question.request_fields import (
     FIELDS,
     LISTED,
@@ -25,11 +24,14 @@ from synth.question.request_fields import (
     Schema,
     ValueKind,
     by_name,
+    family_schema,
     listed,
     one_of,
     shown_kind,
     some,
+    text,
     whole,
+    whole_schema,
 )
 from synth.text.input_limits import INPUT_LIMITS
 from synth.verbs.request import WORKERS, VerbRequest, field, schema_of, shared
@@ -60,15 +62,6 @@ def _fraction(where: str, value: object) -> float:
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not 0 <= value < 1:
         raise InputError(where, shown_kind(value), "a fraction from 0 to below 1, for example 0.001")
     return float(value)
-
-
-def _text(right: str, option: Any = None) -> ValueKind:
-    def read(where: str, value: object) -> str:
-        if not isinstance(value, str) or not value.strip():
-            raise InputError(where, shown_kind(value), right)
-        return value
-
-    return ValueKind(TEXT, read, option)
 
 
 def _names(where: str, value: object) -> tuple[str, ...]:
@@ -108,13 +101,12 @@ def _length(where: str, value: object) -> str:
 
 
 def _about(where: str, value: object) -> Mapping[str, Any]:
+    """Labels by name; :class:`synth.results.report_request.About` reads them."""
     if not isinstance(value, Mapping):
         raise InputError(where, shown_kind(value), "names with texts, {'project': 'Crane 4'}")
-    for name, label in value.items():
-        if name == LOGO or not isinstance(label, (str, int, float, type(None))):
-            right = "a text, and no logo: requests name no files"
-            raise InputError(f"{where}: {name}", shown_kind(label), right, (str(name),))
-    return {name: label if label is None or isinstance(label, bool) else str(label) for name, label in value.items()}
+    if LOGO in value:
+        raise InputError(where, LOGO, "no logo: requests name no files", (LOGO,))
+    return dict(value)
 
 
 def _headings(where: str, value: object) -> Mapping[str, str]:
@@ -127,7 +119,8 @@ def _headings(where: str, value: object) -> Mapping[str, str]:
 FLAG = ValueKind({"type": "boolean"}, _flag, bool)
 SHARE = ValueKind(some(NUMBER, TEXT), as_stated, str)
 FRACTION = ValueKind({**NUMBER, "minimum": 0, "exclusiveMaximum": 1}, _fraction, float)
-RANKS = ValueKind(some(RANK.schema, listed(RANK.schema, 1)), as_stated, list[int])
+RANKS_SCHEMA = some(whole_schema(1, INPUT_LIMITS.points), listed(whole_schema(1, INPUT_LIMITS.points), 1))
+RANKS = ValueKind(RANKS_SCHEMA, as_stated, list[int])
 NAMES = ValueKind(listed({"type": "string"}), _names, list[str])
 OWN_TABLES = ValueKind(TABLES, as_stated)
 VARIED = ValueKind(
@@ -137,7 +130,7 @@ VARIED = ValueKind(
             listed(some(QUANTITY, listed(TEXT, 1)), 1),
             {
                 "type": "object",
-                "properties": {"from": QUANTITY, "to": QUANTITY, "count": whole(2, INPUT_LIMITS.steps).schema},
+                "properties": {"from": QUANTITY, "to": QUANTITY, "count": whole_schema(2, INPUT_LIMITS.steps)},
                 "required": list(VARIED_ENDS),
                 "additionalProperties": False,
             },
@@ -151,7 +144,7 @@ WORD: Schema = {"type": ["string", "integer"]}
 SHEETS = ValueKind(some(WORD, listed(WORD)), _sheets)
 FORMATS = ValueKind(some(one_of(REPORT_FORMATS), listed(one_of(REPORT_FORMATS), 1)), _formats)
 LENGTH = ValueKind(one_of(REPORT_LENGTHS), _length, str)
-ABOUT = ValueKind(by_name({"type": ["string", "number", "boolean"]}), _about)
+ABOUT = ValueKind(by_name({"type": "string"}), _about)
 ROWS = ValueKind(listed({"type": "object"}, 1), as_stated)
 HEADINGS = ValueKind(by_name({"type": "string"}), _headings)
 
@@ -164,17 +157,20 @@ JOB_FIELDS = {
     WORKERS: replace(FIELDS[WORKERS], value=ValueKind({"const": 1}, as_stated), help="Of a job always one."),
 }
 SPEC = tuple(name for name in FIELDS if name not in OF_A_DESIGN)
-ONE_FAMILY: Schema = {
-    **schema_of("A family, with what concerns it alone.", {name: FIELDS[name] for name in OWN}),
-    "required": ["family"],
-}
-SEVERAL = ValueKind(
-    some({"const": "any"}, listed(some(FIELDS["family"].schema(), ONE_FAMILY), 1)), FIELDS["family"].value.read
-)
-DESIGN: Schema = {
-    **schema_of("A design: a spec with `values` and the parts that are meant.", JOB_FIELDS),
-    "required": ["family", "values"],
-}
+
+
+def _families_schema() -> Schema:
+    one = schema_of("A family, with what concerns it alone.", {name: FIELDS[name] for name in OWN})
+    return some({"const": "any"}, listed(some(FIELDS["family"].schema(), {**one, "required": ["family"]}), 1))
+
+
+SEVERAL = ValueKind(_families_schema, FIELDS["family"].value.read)
+
+
+def design_schema() -> Schema:
+    """JSON Schema of a design as a spec."""
+    spec = schema_of("A design: a spec with `values` and the parts that are meant.", JOB_FIELDS)
+    return {**spec, "required": ["family", "values"]}
 
 
 # ---- requests -------------------------------------------------------------------------------------------------------
@@ -185,15 +181,14 @@ class FrontRequest(VerbRequest):
     """The front that a job is about."""
 
     of: str = field(
-        _text("the id of a job that has ended"),
+        ValueKind(TEXT, text("the id of a job that has ended")),
         "Id of a job that has found a front.",
         examples=(JOB,),
         needed="the id of a job that has found a front",
     )
     family: str | None = field(
-        _text("the name of a family"),
+        ValueKind(family_schema, text("the name of a family")),
         "Of a job that compares several: which front is meant.",
-        examples=(*family_names()[:1],),
     )
 
 
@@ -209,7 +204,7 @@ class CompareRequest(VerbRequest):
     family: Any = field(
         SEVERAL,
         "Families that are compared: `any` for all, or a list of names, each perhaps with entries of its own.",
-        examples=("any", [*family_names()[:2]]),
+        examples=("any",),
     )
 
 
@@ -264,7 +259,7 @@ class RateRequest(VerbRequest):
     """Which designs, and what scatters."""
 
     design: tuple[int, ...] | None = field(
-        ValueKind(RANKS.schema, as_stated), "Ranks of designs, all by default.", examples=(1, [1, 2])
+        ValueKind(RANKS_SCHEMA, as_stated), "Ranks of designs, all by default.", examples=(1, [1, 2])
     )
     robust: Mapping[str, Any] | None = shared(FIELDS["robust"])
     time_limit: float | None = shared(FIELDS["time_limit"])
@@ -305,7 +300,9 @@ class BatchRequest(VerbRequest):
     """A table, and what is asked of all its rows."""
 
     upload: str | None = field(
-        _text("the id of a file that was uploaded, or rows"), "Id of a file that was uploaded.", examples=(JOB,)
+        ValueKind(TEXT, text("the id of a file that was uploaded, or rows")),
+        "Id of a file that was uploaded.",
+        examples=(JOB,),
     )
     rows: Any = field(ROWS, "The rows, by names of requirements.", examples=([{"load_torque": "600 N*m"}],))
     mapping: Mapping[str, str] | None = field(
@@ -314,9 +311,8 @@ class BatchRequest(VerbRequest):
         examples=({"Lastmoment [Nm]": "load_torque"},),
     )
     family: str | None = field(
-        _text("the name of a family", str),
+        ValueKind(family_schema, text("the name of a family"), str),
         "Family of the rows that name none.",
-        examples=(*family_names()[:1],),
         metavar="FAMILY",
     )
     objectives: Any = shared(FIELDS["objectives"])
@@ -339,7 +335,7 @@ class SizeRangeRequest(VerbRequest):
 
     variants: int | None = field(LISTED, "How many variants; by default the fewest that serve all rows.", examples=(3,))
     objective: str | None = field(
-        _text("the name of a quantity", str),
+        ValueKind(TEXT, text("the name of a quantity"), str),
         "What should exceed each row's own best as little as possible.",
         examples=("mass",),
         metavar="NAME",
@@ -369,12 +365,16 @@ class Subject(Enum):
 
 EARLIER = RequestField(
     OF,
-    _text("the id of a job that has ended"),
+    ValueKind(TEXT, text("the id of a job that has ended")),
     "Id of an earlier job, whose question is taken with the entries that stand here.",
     examples=(JOB,),
 )
 BATCH_DONE = RequestField(
-    OF, _text("the id of a batch"), "Id of a batch that is done.", examples=(JOB,), needed="the id of a batch"
+    OF,
+    ValueKind(TEXT, text("the id of a batch")),
+    "Id of a batch that is done.",
+    examples=(JOB,),
+    needed="the id of a batch",
 )
 
 
@@ -413,7 +413,7 @@ class Verb:
         """JSON Schema of its request as a job."""
         either = {Subject.QUESTION: ("family", OF), Subject.ROWS: ("upload", "rows")}.get(self.about, ())
         schema = schema_of(f"{self.title}.", self.fields(), either=either)
-        return {"anyOf": [schema, DESIGN]} if self.about is Subject.DESIGNS else schema
+        return {"anyOf": [schema, design_schema()]} if self.about is Subject.DESIGNS else schema
 
 
 def _verbs(*verbs: Verb) -> Mapping[str, Verb]:

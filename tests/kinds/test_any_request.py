@@ -15,13 +15,14 @@ from hypothesis import strategies as st
 from synth.errors import ExtraNeededError, InputError
 from synth.kinds import KINDS, Sources, batch
 from synth.question.request_fields import FIELDS
-from synth.verbs.requests import DESIGN, VERBS
+from synth.verbs.requests import VERBS, design_schema
 from synth.workers.engine_questions import check, evaluate
 from synth.workers.engine_work import read
 from tests.kinds.jobs import DISC, PAIR, SPECS, disc, pair
 from tests.repetitions import repetitions
 
 pytestmark = pytest.mark.slow
+DESIGN = design_schema()
 REQUESTS = {name: verb.schema() for name, verb in VERBS.items()}
 DUTY = DISC["requirements"]
 LECTURE = SPECS["lecture_design"]
@@ -197,6 +198,9 @@ def test_every_kind_has_a_schema() -> None:
         ("synthesis", {**DISC, "robust": {**SPREAD, "tolerance": []}}, ("robust", "tolerance")),
         ("batch", {"family": "disc_clutch", "rows": [DUTY], "objectives": True}, ("objectives",)),
         ("synthesis", {"of": "front", "requirements": "600 N*m"}, ("requirements",)),
+        ("whatif", {**DISC, "vary": {"load_torque": {"from": "1 N*m"}, "mass <=": "3 kg"}}, ("vary", "load_torque")),
+        ("rate", {**LECTURE, "robust": SPREAD, "workers": 4}, ("workers",)),
+        ("report", {"of": "front", "about": {"number": 1.1}}, ("about", "number")),
     ],
 )
 def test_what_broke_the_reader_is_refused_where_it_stands(kind: str, request_: Any, path: tuple[Any, ...]) -> None:

@@ -8,7 +8,7 @@ from fastapi import FastAPI
 
 from synth.service.context import API
 from synth.service.errors import JSON
-from synth.verbs.requests import DESIGN, VERBS
+from synth.verbs.requests import VERBS, design_schema
 
 
 class DescribedService(FastAPI):
@@ -18,7 +18,7 @@ class DescribedService(FastAPI):
         """Describe the interface."""
         told = super().openapi()
         schemas = told["components"]["schemas"]
-        schemas |= {_name(name): verb.schema() for name, verb in VERBS.items()} | {"Design": DESIGN}
+        schemas |= {_name(name): verb.schema() for name, verb in VERBS.items()} | {"Design": design_schema()}
         schemas["JobRequest"]["anyOf"] = [
             {"properties": {"kind": {"const": kind}, "request": _ref(_name(kind))}} for kind in VERBS
         ]
