@@ -6,13 +6,14 @@ and say so.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from synth.declaration import Block, Declaration, Requirement, RowRange
 
 from .mechanics import shaft as shaft_formulas
 from .mechanics.plates import shaft_shear_stress
 
+Layer = TypeVar("Layer")
 UNSOURCED = "practice, unsourced"
 SHAFT_STRENGTH = f"DIN 743-2, from memory; notch and pulsating share: {UNSOURCED}"
 COUNTED = {"on": "complete", "off": "parts"}  # default of mass_scope by practice
@@ -36,10 +37,10 @@ class Scope(NamedTuple):
     rules: bool
     complete: bool
 
-    @property
-    def whole(self) -> bool:
-        """Whether what is around the parts of the formulas must be known at all."""
-        return self.rules or self.complete
+
+def by_scope(sources: Layer, complete: Layer, ruled: Layer, ruled_complete: Layer) -> dict[tuple[bool, bool], Layer]:
+    """Layers of a family by :class:`Scope`: the sources alone, the complete clutch, rules of practice, and both."""
+    return {(False, False): sources, (False, True): complete, (True, False): ruled, (True, True): ruled_complete}
 
 
 def declare_scope(d: Declaration) -> Scope:

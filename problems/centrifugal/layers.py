@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from .. import wear
-from ..practice import current_linings
+from ..practice import by_scope, current_linings
 from . import body, size
 from .body import Built
 from .duty import Duty, WholeDuty, declare_duty, declare_whole_duty
@@ -138,10 +138,4 @@ class RuledComplete(Ruled, Complete):
     """Clutch by rules of practice, the whole of which counts."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

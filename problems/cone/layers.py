@@ -11,6 +11,7 @@ from synth.declaration import Declaration
 from .. import cost, practice
 from ..friction.duty import Duty, Size, sizing_torque
 from ..friction.engagement import Pair
+from ..practice import by_scope
 from . import body
 from . import formulas as cone
 from .body import DERIVED, Cone, ConeBody, Cones
@@ -144,10 +145,4 @@ class RuledComplete(Ruled, Complete):
     """Cones by rules of practice, in a complete clutch whose mass and length count."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -11,7 +11,7 @@ from synth.declaration import Declaration
 
 from .. import cost, practice
 from ..friction.duty import Duty, DutyOfDiscs, Size, sizing_torque
-from ..practice import ShaftRequirements
+from ..practice import ShaftRequirements, by_scope
 from . import body
 from .body import DiscHousing, DiscRules
 from .pack import DiscRequirements, Discs
@@ -120,10 +120,4 @@ class RuledComplete(Ruled, Complete):
     """Discs by rules of practice, in a complete clutch whose mass and length count."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -10,7 +10,7 @@ from .. import cost
 from ..disc import layers as disc_layers
 from ..magnet.coil import Winding
 from ..multi_plate import layers as plate_layers
-from ..practice import ShaftRequirements
+from ..practice import ShaftRequirements, by_scope
 from . import magnet as magnet_blocks
 from .magnet import Magnet, MagnetSize, Pressed, Pull
 
@@ -98,10 +98,4 @@ class RuledComplete(Ruled, Complete):
     plates, discs = plate_layers.RuledComplete, disc_layers.RuledComplete
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -11,7 +11,7 @@ from synth.declaration import Block, Declaration, Part, Requirement
 
 from .. import cost, practice
 from ..magnet import coil as coil_blocks
-from ..practice import UNSOURCED
+from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
 from . import formulas as powder
 
@@ -256,10 +256,4 @@ class RuledComplete(Ruled, Complete):
     """The powder clutch by rules of practice, whose shields and shaft count."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -10,6 +10,7 @@ from synth.declaration import Declaration, Part
 
 from .. import cost, practice
 from ..friction.duty import Duty, DutyOfPack, Size
+from ..practice import by_scope
 from . import body
 from .pack import BuiltPack, advise_mean_temperature
 from .requirements import PackRequirements, PracticePackRequirements
@@ -119,10 +120,4 @@ class RuledComplete(Ruled, Complete):
     """Pack by rules of practice, in a complete clutch whose mass and length count."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from synth.declaration import Declaration
 
 from .. import cost, practice
+from ..practice import by_scope
 from . import body, formulas
 from .body import Unknowns
 
@@ -109,10 +110,4 @@ class RuledComplete(Ruled, Complete):
     """Coupling by rules of practice, whose bosses count."""
 
 
-# By Scope.rules and Scope.complete.
-LAYERS: dict[tuple[bool, bool], type[Sources]] = {
-    (False, False): Sources,
-    (False, True): Complete,
-    (True, False): Ruled,
-    (True, True): RuledComplete,
-}
+LAYERS = by_scope(Sources, Complete, Ruled, RuledComplete)

@@ -8,6 +8,7 @@ from typing import Any
 
 from synth.declaration import Block, Declaration
 
+from ..practice import by_scope
 from . import blocks, body
 
 # Of required_torque: largest drag of an interference fit, largest energising torque of a clearance fit.
@@ -115,6 +116,6 @@ class RuledComplete(Ruled, Complete):
 
 
 def layers_of(fit: Fit) -> dict[tuple[bool, bool], partial[Sources]]:
-    """Layers of a fit by Scope.rules and Scope.complete."""
-    kinds = {(False, False): Sources, (False, True): Complete, (True, False): Ruled, (True, True): RuledComplete}
-    return {scope: partial(kind, fit) for scope, kind in kinds.items()}
+    """Layers of a fit by scope."""
+    kinds = (Sources, Complete, Ruled, RuledComplete)
+    return by_scope(*(partial(kind, fit) for kind in kinds))

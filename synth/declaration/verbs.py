@@ -748,8 +748,8 @@ class Declaration:
 
     # -- views ---------------------------------------------------------------------------------
 
-    def purpose(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
-        """Key of its purpose: declarations for the same purpose are equal."""
+    def key(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
+        """Problem, options, specified requirements and tables: declarations with the same are equal."""
         return self.problem, self._requested_options, self._specified, self.catalogs
 
     def quantities(self) -> Iterator[tuple[str, str, str]]:

@@ -203,7 +203,7 @@ class _Shifted(Declaration):
     """The declaration of a problem at one position of the range, on the symbols of the nominal one."""
 
     def __init__(self, around: Declaration, quantities: Sequence[Scattered], position: Sequence[float | None]) -> None:
-        super().__init__(*around.purpose())
+        super().__init__(*around.key())
         self._around = around
         self._moves = {m.key: (x, p) for x, p in zip(quantities, position, strict=True) for m in x.members}
 

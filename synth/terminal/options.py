@@ -110,7 +110,7 @@ OBJECTIVE = replace(
 
 @dataclass(frozen=True, kw_only=True)
 class SearchOptions(VerbRequest):
-    """What the command line says in place of a spec."""
+    """Options of a search, each in place of the key of the spec."""
 
     points: int | None = shared(FIELDS["points"], usual=None)
     gap: float | None = shared(FIELDS["gap"], usual=None)
@@ -127,7 +127,7 @@ class SearchOptions(VerbRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class WhatIfOptions(SearchOptions):
-    """The same of a study, and what is searched between its steps."""
+    """Options of a study."""
 
     points: int | None = shared(
         FIELDS["points"], usual=None, help="At most this many designs per step; 3 unless the spec says otherwise."
@@ -140,7 +140,7 @@ class WhatIfOptions(SearchOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RowsOptions(BatchRequest):
-    """The same of a batch."""
+    """Options of a batch."""
 
     objectives: Any = shared(OBJECTIVE)
 
