@@ -75,7 +75,7 @@ def test_a_tree_that_is_given_up_tells_what_is_open():
         together=RelaxedBoxes(form, 0),
     )
     least = np.exp(form.objectives.phi_of(outcome.open.bounds)[:, 0].min())
-    assert outcome.given_up
+    assert outcome.abandoned
     assert 0.3 * OPTIMUM < least < OPTIMUM
 
 

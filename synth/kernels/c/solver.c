@@ -197,7 +197,7 @@ static void begin(State *s, vi fresh, vd *totals) {
         const vi soft = s->counts[r] & (s->slopes[r] > 0.0) & ~s->absent[r] & all_i(EQUAL[r] ? 0 : -1);
         needed = choose(soft, v_max(needed, (s->form[r] - s->rights[r]) / s->slopes[r]), needed);
     }
-    const vd first = needed + FIRST_ROOM;
+    const vd first = needed + FIRST_SLACK;
     const vi held = ~s->t_free | first_phase(s, s->missing) | ~is_finite(first);
     s->t = choose(fresh, choose(held, all(0.0), first), s->t);
     vd values[MOST_ROWS];

@@ -87,7 +87,7 @@
 #define STUCK_BARRIER (shape->method[28])
 #define MULTIPLIER_SPREAD (shape->method[29])
 #define INSIDE (shape->method[30])
-#define FIRST_ROOM (shape->method[31])
+#define FIRST_SLACK (shape->method[31])
 #define PINNED_WIDTH (shape->method[32])
 #define LEAST_PIVOT (shape->method[33])
 #define FIRST_SHIFT (shape->method[34])
