@@ -6,7 +6,7 @@ SOURCES = {"practice": "off"}  # the formulas of the sources alone
 
 # Numbers with a unit inside formulas, as "module:name": exponents of kg, m, s, K and A.
 SHAFTS = {
-    "synth.problems.practice:SHAFT_STEEL": (1, -1, -2, 0, 0),
+    "synth.problems.components.shaft.model:SHAFT_STEEL": (1, -1, -2, 0, 0),
     "synth.problems.mechanics.shaft:TEST_BAR": (0, 1, 0, 0, 0),
 }
 COVER = {"synth.problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)}

@@ -1,4 +1,4 @@
-"""What drawings of several families have: sizes in millimetres by name, rings, shaft ends and envelopes."""
+"""What drawings of several families have: sizes in millimetres by name, rings and envelopes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from synth.errors import InputError
 
 MM = 1e3  # from SI
 NEIGHBOURS = "Double-dot-dash lines are neighbours and envelopes: room that the model reckons with, no shapes."
-SHAFT_OUT = 0.25  # of its diameter: how far a shaft is drawn beyond what sits on it
 
 
 class Sizes:
@@ -70,16 +69,6 @@ def _there(value: Any, name: str) -> float:
 def ring(x0: float, x1: float, inner: float, outer: float, item: int) -> Area:
     """Return the section of a ring between two places along the axis and two radii [mm]."""
     return Area(rectangle(x0, x1, inner, outer), item)
-
-
-def shaft_end(x0: float, x1: float, radius: float, *, broken: float) -> tuple[Drawable, ...]:
-    """Return the end of a shaft as a neighbour: it ends at x0 and goes on beyond x1 [mm]; ``radius`` is half of it.
-
-    ``broken`` is how far it is drawn beyond x1.
-    """
-    out = x1 + broken if x1 > x0 else x1 - broken
-    edge = LineKind.PHANTOM
-    return Line((x0, radius), (out, radius), edge), Line((x0, 0.0), (x0, radius), edge)
 
 
 def envelope(x0: float, x1: float, inner: float, outer: float) -> tuple[Drawable, ...]:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import cost, wear
+from .. import cost
+from ..components.lining import wear
+from ..components.shaft.model import name_boss
 from ..mechanics import centrifugal
-from ..practice import UNSOURCED, name_boss
+from ..practice import UNSOURCED
 from ..sources import DRIVE
 
 if TYPE_CHECKING:

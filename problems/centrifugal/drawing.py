@@ -26,12 +26,12 @@ from synth.drawing import (
     Vertex,
     View,
     Weight,
-    diameter,
     disc,
 )
 from synth.text.numbers import typed_number
 
-from ..drawing_parts import SHAFT_OUT, Sizes, envelope, ring, shaft_end
+from ..components.shaft.drawing import drawn_shaft
+from ..drawing_parts import Sizes, envelope
 from .places import FIRST_SPRING, FLYWEIGHT, TOP, Placed, at, even, places
 from .spring_drawing import Spring, spring_view
 
@@ -270,23 +270,13 @@ def _clear(seats: Sequence[tuple[XY, Placed]], radii: Sequence[float], low: int)
 def _room_view(size: Sizes, boss: int) -> View:
     """Return the room that the clutch takes along the shaft, with the bosses on both shafts."""
     long, across = size("length"), size("outer_diameter") / 2
-    shaft, outside, out = size("shaft_diameter") / 2, size("boss_diameter") / 2, size("boss_length")
-    broken = 2 * shaft * SHAFT_OUT
+    shaft = drawn_shaft(size)
+    out = shaft.boss_length
+    ends = shaft.drawn((0.0, -out), (long, long + out), bosses=((-out, 0.0),))
     return View(
         "Room along the shaft",
-        (
-            *envelope(0.0, long, 0.0, across),
-            *shaft_end(0.0, -out, shaft, broken=broken),
-            *shaft_end(long, long + out, shaft, broken=broken),
-            ring(-out, 0.0, shaft, outside, boss),
-            ring(long, long + out, shaft, outside, boss),
-        ),
-        (
-            Dimension((0.0, across), (long, across), "length", "top"),
-            Dimension((-out, outside), (0.0, outside), "boss_length", "top"),
-            diameter(-out, shaft, "shaft_diameter", side="left"),
-            diameter(-out, outside, "boss_diameter", side="left"),
-        ),
-        (Balloon((long + out / 2, -(shaft + outside) / 2), boss, "bottom"),),
+        (*envelope(0.0, long, 0.0, across), *ends.shapes, shaft.boss(-out, boss), shaft.boss(long, boss)),
+        (Dimension((0.0, across), (long, across), "length", "top"), *ends.dimensions),
+        (Balloon((long + out / 2, -(shaft.radius + shaft.boss_radius) / 2), boss, "bottom"),),
         revolved=True,
     )

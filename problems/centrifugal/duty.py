@@ -7,9 +7,10 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement
 
+from ..components.shaft.model import ShaftRequirements, declare_shaft
 from ..mechanics import centrifugal
 from ..mechanics.shaft import shaft_diameter
-from ..practice import UNSOURCED, ShaftRequirements, declare_shaft
+from ..practice import UNSOURCED
 from ..sources import ARCHARD, DRIVE, ISO_76, JOHNSON, SHAFT, SPRINGS, STANDARD_GRAVITY, TYPICAL, UNIFORM_WEAR
 
 SOURCES = (

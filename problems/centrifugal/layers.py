@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from synth.declaration import Declaration
 
-from .. import wear
+from ..components.lining import wear
 from ..practice import by_scope, current_linings
 from . import body, size
 from .body import Built

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.declaration import Block, Requirement
 
-from .. import wear
+from ..components.lining import wear
 from ..friction.duty import Duty as FrictionDuty
 from ..practice import UNSOURCED
 

@@ -52,7 +52,13 @@ def section(
     omitted, remarks : sequence of str
     """
     sized, carrying = joined(components), joined(around)
-    both = DrawnComponent(dimensions=tuple(overall)) + sized + carrying
-    view = View("Section", carrying.shapes + sized.shapes, both.dimensions, both.balloons, both.details, revolved=True)
+    both = sized + carrying
+    measures = sorted((*overall, *carrying.dimensions, *sized.dimensions), key=_across)
+    view = View("Section", carrying.shapes + sized.shapes, tuple(measures), both.balloons, both.details, revolved=True)
     items = tuple(sorted(both.items, key=lambda item: item.number))
     return Drawing(title, (view,), items, tuple(omitted), tuple(remarks), both.weights)
+
+
+def _across(measure: Measured) -> bool:
+    """Whether a dimension is none along the axis; those along it come first."""
+    return not isinstance(measure, Dimension) or measure.along != "x"

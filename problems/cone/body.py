@@ -9,11 +9,13 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
-from .. import wear
+from ..components.lining import wear
+from ..components.lining.model import Pair
+from ..components.shaft.model import ShaftRequirements, declare_shaft, shaft_for
 from ..friction.duty import Duty, Size
-from ..friction.engagement import Pair, Startup
+from ..friction.engagement import Startup
 from ..mechanics import plates
-from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
+from ..practice import UNSOURCED
 from ..sources import DRIVE, S1
 from . import formulas as cone
 

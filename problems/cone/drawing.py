@@ -17,17 +17,18 @@ from synth.drawing import (
     Balloon,
     Detail,
     Dimension,
-    Drawable,
     Drawing,
     Hatch,
     Item,
     Slant,
     Vertex,
-    View,
     diameter,
 )
 
-from ..drawing_parts import SHAFT_OUT, Sizes, envelope, shaft_end
+from ..components.drawn import DrawnComponent, section
+from ..components.lining.drawing import DrawnLining, drawn_lining
+from ..components.shaft.drawing import drawn_shaft
+from ..drawing_parts import Sizes, envelope
 
 INNER, LINING, OUTER = 1, 2, 3
 
@@ -66,56 +67,50 @@ def cone_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
         The design; where its length is that of the whole clutch, the shaft is drawn.
     """
     size = Sizes(spec, design)
-    face = _Face(size)
-    wall, lining = size("shell_thickness"), size("friction_pair.lining_thickness")
-    across = size("outer_diameter") / 2
-    shapes: list[Drawable] = [
-        Area(face.layer(-wall, 0.0), INNER),
-        Area(face.layer(0.0, lining), LINING),
-        Area(_turned_outside(face, lining, wall, across), OUTER),
-    ]
+    face, lining = _Face(size), drawn_lining(size)
+    wall, across = size("shell_thickness"), size("outer_diameter") / 2
     start = (face.wide - size("length")) / 2
-    shapes += envelope(start, start + size("length"), 0.0, across)
-    middle = face.wide / 2
-    dimensions = [
-        Dimension((start, across), (start + size("length"), across), "length", "top"),
-        diameter(start + size("length"), across, "outer_diameter"),
-        diameter(face.wide, face.at(face.wide)[1], "wide_end_diameter"),
-        diameter(middle, face.at(middle)[1], "mean_diameter", side="left"),
-        diameter(0.0, face.narrow_radius, "narrow_end_diameter", side="left"),
-    ]
-    omitted = ["spring, release gear and bearings"]
+    end, middle = start + size("length"), face.wide / 2
+    around, omitted = DrawnComponent(envelope(start, end, 0.0, across)), ["spring, release gear and bearings"]
     if "pack_length" in design.values:
-        shaft = size("shaft_diameter") / 2
-        end = start + size("length")
-        shapes += shaft_end(start, end, shaft, broken=2 * shaft * SHAFT_OUT)
-        dimensions.append(diameter(start, shaft, "shaft_diameter", side="left"))
+        around += drawn_shaft(size).drawn((start, end))
         omitted.insert(0, "webs and bosses that carry the cones: the model knows their masses and the room they take")
     else:
         omitted.insert(0, "webs, hubs and shaft: mass is that of the shells and the lining")
     if str(design.parts["cone_layout"]["force_closed"]) not in ("0", "0.0"):
         omitted.append("the second cone, which closes the force inside: the model counts it as a factor of the mass")
-    view = View(
-        "Section",
-        tuple(shapes),
-        tuple(dimensions),
+    cones = DrawnComponent(
         (
-            Balloon(_mirrored(face.at(middle, -wall / 2)), INNER, "bottom"),
-            Balloon(_mirrored(face.at(face.wide * 0.2, lining / 2)), LINING, "bottom"),
-            Balloon(_mirrored(face.at(face.wide * 0.75, lining + wall * 0.45)), OUTER, "bottom"),
+            Area(face.layer(-wall, 0.0), INNER),
+            Area(face.layer(0.0, lining.thickness), LINING),
+            Area(_turned_outside(face, lining.thickness, wall, across), OUTER),
         ),
-        (_detail(face, wall, lining, across),),
-        revolved=True,
-    )
-    return Drawing(
-        "cones, engaged",
-        (view,),
         (
             Item(INNER, "Inner cone, shell", 1, "steel", hatch=Hatch.RIGHT),
-            Item(LINING, "Lining", 1, size.part("friction_pair"), "drawn on the outer cone", Hatch.CROSS),
+            lining.item(LINING, 1, "drawn on the outer cone"),
             Item(OUTER, "Outer cone, shell", 1, "steel", hatch=Hatch.LEFT),
         ),
-        omitted=tuple(omitted),
+        (
+            Balloon(_mirrored(face.at(middle, -wall / 2)), INNER, "bottom"),
+            Balloon(_mirrored(face.at(face.wide * 0.2, lining.thickness / 2)), LINING, "bottom"),
+            Balloon(_mirrored(face.at(face.wide * 0.75, lining.thickness + wall * 0.45)), OUTER, "bottom"),
+        ),
+        (
+            diameter(face.wide, face.at(face.wide)[1], "wide_end_diameter"),
+            diameter(middle, face.at(middle)[1], "mean_diameter", side="left"),
+            diameter(0.0, face.narrow_radius, "narrow_end_diameter", side="left"),
+        ),
+        (_detail(face, wall, lining, across),),
+    )
+    return section(
+        "cones, engaged",
+        cones,
+        around,
+        overall=(
+            Dimension((start, across), (end, across), "length", "top"),
+            diameter(end, across, "outer_diameter"),
+        ),
+        omitted=omitted,
         remarks=(
             "Double-dot-dash lines are neighbours and envelopes: the length that the layout takes, which is a typical "
             "value; where the cones stand in it is assumed.",
@@ -137,7 +132,7 @@ def _turned_outside(face: _Face, lining: float, wall: float, across: float) -> t
     return (*bottom, (face.wide, across), (corner, across), top)
 
 
-def _detail(face: _Face, wall: float, lining: float, across: float) -> Detail:
+def _detail(face: _Face, wall: float, lining: DrawnLining, across: float) -> Detail:
     """Return the detail of the friction face, with what is measured along and across it."""
     low = face.at(0.0, -wall)
     edge = 0.06 * face.long
@@ -150,9 +145,9 @@ def _detail(face: _Face, wall: float, lining: float, across: float) -> Detail:
             Slant(first, last, "generator_length", apart=-24.0),
             Angle(first, (face.wide, first[1]), last, "cone_half_angle", radius=28.0),
             Slant(face.at(face.wide), face.across(face.wide, -wall), "shell_thickness", apart=12.0),
-            Slant(face.at(0.0), face.across(0.0, lining), "friction_pair.lining_thickness", apart=10.0),
+            Slant(face.at(0.0), face.across(0.0, lining.thickness), lining.name, apart=10.0),
         ),
-        least=min(lining, face.long / 28),
+        least=min(lining.thickness, face.long / 28),
     )
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from synth.declaration import Declaration
 
 from .. import cost, practice
+from ..components.lining.model import Pair
 from ..friction.duty import Duty, Size, sizing_torque
-from ..friction.engagement import Pair
 from ..practice import by_scope
 from . import body
 from . import formulas as cone

@@ -12,7 +12,9 @@ from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
 from synth.text.numbers import number_text, typed_number
 
-from .. import friction, practice, wear
+from .. import friction, practice
+from ..components.lining import wear
+from ..components.lining.model import Pair, declare_friction_pair, declare_surface_loads
 from ..friction import startup_curves
 from ..mechanics import heat, plates
 from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
@@ -137,7 +139,7 @@ class ConeClutch(DesignProblem):
         wants = self._declare_requirements(d, pull_max=layer.pull_max)
         shape = self._declare_cone(d, wants=wants, layer=layer)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
+        pair = declare_friction_pair(
             d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, linings=layer.linings
         )
         layout = d.part(
@@ -169,7 +171,7 @@ class ConeClutch(DesignProblem):
             overload=seated_torque,
         )
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
-        friction.declare_surface_loads(
+        declare_surface_loads(
             d,
             duty=duty,
             pair=pair,
@@ -384,7 +386,7 @@ class ConeClutch(DesignProblem):
         *,
         duty: friction.Duty,
         wants: Wants,
-        pair: friction.Pair,
+        pair: Pair,
         shape: Cone,
         torque: Any,
         pressure: Any,
@@ -430,7 +432,7 @@ class ConeClutch(DesignProblem):
         duty: friction.Duty,
         wants: Wants,
         layer: Sources,
-        pair: friction.Pair,
+        pair: Pair,
         shape: Cone,
         force: Any,
     ) -> None:
@@ -509,7 +511,7 @@ class ConeClutch(DesignProblem):
         *,
         duty: friction.Duty,
         wants: Wants,
-        pair: friction.Pair,
+        pair: Pair,
         start: friction.Startup,
         size: friction.Size,
         shell_mass: Any,

@@ -1,1 +1,1 @@
-"""Disc clutch, and the pack of discs that it shares with the electromagnetic clutch."""
+"""Disc clutch."""

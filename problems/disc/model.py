@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Any
 from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
-from .. import friction, practice, wear
+from .. import friction, practice
+from ..components.discs import curves as disc_curves
+from ..components.discs import facing_sets
+from ..components.discs import model as disc_pack
+from ..components.discs.body import SpringHousing
+from ..components.discs.layers import LAYERS
+from ..components.lining import wear
+from ..components.lining.model import declare_friction_pair, declare_surface_loads
+from ..components.ring.model import declare_ring
 from ..friction import startup_curves
 from ..mechanics import ring as ring_formulas
 from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, S1, SHAFT, SHIGLEY_DISC
-from . import curves as disc_curves
-from . import facing_sets
-from . import pack as disc_pack
-from .body import SpringHousing
-from .layers import LAYERS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +55,7 @@ class DiscClutch(DesignProblem):
         layer = layer_of(d, SpringHousing, duty)
         least, most = layer.ring_ratios
         facings = facing_sets.declare_facing_set(d)
-        ring = friction.declare_ring(
+        ring = declare_ring(
             d,
             ratio_min=least,
             ratio_max=most,
@@ -70,7 +73,7 @@ class DiscClutch(DesignProblem):
             source=f"{S1}, F",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
+        pair = declare_friction_pair(
             d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings
         )
 
@@ -89,7 +92,7 @@ class DiscClutch(DesignProblem):
         disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
-        friction.declare_surface_loads(
+        declare_surface_loads(
             d,
             duty=duty,
             pair=pair,

@@ -7,10 +7,11 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from .. import cost
-from ..disc import layers as disc_layers
+from ..components.discs import layers as disc_layers
+from ..components.pack import layers as plate_layers
+from ..components.shaft.model import ShaftRequirements
 from ..magnet.coil import Winding
-from ..multi_plate import layers as plate_layers
-from ..practice import ShaftRequirements, by_scope
+from ..practice import by_scope
 from . import magnet as magnet_blocks
 from .magnet import Magnet, MagnetSize, Pressed, Pull
 

@@ -7,8 +7,9 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
+from ..components.lining.model import Pair
 from ..friction.duty import Duty, Size
-from ..friction.engagement import Pair, Startup
+from ..friction.engagement import Startup
 from ..magnet import coil as coil_blocks
 from ..mechanics import heat, magnetics, plates
 from ..practice import UNSOURCED

@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING, Any
 from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
-from .. import friction, practice, wear
-from ..disc import curves as disc_curves
-from ..disc import pack as disc_pack
-from ..disc.body import DiscHousing
+from .. import friction, practice
+from ..components.discs import curves as disc_curves
+from ..components.discs import model as disc_pack
+from ..components.discs.body import DiscHousing
+from ..components.lining import wear
+from ..components.lining.model import declare_friction_pair, declare_surface_loads
+from ..components.pack import curves as pack_curves
+from ..components.pack import model as plate_pack
+from ..components.pack.body import PackHousing
+from ..components.pack.requirements import MadePackOptions
+from ..components.ring.model import declare_ring
 from ..friction import startup_curves
 from ..mechanics import magnetics
 from ..mechanics import ring as ring_formulas
-from ..multi_plate import curves as pack_curves
-from ..multi_plate import pack as plate_pack
-from ..multi_plate.body import PackHousing
-from ..multi_plate.requirements import MadePackOptions
 from ..sources import (
     ARCHARD,
     DISC_RUN_OUT,
@@ -148,12 +151,10 @@ class ElectromagneticClutch(DesignProblem):
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
         pack_layer = layer_of.plates(d, PackHousing, lubrication, required)
         layer = layer_of(d, required, pack_layer.shaft)
-        ring = friction.declare_ring(d, ratio_min=pack_layer.ratio_min, ratio_max=0.25)
+        ring = declare_ring(d, ratio_min=pack_layer.ratio_min, ratio_max=0.25)
         magnet = layer.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
-            d, suited=SUITED, duty=duty, lubrication=lubrication, linings=pack_layer.linings
-        )
+        pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication=lubrication, linings=pack_layer.linings)
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         stack = plate_pack.Stack(duty, options, wants, ring, pair, pack)
         torque, torques = plate_pack.declare_pack_torques(
@@ -187,14 +188,12 @@ class ElectromagneticClutch(DesignProblem):
         pack_layer = layer_of.discs(d, DiscHousing, duty)
         layer = layer_of(d, pack_layer.required, pack_layer.shaft)
         least, most = pack_layer.ring_ratios
-        ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
+        ring = declare_ring(d, ratio_min=least, ratio_max=most)
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=pack_layer.requirements(d))
         magnet = layer.declare_magnet(d)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
-            d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings
-        )
+        pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings)
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
@@ -213,7 +212,7 @@ class ElectromagneticClutch(DesignProblem):
         disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
-        friction.declare_surface_loads(
+        declare_surface_loads(
             d,
             duty=duty,
             pair=pair,

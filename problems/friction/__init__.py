@@ -1,4 +1,4 @@
-"""Blocks of declarations that the friction clutches share: duty, engagement, ring.
+"""Blocks of declarations that the friction clutches share: duty and engagement.
 
 A block declares its quantities and limits and hands back their symbols. Each family composes the blocks it is made of,
 so that one thing has one name, one text and one formula everywhere.
@@ -20,39 +20,29 @@ from .duty import (
     sizing_torque_of,
 )
 from .engagement import (
-    Pair,
     Startup,
     Torques,
     advise_frequent_switching,
-    declare_friction_pair,
     declare_heated_body,
     declare_startup,
-    declare_surface_loads,
     declare_torque,
 )
-from .ring import RING_OUTER_DIAMETER_MAX, Ring, declare_ring
 
 __all__ = [
     "COMMON",
-    "RING_OUTER_DIAMETER_MAX",
     "Duty",
     "DutyOfDiscs",
     "DutyOfPack",
-    "Pair",
-    "Ring",
     "Size",
     "Startup",
     "Torques",
     "advise_frequent_switching",
     "declare_duty",
     "declare_envelope",
-    "declare_friction_pair",
     "declare_heated_body",
     "declare_ramp_time",
-    "declare_ring",
     "declare_size",
     "declare_startup",
-    "declare_surface_loads",
     "declare_torque",
     "sizing_torque",
     "sizing_torque_of",

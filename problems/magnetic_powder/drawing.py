@@ -28,7 +28,8 @@ from synth.drawing import (
 )
 from synth.text.numbers import number_text
 
-from ..drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
+from ..components.shaft.drawing import SHAFT_OUT, shaft_end
+from ..drawing_parts import Sizes, ring
 
 ROTOR, POWDER, BODY, COIL, DRUM = 1, 2, 3, 4, 5
 
@@ -123,8 +124,8 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, scope: str) -> Dr
 def _add_neighbours(section: _Section, size: Sizes, at: _Places) -> None:
     """Add the shaft as a neighbour."""
     broken = 2 * at.shaft * SHAFT_OUT
-    section.shapes += shaft_end(at.web[0], 0.0, at.shaft, broken=broken)
-    section.shapes += shaft_end(at.web[1], at.length, at.shaft, broken=broken)
+    section.shapes += shaft_end(at.web[0], 0.0, at.shaft)
+    section.shapes += shaft_end(at.web[1], at.length, at.shaft)
     section.omitted.insert(0, "shields and shaft: mass and length are those of rotor, drum, body, coil and powder")
     section.dimensions.append(diameter(-broken, at.shaft, "shaft_radius", side="left", factor=2.0))
 

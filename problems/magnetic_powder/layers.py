@@ -9,7 +9,8 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Part, Requirement
 
-from .. import cost, practice
+from .. import cost
+from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
 from ..magnet import coil as coil_blocks
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
@@ -191,10 +192,10 @@ class Ruled(WithBody):
     def declare_bore(self, d: Declaration) -> Bore:
         """The bore of the rotor, by default for a shaft that stands the torque."""
         torque = self.wants.torque_reserve * self.wants.required_torque
-        shaft = d.block(practice.ShaftSize, shaft_diameter=practice.shaft_for(torque))
+        shaft = d.block(ShaftSize, shaft_diameter=shaft_for(torque))
         bore = d.block(Bore, shaft_radius=shaft.shaft_diameter / 2)
         thinnest = np.minimum(shaft.shaft_diameter, 2 * bore.shaft_radius)
-        practice.declare_shaft(d, shaft, diameter=thinnest, torque=torque)
+        declare_shaft(d, shaft, diameter=thinnest, torque=torque)
         return bore
 
     def declare_rules(self, d: Declaration, built: Built) -> None:

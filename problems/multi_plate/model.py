@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, Any
 from synth import Design, DesignProblem
 from synth.declaration import Declaration
 
-from .. import friction, practice, wear
+from .. import friction, practice
+from ..components.lining import wear
+from ..components.lining.model import declare_friction_pair
+from ..components.pack import curves as pack_curves
+from ..components.pack import model as plate_pack
+from ..components.pack import plate_sets
+from ..components.pack.body import PistonHousing
+from ..components.pack.layers import LAYERS
+from ..components.pack.requirements import MadePackOptions, PackOptions
+from ..components.ring.model import declare_ring
 from ..friction import startup_curves
 from ..sources import ARCHARD, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S0, SHAFT
-from . import curves as pack_curves
-from . import pack as plate_pack
-from . import plate_sets
-from .body import PistonHousing
-from .layers import LAYERS
-from .requirements import MadePackOptions, PackOptions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,7 +70,7 @@ class MultiPlateClutch(DesignProblem):
         )
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
         layer = layer_of(d, PistonHousing, lubrication, required)
-        ring = friction.declare_ring(
+        ring = declare_ring(
             d,
             ratio_min=layer.ratio_min,
             ratio_max=0.25,
@@ -83,7 +86,7 @@ class MultiPlateClutch(DesignProblem):
             source=f"{S0}, F0",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(
+        pair = declare_friction_pair(
             d, suited=["'plate pack' in surfaces"], duty=duty, lubrication=lubrication, linings=layer.linings
         )
         plates = None

@@ -10,7 +10,8 @@ import numpy as np
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
 from synth.errors import InputError
 
-from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
+from ..components.shaft.model import ShaftRequirements, declare_shaft, shaft_for
+from ..practice import UNSOURCED
 from . import formulas
 
 SHAFT_FACTOR = 1.5  # torque for which the shaft is sized over the torque to transmit: shocks of the drive

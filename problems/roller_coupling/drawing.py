@@ -35,7 +35,8 @@ from synth.drawing import (
     rectangle,
 )
 
-from ..drawing_parts import SHAFT_OUT, Sizes
+from ..components.shaft.drawing import SHAFT_OUT, drawn_shaft
+from ..drawing_parts import Sizes
 
 FLOAT, ROLLER, PIN, ARM, BOSS = 1, 2, 3, 4, 5
 SECTION, FRONT = "Section along guide I", "Float from the left, cut in its middle, without arm 1"
@@ -215,7 +216,7 @@ def _behind(shape: _Shape) -> list[Drawable]:
     arm = Area(tuple((u * x - v * y, u * y + v * x) for u, v in ends), ARM, cut=False, depth=0.0)
     if not shape.has_bosses:
         return [arm]
-    return [Area(disc((0.0, 0.0), shape.size("boss_diameter") / 2), BOSS, cut=False, depth=0.0), arm]
+    return [Area(disc((0.0, 0.0), drawn_shaft(shape.size).boss_radius), BOSS, cut=False, depth=0.0), arm]
 
 
 def _section(shape: _Shape) -> View:
@@ -266,7 +267,8 @@ def _section(shape: _Shape) -> View:
     balloons = [Balloon(((end_1 + shape.face_1) / 2, e - 0.8 * arm_half), ARM, "bottom")]
     left, right = end_1, end_2
     if shape.has_bosses:
-        shaft, boss, out = size("shaft_diameter") / 2, size("boss_diameter") / 2, size("boss_length")
+        seat = drawn_shaft(size)
+        shaft, boss, out = seat.radius, seat.boss_radius, seat.boss_length
         left, right = end_1 - out, end_2 + out
         broken = 2 * shaft * SHAFT_OUT
         # Revolved about y = 0, one of the rings weighs as the boss of shaft 2 does; both bosses are alike.
@@ -280,9 +282,7 @@ def _section(shape: _Shape) -> View:
             shapes += [Line((near, axis + k), (far, axis + k), LineKind.PHANTOM) for k in (shaft, -shaft)]
         dimensions += [
             Dimension((left, top), (right, top), "length", "top"),
-            Dimension((left, e + boss), (end_1, e + boss), "boss_length", "top", times=2),
-            Dimension((left, e - boss), (left, e + boss), "boss_diameter", "left", diameter=True),
-            Dimension((left, e - shaft), (left, e + shaft), "shaft_diameter", "left", diameter=True),
+            *seat.measured(left, (left, end_1), times=2, axis=e),
         ]
         balloons.append(Balloon(((left + end_1) / 2, e - (shaft + boss) / 2), BOSS, "bottom"))
     shapes += [

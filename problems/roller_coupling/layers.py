@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from synth.declaration import Declaration
 
-from .. import cost, practice
+from .. import cost
+from ..components.shaft.model import name_boss
 from ..practice import by_scope
 from . import body, formulas
 from .body import Unknowns
@@ -67,7 +68,7 @@ class WithBody(Sources):
         text = "Over the bosses of both arms, with a counter float beside the float"
         d.derive("length", "mm", long, symbol="L", text=text, source="geometry")
         bosses = 2 * around.boss_mass(wants.steel_density)
-        practice.name_boss(d, around)
+        name_boss(d, around)
         d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Bosses of both arms", source="geometry")
         material, floats = built.unknowns.material, 1 + built.counter
         price, weight = material.filled("relative_cost_per_kg", 1.0), built.float_mass * floats

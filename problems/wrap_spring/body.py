@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import cost
+from ..components.shaft.model import ShaftRequirements, ShaftStress, declare_shaft
 from ..mechanics import shaft as shaft_formulas
-from ..practice import UNSOURCED, ShaftRequirements, ShaftStress, declare_shaft
+from ..practice import UNSOURCED
 
 if TYPE_CHECKING:
     from .blocks import Built, Duty, Size

@@ -27,7 +27,8 @@ from synth.drawing import (
 )
 from synth.text.numbers import number_text, typed_number
 
-from ..drawing_parts import SHAFT_OUT, Sizes, ring, shaft_end
+from ..components.shaft.drawing import shaft_end
+from ..drawing_parts import Sizes, ring
 
 FIRST, SECOND, SPRING, COLLAR = 1, 2, 3, 4
 ENDS = (
@@ -190,7 +191,7 @@ class _Complete(_Alone):
         meeting, end = self.spring.meeting, self.spring.length
         first = ((-out, bore), (meeting, bore), (meeting, hub), (0.0, hub), (0.0, boss), (-out, boss))
         second = ((meeting, bore), (end + out, bore), (end + out, boss), (end, boss), (end, hub), (meeting, hub))
-        left, right = (shaft_end(meeting, x, bore, broken=2 * bore * SHAFT_OUT) for x in (-out, end + out))
+        left, right = (shaft_end(meeting, x, bore) for x in (-out, end + out))
         return [*left, *right, Area(first, FIRST), Area(second, SECOND)]
 
     def places(self) -> tuple[float, float]:

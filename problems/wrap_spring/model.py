@@ -10,7 +10,8 @@ import numpy as np
 from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
-from .. import practice, wear
+from .. import practice
+from ..components.lining import wear
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from . import blocks, body, curves, formulas

@@ -8,8 +8,8 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from synth.problems.components.shaft.model import SHAFT_STEEL
 from synth.problems.mechanics.shaft import fatigue_shear, size_factor
-from synth.problems.practice import SHAFT_STEEL
 
 import synth
 from synth.tables.catalogs import Catalogs

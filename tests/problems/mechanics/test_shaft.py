@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from synth.problems.components.shaft.model import SHAFT_STEEL
 from synth.problems.mechanics.plates import shaft_shear_stress
 from synth.problems.mechanics.shaft import fatigue_shear, shaft_diameter, size_factor
-from synth.problems.practice import SHAFT_STEEL
 
 import synth
 from synth.tables.catalogs import Catalogs

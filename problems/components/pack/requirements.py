@@ -8,12 +8,13 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
-from .. import wear
-from ..friction.duty import Duty
-from ..friction.ring import Ring
-from ..mechanics import guide_friction
-from ..practice import UNSOURCED, ShaftRequirements
-from ..sources import S0, S1, TYPICAL
+from ...friction.duty import Duty
+from ...mechanics import guide_friction
+from ...practice import UNSOURCED
+from ...sources import S0, S1, TYPICAL
+from ..lining import wear
+from ..ring.model import Ring
+from ..shaft.model import ShaftRequirements
 
 FLATNESS = "out of flat 0.10 mm (AP Racing) and 0.15 mm (Harley-Davidson) when plates are discarded"
 

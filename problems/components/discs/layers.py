@@ -9,12 +9,13 @@ from typing import Any, ClassVar
 
 from synth.declaration import Declaration
 
-from .. import cost, practice
-from ..friction.duty import Duty, DutyOfDiscs, Size, sizing_torque
-from ..practice import ShaftRequirements, by_scope
+from ... import cost, practice
+from ...friction.duty import Duty, DutyOfDiscs, Size, sizing_torque
+from ...practice import by_scope
+from ..shaft.model import ShaftRequirements
 from . import body
 from .body import DiscHousing, DiscRules
-from .pack import DiscRequirements, Discs
+from .model import DiscRequirements, Discs
 
 
 class Sources:

@@ -9,12 +9,13 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Requirement
 
-from .. import wear
-from ..friction.duty import Size
-from ..mechanics import disc, plates
-from ..practice import UNSOURCED, ShaftRequirements, declare_shaft, shaft_for
-from ..sources import DRIVE
-from .pack import DiscRequirements, Discs
+from ...friction.duty import Size
+from ...mechanics import disc, plates
+from ...practice import UNSOURCED
+from ...sources import DRIVE
+from ..lining import wear
+from ..shaft.model import ShaftRequirements, declare_shaft, shaft_for
+from .model import DiscRequirements, Discs
 
 FEW_STARTS = 20_000  # engagements: what lasts less is remarked
 RUNOUT = "run-out limit of a disc 0.7 mm (Mazda), 0.6 mm (Porsche 911 SC)"

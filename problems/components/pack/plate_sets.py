@@ -8,10 +8,10 @@ import numpy as np
 
 from synth.declaration import Declaration, Part
 
-from ..friction.bought import declare_bought
-from ..friction.engagement import Pair
-from ..friction.ring import Ring
-from .pack import Pack, Plates
+from ..bought import declare_bought
+from ..lining.model import Pair
+from ..ring.model import Ring
+from .model import Pack, Plates
 from .requirements import PackRequirements
 
 TABLE = "plate_sets"

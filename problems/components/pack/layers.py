@@ -8,11 +8,12 @@ import numpy as np
 
 from synth.declaration import Declaration, Part
 
-from .. import cost, practice
-from ..friction.duty import Duty, DutyOfPack, Size
-from ..practice import by_scope
+from ... import cost, practice
+from ...friction.duty import Duty, DutyOfPack, Size
+from ...practice import by_scope
+from ..shaft.model import ShaftRequirements
 from . import body
-from .pack import BuiltPack, advise_mean_temperature
+from .model import BuiltPack, advise_mean_temperature
 from .requirements import PackRequirements, PracticePackRequirements
 
 
@@ -27,7 +28,7 @@ class Sources:
     along: ClassVar[str] = "Length of the released pack, without actuator and end stops"
     objectives: ClassVar[tuple[str, ...]] = ("mass", "actuation_force")  # by default
     offered: tuple[str, ...] = ()  # further objectives
-    shaft: practice.ShaftRequirements | None = None
+    shaft: ShaftRequirements | None = None
 
     def __init__(self, d: Declaration, housing: type[body.PackHousing], lubrication: str, required: Any) -> None:
         """Declare requirements of what is around the pack."""

@@ -12,20 +12,15 @@ import numpy as np
 
 from synth.declaration import Declaration
 
-from .. import wear
-from ..friction.duty import Size
-from ..mechanics import heat, plates
-from ..mechanics import ring as ring_formulas
-from ..practice import UNSOURCED, declare_shaft, name_boss, shaft_for
-from ..sources import DRIVE
-from .pack import BuiltPack
-from .requirements import (
-    FLATNESS,
-    BodyRequirements,
-    PackBodyRequirements,
-    PackRules,
-    PistonPackRules,
-)
+from ...friction.duty import Size
+from ...mechanics import heat, plates
+from ...mechanics import ring as ring_formulas
+from ...practice import UNSOURCED
+from ...sources import DRIVE
+from ..lining import wear
+from ..shaft.model import declare_shaft, name_boss, shaft_for
+from .model import BuiltPack
+from .requirements import FLATNESS, BodyRequirements, PackBodyRequirements, PackRules, PistonPackRules
 
 PARTS = {  # symbol and meaning of the masses around a pack
     "end_plate_mass": ("m_end", "What the end plates are thicker than the cores"),

@@ -7,8 +7,8 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement, Variable
 
-from ..mechanics import ring as ring_formulas
-from ..sources import S0, S1
+from ...mechanics import ring as ring_formulas
+from ...sources import S0, S1
 
 # Largest friction ring offered to the search [mm]; the refusal torque_above_guide_limit reasons with it.
 RING_OUTER_DIAMETER_MAX = 800.0

@@ -7,12 +7,13 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement
 
-from ..friction.duty import Duty, Size
-from ..friction.engagement import Pair, Startup, Torques, advise_frequent_switching, declare_heated_body
-from ..friction.ring import Ring
-from ..mechanics import disc, heat, plates
-from ..mechanics import ring as ring_formulas
-from ..sources import S0, S1, TYPICAL
+from ...friction.duty import Duty, Size
+from ...friction.engagement import Startup, Torques, advise_frequent_switching, declare_heated_body
+from ...mechanics import disc, heat, plates
+from ...mechanics import ring as ring_formulas
+from ...sources import S0, S1, TYPICAL
+from ..lining.model import Pair
+from ..ring.model import Ring
 
 
 class DiscRequirements(Block):

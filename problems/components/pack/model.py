@@ -10,27 +10,22 @@ import numpy as np
 
 from synth.declaration import Declaration
 
-from ..friction.duty import Duty, Size
-from ..friction.engagement import (
-    Pair,
+from ...friction.duty import Duty, Size
+from ...friction.engagement import (
     Startup,
     Torques,
     advise_frequent_switching,
     declare_heated_body,
     declare_startup,
-    declare_surface_loads,
     declare_torque,
 )
-from ..friction.ring import RING_OUTER_DIAMETER_MAX, Ring
-from ..mechanics import guide_friction, heat
-from ..mechanics import plates as plate_formulas
-from ..mechanics import ring as ring_formulas
-from ..sources import S0, S1
-from .requirements import (
-    MadePackOptions,
-    PackOptions,
-    PackRequirements,
-)
+from ...mechanics import guide_friction, heat
+from ...mechanics import plates as plate_formulas
+from ...mechanics import ring as ring_formulas
+from ...sources import S0, S1
+from ..lining.model import Pair, declare_surface_loads
+from ..ring.model import RING_OUTER_DIAMETER_MAX, Ring
+from .requirements import MadePackOptions, PackOptions, PackRequirements
 
 
 @dataclass(frozen=True)

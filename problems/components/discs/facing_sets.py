@@ -8,9 +8,9 @@ import numpy as np
 
 from synth.declaration import Declaration, Part
 
-from ..friction.bought import declare_bought
-from ..friction.engagement import Pair
-from .pack import Facing
+from ..bought import declare_bought
+from ..lining.model import Pair
+from .model import Facing
 
 TABLE = "facing_sets"
 NO_RIVETS = 0.05  # m, more than any facing is thick: what is glued wears by its thickness

@@ -9,10 +9,10 @@ import numpy as np
 
 from synth.text.numbers import number_text
 
-from .. import friction
-from ..mechanics import disc
-from ..mechanics import ring as ring_formulas
-from ..sources import S1
+from ... import friction
+from ...mechanics import disc
+from ...mechanics import ring as ring_formulas
+from ...sources import S1
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,8 +11,8 @@ import numpy as np
 
 from synth.declaration import Declaration, Part, Requirement
 
-from .mechanics import wear as wear_formulas
-from .sources import DRIVE
+from ...mechanics import wear as wear_formulas
+from ...sources import DRIVE
 
 WEAR_LIFE = "wear_life"
 DEPTH, RATE = "wearable_depth", "wear_rate"

@@ -10,8 +10,8 @@ import numpy as np
 
 from synth.text.numbers import number_text, typed_number
 
-from ..mechanics import guide_friction
-from ..sources import S0
+from ...mechanics import guide_friction
+from ...sources import S0
 
 if TYPE_CHECKING:
     import pandas as pd

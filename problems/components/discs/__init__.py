@@ -1,0 +1,1 @@
+"""Dry discs between pressure plates, and their hubs and cover."""

@@ -1,0 +1,1 @@
+"""Lining: friction pair, what it stands and how it wears."""

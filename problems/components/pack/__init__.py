@@ -1,0 +1,1 @@
+"""Pack of plates, and the drum and hub around it."""

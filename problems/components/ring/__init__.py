@@ -1,0 +1,1 @@
+"""Friction ring of plates and discs."""

@@ -1,0 +1,1 @@
+"""Shaft of a clutch and the bosses on it."""
