@@ -15,10 +15,9 @@ from ..components.discs import model as disc_pack
 from ..components.discs.body import SpringHousing
 from ..components.discs.layers import LAYERS
 from ..components.lining import wear
-from ..components.lining.model import declare_friction_pair, declare_surface_loads
+from ..components.lining.model import declare_friction_pair
 from ..components.ring.model import declare_ring
 from ..friction import startup_curves
-from ..mechanics import ring as ring_formulas
 from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, S1, SHAFT, SHIGLEY_DISC
 
 if TYPE_CHECKING:
@@ -76,36 +75,11 @@ class DiscClutch(DesignProblem):
         pair = declare_friction_pair(
             d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings
         )
-
-        def torque(mu: Any) -> Any:
-            return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
-
-        torques = friction.declare_torque(
-            d,
-            duty=duty,
-            pair=pair,
-            required=layer.required,
-            torque_low=torque(pair.mu_low),
-            torque_high=torque(pair.mu_high),
-            source=f"{S1}, sizing",
-        )
-        disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
-        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
-        area = pack.surfaces * ring.area
-        declare_surface_loads(
-            d,
-            duty=duty,
-            pair=pair,
-            start=start,
-            area=area,
-            rubbing_area=area,
-            pressure=force / ring.area,
-            pressure_source=f"{S1}, p",
-            rubbing_radius=ring.outer_radius,
-        )
+        lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
+        start = disc_pack.declare_disc_start(d, lined, required=layer.required, force=force, ramp_time=ramp_time)
         if facings is not None:
             facing_sets.declare_set_limits(d, facings, pair=pair, pressure=force / ring.area)
-        discs = disc_pack.Discs(duty, ring, pair, pack, start, disc_pack.disc_size(duty, ring, pair, pack))
+        discs = disc_pack.Discs(**vars(lined), start=start, size=disc_pack.disc_size(lined))
         size = layer.size(discs)
         friction.declare_size(d, size=size, mass_of=layer.mass_of, outside="Outside of the cover", along=layer.along)
         layer.declare_body(d, discs)

@@ -13,7 +13,7 @@ from ..components.discs import curves as disc_curves
 from ..components.discs import model as disc_pack
 from ..components.discs.body import DiscHousing
 from ..components.lining import wear
-from ..components.lining.model import declare_friction_pair, declare_surface_loads
+from ..components.lining.model import declare_friction_pair
 from ..components.pack import curves as pack_curves
 from ..components.pack import model as plate_pack
 from ..components.pack.body import PackHousing
@@ -21,7 +21,6 @@ from ..components.pack.requirements import MadePackOptions
 from ..components.ring.model import declare_ring
 from ..friction import startup_curves
 from ..mechanics import magnetics
-from ..mechanics import ring as ring_formulas
 from ..sources import (
     ARCHARD,
     DISC_RUN_OUT,
@@ -30,7 +29,6 @@ from ..sources import (
     LIST_S1,
     NEALE,
     PLATES_IN_USE,
-    S1,
     S4,
     SHAFT,
     SHIGLEY_DISC,
@@ -191,40 +189,18 @@ class ElectromagneticClutch(DesignProblem):
         ring = declare_ring(d, ratio_min=least, ratio_max=most)
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=pack_layer.requirements(d))
         magnet = layer.declare_magnet(d)
-        force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings)
-
-        def torque(mu: Any) -> Any:
-            return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
-
-        low, high = torque(pair.mu_low), torque(pair.mu_high)
-        torques = friction.declare_torque(
+        lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
+        start = disc_pack.declare_disc_start(
             d,
-            duty=duty,
-            pair=pair,
+            lined,
             required=pack_layer.required,
-            torque_low=low,
-            torque_high=high,
-            source=f"{S1}, sizing",
+            force=magnet.actuation_force,
+            ramp_time=ramp_time,
             needs=(magnet_blocks.HOLDS,),
         )
-        disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
-        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
-        area = pack.surfaces * ring.area
-        declare_surface_loads(
-            d,
-            duty=duty,
-            pair=pair,
-            start=start,
-            area=area,
-            rubbing_area=area,
-            pressure=force / ring.area,
-            pressure_source=f"{S1}, p",
-            rubbing_radius=ring.outer_radius,
-        )
-        size = disc_pack.disc_size(duty, ring, pair, pack)
-        discs = disc_pack.Discs(duty, ring, pair, pack, start, size)
+        discs = disc_pack.Discs(**vars(lined), start=start, size=disc_pack.disc_size(lined))
         disc_pack.declare_disc_inertia(d, discs)
         disc_pack.declare_disc_temperature(d, discs)
         pack_layer.declare_body(d, discs)
@@ -240,7 +216,7 @@ class ElectromagneticClutch(DesignProblem):
             size=pack_layer.size(discs),
             full_size=pack_layer.full_size(discs),
             parts=2 * pack.discs + 2,
-            area=area,
+            area=discs.area,
             objective="disc_inertia",
             offered=(),
         )

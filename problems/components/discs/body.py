@@ -173,7 +173,7 @@ def declare_body(d: Declaration, discs: Discs, body: DiscBody) -> None:
     life = wear.declare_wear_life(
         d,
         pair.part,
-        area=discs.pack.surfaces * discs.ring.area,
+        area=discs.area,
         depth=wear_depth(body.wants, discs),
         work=discs.start.friction_work,
         text="Engagements until the linings are worn",

@@ -11,7 +11,7 @@ from synth.drawing import Balloon, Detail, Dimension, Drawable, Edge, Hatch, Ite
 
 from ...drawing_parts import Sizes, envelope, ring
 from ..drawn import DrawnComponent
-from ..lining.drawing import DrawnLining, drawn_lining, lining_weight
+from ..lining.drawing import DrawnLining, drawn_lining
 from ..ring.drawing import drawn_ring
 from ..shaft.drawing import drawn_shaft
 
@@ -70,7 +70,7 @@ def drawn_discs(size: Sizes, start: float, *, side: Edge = "right", top: float |
         Radius at which dimensions along the axis begin, by default that of the ring [mm].
     """
     listed = size.part("facing_set")
-    lining = drawn_lining(size, "facing_set.facing_thickness") if listed else drawn_lining(size)
+    lining = drawn_lining(size, "facing_set.facing_thickness" if listed else "")
     across, hub = drawn_ring(size), size("disc_hub_radius")
     gap, core, plate = size("plate_gap"), size("core_thickness"), size("pressure_plate_thickness")
     count, shapes = size.count("discs"), list[Drawable]()
@@ -110,7 +110,7 @@ def drawn_discs(size: Sizes, start: float, *, side: Edge = "right", top: float |
         (_detail(start, first, plates[0], lining, gap=gap, outside=across.outside),),
         (
             Weight((CORE,), ("core_mass",), "steel_density"),
-            lining_weight(LINING),
+            lining.weight(LINING, "lining_mass"),
             Weight((PLATE,), ("pressure_plate_mass",), "pressure_plate_density", times=1 / count),
         ),
         start=start,
@@ -157,13 +157,13 @@ def drawn_hubs(size: Sizes, discs: DrawnDiscs, across: float) -> DrawnComponent:
     if not hubs_are_known(size):
         return DrawnComponent(dimensions=(discs.hub_diameter(),))
     left, right, hubs = _hubs(size, discs)
-    hub = discs.hub_radius
+    shaft = drawn_shaft(size)
     measured = (
         Dimension((discs.start, across), (discs.end, across), "pack_length", "top"),
-        Dimension((left, -hub), (left + size("shaft_diameter"), -hub), "shaft_diameter", "bottom"),
+        shaft.as_long(left, -discs.hub_radius),
         discs.hub_diameter(left),
     )
-    return drawn_shaft(size).drawn((left, right)) + hubs + DrawnComponent(dimensions=measured)
+    return shaft.drawn((left, right)) + hubs + DrawnComponent(dimensions=measured)
 
 
 def cover_thickness(size: Sizes) -> float:

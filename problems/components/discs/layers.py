@@ -86,7 +86,7 @@ class WithBody(Sources):
     def declare_cost(self, d: Declaration, discs: Discs) -> None:
         """Declare the relative cost of the complete clutch."""
         pack, mass = discs.pack, self.full_size(discs).mass
-        lining = (discs.pair.part, pack.surfaces * discs.ring.area)
+        lining = (discs.pair.part, discs.area)
         cost.declare_cost(d, mass=mass, parts=2 * pack.discs + 2, lining=lining)
 
 

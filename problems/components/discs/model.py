@@ -8,11 +8,17 @@ from typing import Any
 from synth.declaration import Block, Declaration, Requirement
 
 from ...friction.duty import Duty, Size
-from ...friction.engagement import Startup, Torques, advise_frequent_switching, declare_heated_body
+from ...friction.engagement import (
+    Startup,
+    advise_frequent_switching,
+    declare_heated_body,
+    declare_startup,
+    declare_torque,
+)
 from ...mechanics import disc, heat, plates
 from ...mechanics import ring as ring_formulas
 from ...sources import S0, S1, TYPICAL
-from ..lining.model import Pair
+from ..lining.model import Pair, declare_surface_loads
 from ..ring.model import Ring
 
 
@@ -113,13 +119,24 @@ class DiscPack:
 
 
 @dataclass(frozen=True)
-class Discs:
-    """Discs that are declared, with what they are declared for."""
+class LinedDiscs:
+    """Discs and their lining, with what they are declared for."""
 
     duty: Duty
     ring: Ring
     pair: Pair
     pack: DiscPack
+
+    @property
+    def area(self) -> Any:
+        """All friction surfaces together [m2]."""
+        return self.pack.surfaces * self.ring.area
+
+
+@dataclass(frozen=True)
+class Discs(LinedDiscs):
+    """Discs whose torque and start are declared."""
+
     start: Startup
     size: DiscSize
 
@@ -196,26 +213,60 @@ def declare_disc_pack(
     return DiscPack(wants, discs, disc.surface_count(discs), plate_thickness, facing)
 
 
-def declare_worn_torque(
-    d: Declaration, *, pair: Pair, torques: Torques, ring: Ring, pack: DiscPack, force: Any
-) -> None:
-    """Declare the capacity with worn-in lining and its limit.
+def declare_disc_start(
+    d: Declaration, lined: LinedDiscs, *, required: Any, force: Any, ramp_time: Any, needs: tuple[str, ...] = ()
+) -> Startup:
+    """Declare what discs carry under an axial force, a start with them, and what it does to the linings.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    pair : Pair
-        Slot friction_pair.
-    torques : Torques
-        Torques of the clutch.
-    ring : Ring
-        Block ring.
-    pack : DiscPack
-        The discs.
+    lined : LinedDiscs
+        What is asked, and what it is made of.
+    required : symbol
+        Torque that they are sized for [N m].
     force : symbol
         Axial force F0 [N].
+    ramp_time : symbol
+        Variable ramp_time [s].
+    needs : tuple of str
+        Guards without which the torque does not exist.
     """
+    duty, ring, pair, pack = lined.duty, lined.ring, lined.pair, lined.pack
+
+    def torque(mu: Any) -> Any:
+        return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
+
+    torques = declare_torque(
+        d,
+        duty=duty,
+        pair=pair,
+        required=required,
+        torque_low=torque(pair.mu_low),
+        torque_high=torque(pair.mu_high),
+        source=f"{S1}, sizing",
+        needs=needs,
+    )
+    _declare_worn_torque(d, lined, required=required, force=force)
+    start = declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
+    declare_surface_loads(
+        d,
+        duty=duty,
+        pair=pair,
+        start=start,
+        area=lined.area,
+        rubbing_area=lined.area,
+        pressure=force / ring.area,
+        pressure_source=f"{S1}, p",
+        rubbing_radius=ring.outer_radius,
+    )
+    return start
+
+
+def _declare_worn_torque(d: Declaration, lined: LinedDiscs, *, required: Any, force: Any) -> None:
+    """Declare the capacity with worn-in lining under an axial force [N], and its limit."""
+    ring, pair, pack = lined.ring, lined.pair, lined.pack
     worn = d.derive(
         "worn_torque",
         "N*m",
@@ -235,15 +286,16 @@ def declare_worn_torque(
     d.at_least(
         "worn_torque_capacity",
         worn,
-        torques.required,
+        required,
         "N*m",
         text="The worn-in clutch carries the sizing torque",
         source="Shigley, Mechanical Engineering Design",
     )
 
 
-def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> DiscSize:
-    """Return mass and room of a disc pack."""
+def disc_size(lined: LinedDiscs) -> DiscSize:
+    """Mass and room of discs and pressure plates."""
+    duty, ring, pair, pack = lined.duty, lined.ring, lined.pair, lined.pack
     wants, lining = pack.wants, pack.lining_thickness(pair)
     core = plates.annulus_mass(
         duty.steel_density,
@@ -253,7 +305,7 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> DiscSize:
         ring.outer_radius - wants.disc_hub_radius,
     )
     plate = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
-    linings = plates.lining_mass(pair.part.density, lining, pack.surfaces * ring.area)
+    linings = plates.lining_mass(pair.part.density, lining, lined.area)
     return DiscSize(
         mass=pack.discs * plate + linings + core,
         plate_mass=plate,

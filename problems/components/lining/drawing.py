@@ -8,6 +8,8 @@ from synth.drawing import Hatch, Item, Weight
 
 from ...drawing_parts import Sizes
 
+SLOT = "friction_pair"
+
 
 @dataclass(frozen=True)
 class DrawnLining:
@@ -21,12 +23,12 @@ class DrawnLining:
         """Line of the parts list."""
         return Item(number, "Lining", count, self.material, note, Hatch.CROSS)
 
+    def weight(self, number: int, mass: str) -> Weight:
+        """What the areas of all linings must weigh, by the name of their mass."""
+        return Weight((number,), (mass,), f"{SLOT}.density")
 
-def drawn_lining(size: Sizes, name: str = "friction_pair.lining_thickness") -> DrawnLining:
-    """The lining of a design; ``name`` is that of its thickness."""
-    return DrawnLining(size(name), name, size.part("friction_pair"))
 
-
-def lining_weight(number: int) -> Weight:
-    """Mass that all linings of a number in the parts list must give."""
-    return Weight((number,), ("lining_mass",), "friction_pair.density")
+def drawn_lining(size: Sizes, listed: str = "") -> DrawnLining:
+    """The lining of a design; ``listed`` names its thickness where that is of another list than the lining."""
+    name = listed or f"{SLOT}.lining_thickness"
+    return DrawnLining(size(name), name, size.part(SLOT))

@@ -13,15 +13,15 @@ from synth.drawing import Area, Balloon, Detail, Dimension, Drawable, Edge, Hatc
 
 from ...drawing_parts import Sizes, envelope, ring
 from ..drawn import DrawnComponent
-from ..lining.drawing import drawn_lining, lining_weight
+from ..lining.drawing import drawn_lining
 from ..ring.drawing import drawn_ring
 from ..shaft.drawing import drawn_shaft
 
 INNER, OUTER, LINING, END, DRUM, HUB, BOSS = 1, 2, 3, 4, 5, 6, 7
 TEETH = "teeth of the splines: plates are drawn to the mean radius of their spline, as the masses are computed"
 BORES = "shafts, keys and what holds the hubs along the shaft"
-LISTED = ("plate_set.inner_core_thickness", "plate_set.outer_core_thickness", "plate_set.lining_thickness")
-MADE = ("inner_plate.thickness", "outer_plate.thickness", "friction_pair.lining_thickness")
+LISTED = ("plate_set.inner_core_thickness", "plate_set.outer_core_thickness")
+MADE = ("inner_plate.thickness", "outer_plate.thickness")
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,9 @@ class _Plates:
 
     def __init__(self, size: Sizes, end_plates: tuple[bool, bool]) -> None:
         self.listed = size.part("plate_set")
-        self.inner_name, self.outer_name, lining_name = LISTED if self.listed else MADE
-        self.lining, self.ring = drawn_lining(size, lining_name), drawn_ring(size)
+        self.inner_name, self.outer_name = LISTED if self.listed else MADE
+        self.lining = drawn_lining(size, "plate_set.lining_thickness" if self.listed else "")
+        self.ring = drawn_ring(size)
         self.a, self.b, self.wall = size("inner_spline_radius"), size("outer_spline_radius"), size("drum_wall")
         self.inner, self.core, self.gap = size(self.inner_name), size(self.outer_name), size("release_gap")
         self.inner_row, self.outer_row = size.part("inner_plate"), size.part("outer_plate")
@@ -107,7 +108,7 @@ class _Plates:
         else:
             yield Weight((INNER,), ("inner_plate_mass",), "steel_density")
         yield Weight((OUTER,), ("outer_plate_mass",), "steel_density")
-        yield lining_weight(LINING)
+        yield self.lining.weight(LINING, "lining_mass")
 
     def diameters(self, x: float, side: Edge) -> tuple[Dimension, ...]:
         """Diameters of splines and rings, measured at a place along the axis."""

@@ -55,6 +55,10 @@ class DrawnShaft:
         lengths = (Dimension((x0, top), (x1, top), "boss_length", "top", times=times) for x0, x1 in bosses)
         return *lengths, across(self.boss_radius, "boss_diameter"), shaft
 
+    def as_long(self, x: float, y: float) -> Dimension:
+        """Length of a part below the axis that is as long as the shaft is thick, from its left corner on [mm]."""
+        return Dimension((x, y), (x + 2 * self.radius, y), "shaft_diameter", "bottom")
+
     def boss(self, x: float, item: int) -> Area:
         """Section of a boss from its left face on [mm]."""
         return ring(x, x + self.boss_length, self.radius, self.boss_radius, item)
