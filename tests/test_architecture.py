@@ -137,6 +137,22 @@ def test_the_engine_imports_no_family_no_catalogue_and_no_report() -> None:
     assert not {name: names for name, names in found.items() if names}
 
 
+def test_a_family_is_imported_by_no_other_package_of_problems() -> None:
+    def owner(module: str) -> str:
+        return ".".join(module.split(".")[:3])
+
+    families = {owner(type(synth.load(name)).__module__) for name in FAMILIES}
+    assert len(families) > 5
+    found = {
+        (str(path.relative_to(ROOT)), name)
+        for package in PROBLEMS
+        for path in sources(package)
+        for name in imported_by(path)
+        if owner(name) in families - {owner(module_name(path))}
+    }
+    assert found == set()
+
+
 def test_nothing_but_cases_imports_the_suite_and_pytest() -> None:
     found = {
         str(path.relative_to(ROOT))
