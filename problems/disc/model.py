@@ -54,12 +54,7 @@ class DiscClutch(DesignProblem):
         layer = layer_of(d, SpringHousing, duty)
         least, most = layer.ring_ratios
         facings = facing_sets.declare_facing_set(d)
-        ring = declare_ring(
-            d,
-            ratio_min=least,
-            ratio_max=most,
-            diameters=None if facings is None else facing_sets.ring_diameters(facings),
-        )
+        ring = declare_ring(d, ratio_min=least, ratio_max=most, listed=facings)
         facing = None if facings is None else facing_sets.facing_of(facings)
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=layer.requirements(d), facing=facing)
         force = d.variable(

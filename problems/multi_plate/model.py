@@ -70,12 +70,7 @@ class MultiPlateClutch(DesignProblem):
         )
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
         layer = layer_of(d, PistonHousing, lubrication, required)
-        ring = declare_ring(
-            d,
-            ratio_min=layer.ratio_min,
-            ratio_max=0.25,
-            diameters=None if plate_set is None else plate_sets.ring_diameters(plate_set),
-        )
+        ring = declare_ring(d, ratio_min=layer.ratio_min, ratio_max=0.25, listed=plate_set)
         force = d.variable(
             "actuation_force",
             "N",

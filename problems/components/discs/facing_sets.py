@@ -33,11 +33,6 @@ def declare_facing_set(d: Declaration) -> Part | None:
     return declare_bought(d, slot="facing_set", table=TABLE, made="the friction ring", text=text)
 
 
-def ring_diameters(row: Part) -> tuple[Any, Any]:
-    """Return outer and inner diameter [m] of the friction ring of a row."""
-    return row.ring_outer_diameter, row.ring_inner_diameter
-
-
 def facing_of(row: Part) -> Facing:
     """Return thickness and wear of the facings of a row: down to the rivets, or all of what is glued."""
     return Facing(row.facing_thickness, np.minimum(row.filled("rivet_depth", NO_RIVETS), row.facing_thickness))

@@ -34,11 +34,6 @@ def declare_plate_set(d: Declaration) -> Part | None:
     return declare_bought(d, slot="plate_set", table=TABLE, made="ring, cores and splines", text=text)
 
 
-def ring_diameters(row: Part) -> tuple[Any, Any]:
-    """Return outer and inner diameter [m] of the friction ring of a row."""
-    return row.ring_outer_diameter, row.ring_inner_diameter
-
-
 def standard_plates(row: Part, *, wants: PackRequirements, ring: Ring) -> Plates:
     """Return the plates of a row.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from synth.declaration import Block, Declaration, Requirement, Variable
+from synth.declaration import Block, Declaration, Part, Requirement, Variable
 
 from ...mechanics import ring as ring_formulas
 from ...sources import S0, S1
@@ -69,9 +69,7 @@ class Ring:
     area: Any
 
 
-def declare_ring(
-    d: Declaration, *, ratio_min: float, ratio_max: float, diameters: tuple[Any, Any] | None = None
-) -> Ring:
+def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float, listed: Part | None = None) -> Ring:
     """Declare the block ring with the empirical range of its ratio.
 
     Parameters
@@ -80,8 +78,8 @@ def declare_ring(
         Takes the declarations.
     ratio_min, ratio_max : float
         Defaults of the range of ring width over mean diameter [-].
-    diameters : tuple of symbols, optional
-        Outer and inner diameter [m] of a ring of a list; without them the search finds both.
+    listed : Part, optional
+        Row of a list of rings; without one the search finds both diameters.
 
     Returns
     -------
@@ -89,11 +87,11 @@ def declare_ring(
         Symbols of the block.
     """
     range_of_ratio: RingRange
-    if diameters is None:
+    if listed is None:
         sizes = d.block(RingSizes, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
         outer, inner, range_of_ratio = sizes.ring_outer_diameter, sizes.ring_inner_diameter, sizes
     else:
-        outer, inner = _named(d, *diameters)
+        outer, inner = _named(d, listed)
         range_of_ratio = d.block(RingRange, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
     least, most = range_of_ratio.ring_ratio_min, range_of_ratio.ring_ratio_max
     d.refuse(
@@ -162,23 +160,10 @@ def declare_ring(
     )
 
 
-def _named(d: Declaration, outer: Any, inner: Any) -> tuple[Any, Any]:
-    """Report the diameters of a ring that is not searched, under the names that they have where it is."""
+def _named(d: Declaration, listed: Part) -> tuple[Any, Any]:
+    """Report the diameters of a ring of a list under the names that they have where they are searched."""
+    text, outer, inner = "diameter of the friction ring", listed.ring_outer_diameter, listed.ring_inner_diameter
     return (
-        d.derive(
-            "ring_outer_diameter",
-            "mm",
-            outer,
-            symbol="d_out",
-            text="Outer diameter of the friction ring",
-            source=f"{S1}, d1",
-        ),
-        d.derive(
-            "ring_inner_diameter",
-            "mm",
-            inner,
-            symbol="d_in",
-            text="Inner diameter of the friction ring",
-            source=f"{S1}, d2",
-        ),
+        d.derive("ring_outer_diameter", "mm", outer, symbol="d_out", text=f"Outer {text}", source=f"{S1}, d1"),
+        d.derive("ring_inner_diameter", "mm", inner, symbol="d_in", text=f"Inner {text}", source=f"{S1}, d2"),
     )
