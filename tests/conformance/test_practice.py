@@ -168,6 +168,7 @@ RULED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", RULED)
 def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
     requirements = {**CASES[family].requirements, RULED[family]: 5}
@@ -181,6 +182,7 @@ LAYERED = [f for f in CASES if hasattr(import_module(type(synth.load(f)).__modul
 OTHER_STRUCTURES = [("electromagnetic_clutch", {"pack": "disc"}), ("centrifugal_two_spring", {"mechanism": "lever"})]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("family", "options"), [*((family, {}) for family in LAYERED), *OTHER_STRUCTURES])
 def test_practice_is_asked_by_the_layer_alone(
     family: str, options: Mapping[str, str], monkeypatch: pytest.MonkeyPatch
@@ -231,6 +233,7 @@ def test_linings_whose_wear_is_not_known_can_be_used(family: str, name: str, lac
         assert "table friction_materials has no wear" in remark
 
 
+@pytest.mark.slow
 def test_a_lining_that_does_not_say_its_status_is_current() -> None:
     duty = {"load_torque": "5 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.02 kg*m2"}
     for status, left in (("", True), ("current", True), ("historical", False)):
