@@ -9,14 +9,19 @@ import pytest
 
 from tests.repetitions import SWITCH
 
-# Files of more than a minute, the longest first.
+# Files of more than half a minute of a processor, with what their servers and browsers take, the longest first.
 LONGEST = (
-    "service/pages/test_stories.py",
     "docs/test_docs.py",
-    "service/pages/test_whatif_pages.py",
+    "service/pages/test_stories.py",
     "certificates/test_global_claims.py",
+    "service/pages/test_whatif_pages.py",
+    "service/test_threats.py",
+    "reports/test_workbook.py",
+    "workers/test_worker.py",
+    "endtoend/test_installation.py",
     "conformance/test_families.py",
     "search/test_first_by_rank.py",
+    "service/api/test_job_routes.py",
 )
 TESTS = Path(__file__).parent
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from tests.syntax import walked
 from tests.test_layers import upward
 
 ROOT = Path(__file__).parents[1]
@@ -51,31 +52,18 @@ def sources() -> dict[str, str]:
     }
 
 
-@cache
-def trees() -> dict[str, ast.Module]:
-    """Syntax trees of the package by path from the top."""
-    return {path: parsed(text) for path, text in sources().items()}
-
-
-@cache
-def parsed(text: str) -> ast.Module:
-    """Syntax tree of a source, made once."""
-    return ast.parse(text)
-
-
 def nodes(*tops: str) -> Iterator[tuple[str, ast.AST]]:
     """Nodes of all modules, or of those below some folders, with their paths."""
-    for path, tree in trees().items():
+    for path, text in sources().items():
         if not tops or path.startswith(tops):
-            for node in ast.walk(tree):
+            for node in walked(text):
                 yield path, node
 
 
-def functions() -> Iterator[tuple[str, Function]]:
+@cache
+def functions() -> tuple[tuple[str, Function], ...]:
     """Functions and methods, with the paths of their modules."""
-    for path, node in nodes():
-        if isinstance(node, Function):
-            yield path, node
+    return tuple((path, node) for path, node in nodes() if isinstance(node, Function))
 
 
 def parameters(function: Function) -> list[ast.arg]:
@@ -92,7 +80,7 @@ def code_lines(path: str) -> frozenset[int]:
     for token in tokenize.generate_tokens(io.StringIO(sources()[path]).readline):
         if token.type not in skipped:
             lines.update(range(token.start[0], token.end[0] + 1))
-    for node in ast.walk(trees()[path]):
+    for node in walked(sources()[path]):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             lines.difference_update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
     return frozenset(lines)

@@ -6,6 +6,7 @@ import ast
 import re
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,8 +14,8 @@ import pytest
 import synth
 from synth.plugins import AROUND_THE_ENGINE
 from tests.conftest import LONGEST
-from tests.figures import parsed
 from tests.shipped import FAMILIES
+from tests.syntax import parsed, walked
 
 ROOT = Path(__file__).parents[1]
 
@@ -42,10 +43,11 @@ def module_name(path: Path) -> str:
     return ".".join(steps if steps[0] == "synth" else ("synth", *steps))
 
 
+@cache
 def imported(text: str, package: str) -> set[str]:
     """Full dotted names that a source text of a package imports, wherever the import stands."""
     names: set[str] = set()
-    for node in ast.walk(parsed(text)):
+    for node in walked(text):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -193,16 +195,16 @@ def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
     assert circles(graph) == set()
 
 
-def spoken(tree: ast.AST) -> set[str]:
+def spoken(text: str) -> set[str]:
     """Return the identifiers and texts of a source, docstrings apart."""
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     docstrings = {
         id(node.body[0].value)
-        for node in ast.walk(tree)
+        for node in walked(text)
         if isinstance(node, documented) and node.body and isinstance(node.body[0], ast.Expr)
     }
     words: set[str] = set()
-    for node in ast.walk(tree):
+    for node in walked(text):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
             words.add(node.value)
         elif isinstance(node, ast.Name):
@@ -220,7 +222,7 @@ def test_the_engine_names_no_family() -> None:
     # Messages may show a line of a spec that can be typed; nothing else may know a name.
     example = re.compile(r"'family: \w+'")
     for path in (path for package in ENGINE for path in sources(package)):
-        words = {example.sub("", word) for word in spoken(parsed(path.read_text()))}
+        words = {example.sub("", word) for word in spoken(path.read_text())}
         named = {word for word in words for family in families if family in word}
         assert not named, f"{path.name} names {named}"
 
@@ -291,8 +293,9 @@ def test_no_test_patches_a_number_of_the_engine() -> None:
     numbers = {name for package in ENGINE for path in sources(package) for name in numbers_of(parsed(path.read_text()))}
     assert len(numbers) > 20
     patched = set()
-    for path in (ROOT / "tests").rglob("*.py"):
-        for node in ast.walk(parsed(path.read_text())):
+    texts = ((path, path.read_text()) for path in (ROOT / "tests").rglob("*.py"))
+    for path, text in ((path, text) for path, text in texts if "setattr" in text):
+        for node in walked(text):
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "setattr":
                 told = [x.value for x in node.args if isinstance(x, ast.Constant) and isinstance(x.value, str)]
                 patched |= {(path.name, word) for word in told if word.rsplit(".", 1)[-1] in numbers}

@@ -10,6 +10,8 @@ import re
 from functools import cache
 from pathlib import Path
 
+from tests.syntax import walked
+
 ROOT = Path(__file__).parents[1]
 ENGINE = ROOT / "synth"
 
@@ -59,9 +61,7 @@ def read(text: str) -> tuple[set[str], list[str]]:
     """Return what a source text imports or names in a text to import it later, and the classes that it defines."""
     names: set[str] = set()
     classes: list[str] = []
-    left: list[ast.AST] = [ast.parse(text)]
-    while left:
-        node = left.pop()
+    for node in walked(text):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -69,14 +69,8 @@ def read(text: str) -> tuple[set[str], list[str]]:
         elif isinstance(node, ast.Constant):
             if isinstance(node.value, str) and MODULE.fullmatch(node.value):
                 names.add(node.value.partition(":")[0])
-        elif not isinstance(node, ast.Name):
-            if isinstance(node, ast.ClassDef):
-                classes.append(node.name)
-            for part in node.__dict__.values():
-                if isinstance(part, ast.AST):
-                    left.append(part)
-                elif isinstance(part, list):
-                    left += [inner for inner in part if isinstance(inner, ast.AST)]
+        elif isinstance(node, ast.ClassDef):
+            classes.append(node.name)
     return names, classes
 
 

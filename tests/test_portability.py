@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.syntax import walked
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("synth", "problems", "catalogs", "reports")
 OWN = "synth/system/operating_system.py"  # where all of it may be named
@@ -39,15 +41,15 @@ TEXT_MODE = re.compile(r"[rwxat+]+")
 
 def faults(text: str) -> list[str]:
     """Return what a source names that not every system has, or does in a way that is not the same everywhere."""
-    tree = ast.parse(text)
+    nodes = walked(text)
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     docstrings = {
         id(node.body[0].value)
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, documented) and node.body and isinstance(node.body[0], ast.Expr)
     }
     found: list[str] = []
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             found += [alias.name for alias in node.names if alias.name.split(".")[0] in MODULES]
         elif isinstance(node, ast.ImportFrom):

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from synth.bounds.structure import classify
+from synth.bounds.structure import classified
 from synth.declaration import NextRowRecord, Part, RequirementRecord, VariableRecord
 from synth.model.numbers import number
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
-from synth.question.ranges import declared_ranges
 from synth.tables.catalogs import Catalogs
 from synth.text.numbers import typed_number
 from synth.text.row_cells import ELSE, named_column
@@ -150,8 +149,7 @@ def _classifications(
     """
     result: dict[tuple[str, str], str] = {}
     for present in (everything, frozenset[str]()):
-        model = problem.model(present, tables)
-        types = classify(model, *declared_ranges(model, tables))
+        types = classified(problem.model(present, tables), tables)
         for kind, shapes in (("derived", types.quantities), ("limit", types.limits), ("objective", types.objectives)):
             result |= {(kind, name): shape.text for name, shape in shapes.items()}
     return result

@@ -23,6 +23,8 @@ from synth.bounds.composition import TermComposition
 from synth.bounds.log_terms import raised
 from synth.bounds.shapes import Shape, worded
 from synth.model.model import Model
+from synth.question.ranges import declared_ranges
+from synth.tables.catalogs import Catalogs
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,19 @@ def classify(model: Model, low: np.ndarray, high: np.ndarray) -> Structure:
     """
     with np.errstate(all="ignore"):
         return _structure(TermComposition(model, low, high))
+
+
+def classified(model: Model, catalogs: Catalogs) -> Structure:
+    """Classification over all that may be declared and chosen, made once per model.
+
+    Parameters
+    ----------
+    model : Model
+    catalogs : Catalogs
+        Those that the model was traced with.
+    """
+    made: Structure = model.function("structure", lambda: classify(model, *declared_ranges(model, catalogs)))
+    return made
 
 
 def _structure(analysis: TermComposition) -> Structure:

@@ -19,10 +19,9 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 
 from synth.bounds.shapes import FLAT, Shape
-from synth.bounds.structure import classify
+from synth.bounds.structure import classified
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.model.problem import DesignProblem
-from synth.question.ranges import declared_ranges
 from synth.question.uncertainty import RATE, Uncertainty, read_remaining
 from synth.question.user_limits import check_number_of_limits, read_limits
 from synth.robust.uncertainty import LEAST, MOST, SLIDING, Member, Scattered, scattered
@@ -137,7 +136,7 @@ class _Corners:
         self.quantities, self.d, self.uncertainty = quantities, d, problem.uncertainty
         specified = frozenset(name for name, r in d.requirements.items() if r.given)
         self.model: Model = problem.base.model(specified, d.catalogs)
-        self.shapes = classify(self.model, *declared_ranges(self.model, d.catalogs))
+        self.shapes = classified(self.model, d.catalogs)
         number = self.model.input_number
         self.inputs = [[number[m.key] for m in x.members if m.key in number] for x in quantities]
         self.marked = [self.model.program.dependence(k) for k in self.inputs]

@@ -22,7 +22,7 @@ class FamilyTests:
     family : str
         Name of a registered family.
     thorough : bool
-        Whether all tightened requirements of the feasible cases are tried, else one of each.
+        Whether all tightened requirements of the feasible cases and several sizes of units are tried, else one of each.
     """
 
     family: ClassVar[str]
@@ -49,7 +49,7 @@ class FamilyTests:
 
     def test_model(self, option_set: str) -> None:
         """Words, units, dimensions and gradients are sound, numbers those of CasADi."""
-        of_an_option_set.check(traced(self.family, option_set))
+        of_an_option_set.check(traced(self.family, option_set, self.thorough))
 
     @pytest.mark.parametrize("optional", [True, False], ids=["optional", "bare"])
     def test_calculation(self, option_set: str, optional: bool) -> None:

@@ -86,6 +86,7 @@ def test_the_files_say_what_became_of_each_row(plain: synth.BatchResult) -> None
     assert not list(plain.folder.glob(".*"))
 
 
+@pytest.mark.slow
 def test_a_row_has_the_designs_that_the_search_finds_alone(plain: synth.BatchResult) -> None:
     row = plain.designs().set_index("id").loc["R3"]
     alone = synth.synthesize(

@@ -195,6 +195,7 @@ def test_names_that_a_family_does_not_take_are_said() -> None:
     assert found.unused == ("load_torque [N*m]", "mass [kg]")
 
 
+@pytest.mark.slow
 def test_families_and_their_options_are_checked_row_by_row() -> None:
     base = {"load_torque": "600", "driver_speed": "254", "driven_inertia": "30"}
     table = [

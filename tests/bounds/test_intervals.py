@@ -66,6 +66,7 @@ def inside(value, interval):
     return np.isnan(value) | ~((value < low - slack) | (value > high + slack))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("op", sorted(FORWARD), ids=name_of)
 def test_forward_rules_hold_every_value(op):
     rng = np.random.default_rng(abs(op))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -37,10 +38,26 @@ SAME = {
 }
 
 
+@cache
+def problem_of(family: str, **options: str) -> synth.DesignProblem:
+    """Problem of a family with options, traced once for all questions to it."""
+    return synth.load(family, **options)
+
+
+@cache
+def declared(family: str, practice: str) -> frozenset[str]:
+    """Names of the options of a family, with rules of practice or without."""
+    return frozenset(synth.describe(problem_of(family, practice=practice)).query("kind == 'option'")["name"])
+
+
+@cache
 def asked(
-    family: str, name: str, catalogs: Any = None, typed: Mapping[str, str] | None = None, **changed: str
+    family: str, name: str, lacking: tuple[str, ...] = (), typed: tuple[tuple[str, str], ...] = (), **changed: str
 ) -> synth.Design:
-    """Design known of an option set, with some of its requirements and options changed."""
+    """Design known of an option set, with some of its requirements and options changed, or columns of linings lacking.
+
+    It is evaluated once for all tests, which only read it.
+    """
     data = CASES[family]
     design: KnownDesign = data.designs[name]
     chosen = {**data.option_sets[name], **changed}
@@ -49,19 +66,18 @@ def asked(
         for word, more in data.needed.items()
         if word.split("=")[0] != "practice" and word.split("=")[1] == chosen.get(word.split("=")[0])
     ]
-    plain = synth.load(family, practice=chosen["practice"])
-    declared = set(synth.describe(plain).query("kind == 'option'")["name"])
+    options = {key: word for key, word in sorted(chosen.items()) if key in declared(family, chosen["practice"])}
     return synth.evaluate(
-        synth.load(family, **{key: word for key, word in chosen.items() if key in declared}),
+        problem_of(family, **options),
         {
             **data.requirements,
             **SAME.get(family, {}),
             **{key: own for more in needed for key, own in more.items()},
-            **(typed or {}),
+            **dict(typed),
         },
         values={**design.sizes, **design.counts},
         parts=design.parts,
-        catalogs=catalogs,
+        catalogs=linings(lacking) if lacking else None,
     )
 
 
@@ -78,7 +94,7 @@ def test_the_complete_clutch_is_never_lighter_or_shorter_than_its_parts(family: 
 @pytest.mark.parametrize(("family", "name"), KNOWN)
 def test_no_objective_improves_by_the_rules(family: str, name: str) -> None:
     on, off = asked(family, name), asked(family, name, practice="off")
-    senses = synth.describe(synth.load(family, practice="off")).query("kind == 'objective'")
+    senses = synth.describe(problem_of(family, practice="off")).query("kind == 'objective'")
     for quantity, sense in zip(senses["name"], senses["sense"], strict=True):
         if quantity not in off.values:  # of another pack
             continue
@@ -92,7 +108,7 @@ def test_no_objective_improves_by_the_rules(family: str, name: str) -> None:
 @pytest.mark.parametrize("family", sorted({p.values[0] for p in KNOWN}))
 def test_every_rule_is_told_where_it_comes_from_and_stands_in_its_group(family: str) -> None:
     rows = synth.describe(family)
-    before = set(synth.describe(synth.load(family, practice="off"))["name"])
+    before = set(synth.describe(problem_of(family, practice="off"))["name"])
     added = rows[(rows["kind"] == "requirement") & ~rows["name"].isin(before)]
     assert len(added) > 3
     assert (added["source"] != "").all()
@@ -126,7 +142,7 @@ def test_a_typed_shaft_must_stand_its_torque(family: str, name: str) -> None:
     before = asked(family, name)
     thick, shear = before.next_rows["shaft_end"].needed, before.limits["shaft_strength"][0]
     for diameter in (thick, 8e-3):
-        found = asked(family, name, typed={size: f"{diameter / share!r} m"})
+        found = asked(family, name, typed=((size, f"{diameter / share!r} m"),))
         stands, limit = found.limits["shaft_strength"]
         assert stands == pytest.approx(shear * (thick / diameter) ** 3)  # 16 M/(pi d**3)
         assert limit == pytest.approx(fatigue_shear(SHAFT_STEEL, size_factor(diameter), 1.5))
@@ -152,6 +168,7 @@ RULED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", RULED)
 def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
     requirements = {**CASES[family].requirements, RULED[family]: 5}
@@ -165,6 +182,7 @@ LAYERED = [f for f in CASES if hasattr(import_module(type(synth.load(f)).__modul
 OTHER_STRUCTURES = [("electromagnetic_clutch", {"pack": "disc"}), ("centrifugal_two_spring", {"mechanism": "lever"})]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("family", "options"), [*((family, {}) for family in LAYERED), *OTHER_STRUCTURES])
 def test_practice_is_asked_by_the_layer_alone(
     family: str, options: Mapping[str, str], monkeypatch: pytest.MonkeyPatch
@@ -202,7 +220,7 @@ def linings(without: Sequence[str] = (), **cells: Any) -> dict[str, pd.DataFrame
 @pytest.mark.parametrize(("family", "name"), LINED)
 @pytest.mark.parametrize("lacking", [("wear_rate",), ("wearable_depth", "wear_rate")], ids=["rate", "both"])
 def test_linings_whose_wear_is_not_known_can_be_used(family: str, name: str, lacking: tuple[str, ...]) -> None:
-    full, found = asked(family, name), asked(family, name, catalogs=linings(lacking))
+    full, found = asked(family, name), asked(family, name, lacking)
     assert set(found.values) == set(full.values) - LIVES
     lives = LIVES & set(full.limits)
     assert set(found.limits) == set(full.limits)
@@ -215,6 +233,7 @@ def test_linings_whose_wear_is_not_known_can_be_used(family: str, name: str, lac
         assert "table friction_materials has no wear" in remark
 
 
+@pytest.mark.slow
 def test_a_lining_that_does_not_say_its_status_is_current() -> None:
     duty = {"load_torque": "5 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.02 kg*m2"}
     for status, left in (("", True), ("current", True), ("historical", False)):

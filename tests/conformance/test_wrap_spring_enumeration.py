@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cvxpy as cp
 import numpy as np
 import pytest
 
@@ -203,6 +202,8 @@ def test_a_small_catalogue_gives_its_whole_front():
 
 def test_free_dimensions_of_the_source_model_are_a_geometric_program():
     """Wire, hub and interference all continuous, coils and pair given: cvxpy solves the same as a convex problem."""
+    import cvxpy as cp  # slow to import: whoever collects tests does without
+
     torque, bore, coils, tol = 50.0, 0.020, 5.0, 0.03e-3
     modulus, density, allow, strength, endurance = 206e9, 7850.0, 1000e6, 1430e6, 430e6
     pair = next(r for r in map(Catalogs().table("friction_materials").row, range(48)) if r["designation"] == PAIR)

@@ -119,6 +119,7 @@ def test_tables_that_are_no_files_are_refused(place: Path, make: Callable[[Path]
     assert not (place / "never").exists()
 
 
+@pytest.mark.slow
 def test_the_working_folder_as_tables_is_refused(place: Path) -> None:
     (place / "own.yaml").write_text(SMALL + "catalogs: .\n")
     assert "catalogs" in refused(at_once("run", "own.yaml", "-o", "never", folder=place))

@@ -179,6 +179,7 @@ def test_a_wheel_computes_with_the_same_digests(wheel: Path, tmp_path: Path) -> 
     assert unpacked == run(tmp_path, plain, "-c", ask)
 
 
+@pytest.mark.slow
 def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         packed = set(archive.namelist())

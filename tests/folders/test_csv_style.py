@@ -46,6 +46,7 @@ def test_numbers_are_read_as_they_were(rows: list[tuple[float, float]]) -> None:
     assert all(cells[2] == "core 1.5" for cells in found)
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.sampled_from(["1.234", "12.5", "7", "core 2", "1.5 mm", "<= 3.25 kg", "", "inf", "1e-07"]), max_size=9)
 )

@@ -90,6 +90,7 @@ def test_a_stored_request_reads_as_itself(name: str) -> None:
     assert not first.bulk
 
 
+@pytest.mark.slow
 def test_the_same_meaning_is_the_same_request() -> None:
     turned = {**dict(reversed(list(DISC.items()))), "requirements": dict(reversed(list(DISC["requirements"].items())))}
     symbols = {**DISC["requirements"], "M_load": DISC["requirements"]["load_torque"]}

@@ -180,6 +180,7 @@ def test_limits_of_family_and_user_are_one_list_in_the_order_of_reports(asked):
     np.testing.assert_array_equal(result.feasible, every)
 
 
+@pytest.mark.slow
 def test_a_limit_on_a_variable_bounds_the_search_and_is_judged_in_a_given_design(asked):
     instance = asked.instance
     for x in instance.limits.bounding:

@@ -205,6 +205,7 @@ def test_a_spec_cannot_be_changed(tmp_path: Path) -> None:
         spec.requirements["load_torque"] = 1  # type: ignore[index]
 
 
+@pytest.mark.slow
 @settings(deadline=None, derandomize=True)
 @given(st.dictionaries(st.sampled_from([*FIELDS, "other"]), JUNK, max_size=6))
 def test_any_mapping_is_read_or_refused(content: dict[str, object]) -> None:

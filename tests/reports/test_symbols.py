@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,11 @@ from synth.reports.formula.symbols import symbol_parts
 from synth.analysis.calculation import calculation_of
 from tests.conformance.cases import CASES, question
 
+pytestmark = pytest.mark.slow
 LIST = Path(__file__).with_name("symbols.csv")
 
 
+@cache
 def symbols():
     found = set()
     for family, data in CASES.items():
@@ -30,7 +33,6 @@ def shown(symbol):
     return ("Δ" if parts.difference else "") + parts.base, ",".join(parts.subscripts), style
 
 
-@pytest.mark.slow
 def test_every_symbol_is_typeset_as_it_was_looked_at():
     with LIST.open(encoding="utf-8") as file:
         known = {row["symbol"]: (row["base"], row["below"], row["style"]) for row in csv.DictReader(file)}

@@ -12,6 +12,7 @@ from synth.testing.option_sets import of_an_option_set, traced
 from tests.shipped import FAMILIES
 
 
+@pytest.mark.slow
 def test_families_do_not_load_the_suite() -> None:
     program = (
         "import sys, synth\n"

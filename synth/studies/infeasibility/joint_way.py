@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from synth.bounds.structure import classify
+from synth.bounds.structure import classified
 from synth.model.constraint import SYMBOLS
-from synth.question.ranges import declared_ranges
 from synth.question.spec_patch import patched
 from synth.results import Design
 from synth.studies.infeasibility.explained_question import ExplainedQuestion
@@ -196,9 +195,9 @@ def direction(
     for limit in question.giving:
         if question.requirement_of(limit) == name:
             return question.sign(limit)
-    model, catalogs = question.instance.model, question.request.catalogs
+    model = question.instance.model
     position = model.input_number["requirement", name, ""] - len(model.variables)
-    shapes = model.function("shapes", lambda: classify(model, *declared_ranges(model, catalogs)))
+    shapes = classified(model, question.request.catalogs)
     for names in (question.limits, conflict):
         ends = [shapes.limits[x] for x in names if x in shapes.limits]
         spans = [x.elasticity[question.followers(position)] for x in ends if x.sign == 1]

@@ -121,6 +121,7 @@ def test_the_state_lies_on_the_curves(clutch):
     assert compared > 100
 
 
+@pytest.mark.slow
 def test_flyweights_and_springs_balance_at_any_speed(clutch):
     """The equilibrium that the state claims, from its own figures: forces at the plate, and the centrifugal force."""
     family, _, _, design = clutch
