@@ -281,7 +281,7 @@ def _cut(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - tail - 5]} ... {text[-tail:]}"
 
 
-def whole_number(value: Any, field: str, most: int, least: int = 1, path: tuple[Key, ...] = ()) -> int:
+def whole_number(value: object, field: str, most: int, least: int = 1, path: tuple[Key, ...] = ()) -> int:
     """Return a count that a user stated.
 
     Raises

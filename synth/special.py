@@ -16,9 +16,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
+
+# What formulas take and return: a number, an array, or an expression of CasADi symbols. No type that could be checked
+# holds for all three: the operators of one do not know the others.
+Numeric: TypeAlias = Any
 
 F = TypeVar("F", bound=Callable[..., Any])
 Interval = tuple[Any, Any]
@@ -79,7 +83,7 @@ class SpecialFunction:
         most = [high if up else low for low, high, up in zip(lows, highs, rising, strict=True)]
         return self._corner(least, known, -np.inf), self._corner(most, known, np.inf)
 
-    def _corner(self, point: Sequence[Any], known: Any, unknown: float) -> Any:
+    def _corner(self, point: Sequence[Any], known: np.ndarray, unknown: float) -> Any:
         with np.errstate(all="ignore"):
             value = self.formula(*point)
         return np.where(known & ~np.isnan(value), value, unknown)
@@ -162,7 +166,7 @@ def special(
     return decorate
 
 
-def _is_symbol(value: Any) -> bool:
+def _is_symbol(value: object) -> bool:
     """True if a value is a symbol, without importing CasADi for numbers: formulas are used without it, too."""
     casadi = sys.modules.get("casadi")
     return casadi is not None and isinstance(value, casadi.SX)
@@ -195,7 +199,7 @@ def recorded() -> Iterator[list[SpecialCall]]:
         _calls.reset(token)
 
 
-def expanded(expression: Any, calls: Sequence[SpecialCall]) -> Any:
+def expanded(expression: Numeric, calls: Sequence[SpecialCall]) -> Any:
     """Return an expression with the formulas of special functions in place of their symbols."""
     import casadi as ca
 

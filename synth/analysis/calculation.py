@@ -11,16 +11,17 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
-from typing import Any
 
 import casadi as ca
 
 from synth.analysis.restate import question_of
 from synth.declaration import Declaration, Origin
+from synth.declaration.records import Choice, Count, VariableRecord
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.program import COMPARISONS, OP_SELECT, OPERATIONS, Node, Program
+from synth.question.arguments import Family, Limits, Requirements, UserTables
 from synth.question.inputs import fixed_row_values
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -42,10 +43,10 @@ ONE: Expression = ["n", 1.0]
 
 def calculation(
     asked: ParetoFront | DesignProblem | type[DesignProblem] | str,
-    requirements: Mapping[str, Any] | None = None,
-    catalogs: Any = None,
-    limits: Mapping[str, Any] | None = None,
-    problem: Any = None,
+    requirements: Requirements | None = None,
+    catalogs: UserTables = None,
+    limits: Limits | None = None,
+    problem: Family | None = None,
 ) -> Calculation:
     """Calculation of every number of a design.
 
@@ -77,7 +78,7 @@ def calculation(
     return calculation_of(Instance(Request.of(asked, requirements or {}, catalogs, limits=limits), restrict=False))
 
 
-def _of_front(front: ParetoFront, problem: Any, catalogs: Any) -> Calculation:
+def _of_front(front: ParetoFront, problem: Family | None, catalogs: UserTables) -> Calculation:
     saved = front.kept.get("calculation")
     if saved and front.folder is not None and problem is None and catalogs is None:
         return load_calculation(front.folder, saved)
@@ -163,7 +164,7 @@ def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list
     return _with_distinct_symbols(quantities, d)
 
 
-def _searched(record: Any, kind: str, bounds: tuple[float, float] | None) -> NamedQuantity:
+def _searched(record: VariableRecord | Count | Choice, kind: str, bounds: tuple[float, float] | None) -> NamedQuantity:
     return NamedQuantity(
         name=record.name,
         kind=kind,

@@ -14,6 +14,7 @@ from synth.declaration import NextRowRecord, Part, RequirementRecord, VariableRe
 from synth.model.numbers import number
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import Family, UserTables
 from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
 from synth.tables.catalogs import Catalogs
@@ -42,7 +43,7 @@ COLUMNS = (
 )
 
 
-def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None) -> pd.DataFrame:
+def describe(p: Family, catalogs: UserTables = None) -> pd.DataFrame:
     """List everything a problem declares.
 
     Parameters
@@ -78,9 +79,7 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     return tabulated(described(p, catalogs))
 
 
-def described(
-    p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None, steps: bool = False
-) -> list[dict[str, Any]]:
+def described(p: Family, catalogs: UserTables = None, steps: bool = False) -> list[dict[str, Any]]:
     """Return the rows of ``describe``, each by the names of the columns.
 
     ``steps``: the quantities on the way to others as well, which are no results but stand in front.json for hooks.
@@ -130,7 +129,7 @@ def described(
     return rows
 
 
-def tabulated(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+def tabulated(rows: Sequence[Mapping[str, object]]) -> pd.DataFrame:
     """Return the rows of a description as the frame that ``describe`` returns."""
     import pandas as pd  # costly to import; who reads a description on the terminal does without
 
@@ -155,7 +154,7 @@ def _classifications(
     return result
 
 
-def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:
+def _row(kind: str, record: object, **known: Any) -> dict[str, Any]:
     fields = vars(record)  # asked for an attribute it does not have, a Part takes it for a column of its table
     row: dict[str, Any] = {
         column: fields.get(column, "") for column in ("name", "symbol", "unit", "text", "source", "group")
@@ -181,7 +180,7 @@ def _requirement(r: RequirementRecord, fixed_rows: Mapping[str, float]) -> dict[
     )
 
 
-def _expression(expression: Any, unit: str, fixed_rows: Mapping[str, float]) -> float | str:
+def _expression(expression: ca.SX | float, unit: str, fixed_rows: Mapping[str, float]) -> float | str:
     """Return a default as a number in its unit where it is one, otherwise as text."""
     symbolic = ca.SX(expression)
     if all(str(symbol) in fixed_rows for symbol in ca.symvar(symbolic)):

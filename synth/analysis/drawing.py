@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
 
 from synth.analysis.evaluate import evaluate
 from synth.analysis.hooks import requirements_of
 from synth.drawing import Angle, Drawing, Measured
-from synth.drawing.shapes import moments, points_of
+from synth.drawing.shapes import Drawable, moments, points_of
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.order.margins import MARGINS
+from synth.question.arguments import DesignSource, DesignValues, Family, Requirements, UserTables
 from synth.question.catalogs import catalogs_for
 from synth.results import Design
 
 
 def draw(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    design: Any = None,
+    p: Family,
+    requirements: Requirements,
+    design: DesignSource | None = None,
     *,
-    values: Mapping[str, Any] | None = None,
+    values: DesignValues | None = None,
     parts: Mapping[str, str] | None = None,
-    catalogs: Any = None,
+    catalogs: UserTables = None,
 ) -> Drawing:
     """Return the drawing of one design: shapes in millimetres, dimensions, parts list.
 
@@ -133,7 +133,7 @@ def faults_of(drawing: Drawing, design: Design) -> list[str]:
     return faults
 
 
-def _faults_of_shapes(shapes: Any) -> list[str]:
+def _faults_of_shapes(shapes: Iterable[Drawable]) -> list[str]:
     for shape in shapes:
         points = points_of(shape)
         if not all(math.isfinite(c) for p in points for c in p):

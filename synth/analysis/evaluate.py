@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -12,7 +12,7 @@ from synth.analysis.designs import lookup_rows, make_design, make_frame
 from synth.analysis.settings import DERIVED
 from synth.errors import InputError, RefusedError, at
 from synth.model.model import DataInput, Model
-from synth.model.problem import DesignProblem
+from synth.question.arguments import DesignSource, DesignValues, Family, Limits, Objectives, Requirements, UserTables
 from synth.question.inputs import inputs_of_design, part_value
 from synth.question.instance import Instance
 from synth.question.names import as_mapping
@@ -26,17 +26,19 @@ from synth.results.design import DesignSteps
 from synth.special import expanded
 from synth.units import parse_quantity, typed_quantity
 
+Residuals: TypeAlias = Callable[[np.ndarray], np.ndarray]
+
 
 def evaluate(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    design: Any = None,
+    p: Family,
+    requirements: Requirements,
+    design: DesignSource | None = None,
     *,
-    values: Mapping[str, Any] | None = None,
+    values: DesignValues | None = None,
     parts: Mapping[str, str] | None = None,
-    catalogs: Any = None,
-    limits: Mapping[str, Any] | None = None,
-    objectives: Any = None,
+    catalogs: UserTables = None,
+    limits: Limits | None = None,
+    objectives: Objectives = None,
 ) -> Design:
     """Analyse one design: every quantity, every limit; nothing is searched or rounded.
 
@@ -70,46 +72,36 @@ def evaluate(
         values = {n: design.values[n] for n, k in design.frame.kinds.items() if k in ("variable", "count")}
         si = {**values, **design.choices}
         parts = {slot: str(row) for slot, row in design.parts.items()}
-        return evaluate_in_si(p, requirements, si, parts, catalogs=catalogs, limits=limits, objectives=objectives)
+        return analysed(p, requirements, si, parts, catalogs=catalogs, limits=limits, objectives=objectives)
     if design is not None:
         if not isinstance(design, Mapping):
             raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'", ("design",))
         values, parts = design.get("values"), design.get("parts")
     values = as_mapping(values, "values", "{'mass': '20 kg'}")
     parts = as_mapping(parts, "parts", "{'slot': 'designation'}")
-    return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=False)
+    return analysed(
+        p, requirements, values, parts, catalogs=catalogs, limits=limits, objectives=objectives, in_si=False
+    )
 
 
-def evaluate_in_si(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
+def analysed(
+    p: Family,
+    requirements: Requirements,
     values: Mapping[str, Any],
     parts: Mapping[str, str],
     *,
-    catalogs: Any = None,
-    limits: Mapping[str, Any] | None = None,
-    objectives: Any = None,
+    catalogs: UserTables = None,
+    limits: Limits | None = None,
+    objectives: Objectives = None,
+    in_si: bool = True,
 ) -> Design:
-    """Analyse a design of which sizes, counts and choices are kept in SI; all else as for :func:`evaluate`.
+    """Analyse a design; ``in_si``: its sizes, counts and choices are kept in SI. All else as for :func:`evaluate`.
 
     Raises
     ------
     InputError
         As for :func:`evaluate`.
     """
-    return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=True)
-
-
-def _evaluate(
-    p: Any,
-    requirements: Mapping[str, Any],
-    values: Mapping[str, Any],
-    parts: Mapping[str, str],
-    catalogs: Any,
-    limits: Mapping[str, Any] | None,
-    objectives: Any,
-    in_si: bool,
-) -> Design:
     instance = Instance(Request.of(p, requirements, catalogs, limits=limits), restrict=False)
     model = instance.model
     rows = _chosen_rows(instance, parts)
@@ -285,7 +277,7 @@ def _solve_for(
 
 
 def _solutions(
-    difference: Any, slope: Any, starts: Sequence[np.ndarray], lower: np.ndarray, upper: np.ndarray
+    difference: Residuals, slope: Residuals, starts: Sequence[np.ndarray], lower: np.ndarray, upper: np.ndarray
 ) -> Iterator[np.ndarray]:
     """Yield the points within bounds at which nothing differs, one per start that leads to one."""
     from scipy.optimize import least_squares  # costly to import; most designs are given by their variables
@@ -322,7 +314,7 @@ def _derived_function(model: Model, missing: list[int], names: list[str]) -> Any
     return ca.Function("derived", [x, known, data], [outputs, ca.jacobian(outputs, x)])
 
 
-def _polish(x: np.ndarray, difference: Any, slope: Any, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+def _polish(x: np.ndarray, difference: Residuals, slope: Residuals, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """Finish with Newton steps: least squares stops at the square root of what is reachable."""
     for _ in range(DERIVED.newton):
         try:

@@ -54,7 +54,7 @@ class Inequality:
     strictly: bool
 
 
-def required_inequalities(when: Any) -> list[Inequality] | None:
+def required_inequalities(when: ca.SX) -> list[Inequality] | None:
     """Conditions that must all hold for a guard not to refuse; None where it is not of that form.
 
     Examples

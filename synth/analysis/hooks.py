@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from synth.analysis.evaluate import evaluate
 from synth.errors import InputError, at
+from synth.folders.files import table_frame
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import DesignSource, DesignValues, Family, Requirements, UserTables
 from synth.question.catalogs import catalogs_for
 from synth.question.instance import Instance
 from synth.question.names import as_mapping
@@ -30,14 +32,14 @@ OPINION = ["quantity", "unit", "closed_form", "simulation", "difference", "relat
 
 
 def simulate(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    design: Any = None,
+    p: Family,
+    requirements: Requirements,
+    design: DesignSource | None = None,
     *,
-    values: Mapping[str, Any] | None = None,
+    values: DesignValues | None = None,
     parts: Mapping[str, str] | None = None,
-    catalogs: Any = None,
-    settings: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    settings: Mapping[str, object] | None = None,
 ) -> dict[str, pd.DataFrame]:
     """Simulate one design in time.
 
@@ -69,20 +71,20 @@ def simulate(
     )
 
 
-def simulate_design(problem: DesignProblem, design: Design, chosen: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
+def simulate_design(problem: DesignProblem, design: Design, chosen: Mapping[str, object]) -> dict[str, pd.DataFrame]:
     """Simulate a design that was just evaluated, with settings that were already read."""
     frames = problem.simulate({**requirements_of(design), **chosen}, design)
     return _checked(problem, "simulate", "simulation", frames)
 
 
 def curves(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    design: Any = None,
+    p: Family,
+    requirements: Requirements,
+    design: DesignSource | None = None,
     *,
-    values: Mapping[str, Any] | None = None,
+    values: DesignValues | None = None,
     parts: Mapping[str, str] | None = None,
-    catalogs: Any = None,
+    catalogs: UserTables = None,
 ) -> dict[str, pd.DataFrame]:
     """Return the curves of a family for a requirement, and for a design if there is one.
 
@@ -129,8 +131,6 @@ def second_opinion(design: Design, frames: Mapping[str, pd.DataFrame]) -> pd.Dat
     pandas.DataFrame
         One row per quantity, in its declared unit: closed form, simulation, difference, and that over the closed form.
     """
-    import pandas as pd  # costly to import
-
     rows: list[list[Any]] = []
     for frame in frames.values():
         for name, simulated in frame.attrs.get("quantities", {}).items():
@@ -140,10 +140,10 @@ def second_opinion(design: Design, frames: Mapping[str, pd.DataFrame]) -> pd.Dat
                 closed, second = (finite_from_si(value, unit, math.nan) for value in values)
                 relative = (second - closed) / closed if closed else math.nan
                 rows.append([name, unit, closed, second, second - closed, relative])
-    return pd.DataFrame(rows, columns=OPINION)
+    return table_frame(OPINION, rows)
 
 
-def read_settings(problem: DesignProblem, settings: Mapping[str, Any] | None, catalogs: Catalogs) -> dict[str, Any]:
+def read_settings(problem: DesignProblem, settings: Mapping[str, object] | None, catalogs: Catalogs) -> dict[str, Any]:
     """Return the settings of a simulation that the user gave: SI numbers, words, rows.
 
     Raises
@@ -163,7 +163,7 @@ def read_settings(problem: DesignProblem, settings: Mapping[str, Any] | None, ca
     return chosen
 
 
-def _read_setting(field: str, setting: Setting, value: Any, catalogs: Catalogs) -> Any:
+def _read_setting(field: str, setting: Setting, value: object, catalogs: Catalogs) -> Any:
     if setting.table:
         table = catalogs.table(setting.table)
         return table.row(table.row_index(str(value)))
@@ -179,7 +179,9 @@ def requirements_of(design: Design) -> dict[str, float | None]:
     return {**design.frame.requirement_values, **dict.fromkeys(design.frame.not_asked)}
 
 
-def _checked(problem: DesignProblem, hook: str, kind: str, frames: Any) -> dict[str, pd.DataFrame]:
+def _checked(
+    problem: DesignProblem, hook: str, kind: str, frames: Mapping[str, pd.DataFrame] | None
+) -> dict[str, pd.DataFrame]:
     """Return the frames of a hook once they keep to the convention; a fault there is one of the family's author."""
     if not frames:
         raise InputError("family", problem.name, f"a family that has {'a ' if kind == 'simulation' else ''}{kind}")

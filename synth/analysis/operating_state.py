@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from synth.analysis.hooks import requirements_of
 from synth.errors import InputError, at
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import DesignSource, DesignValues, Family, Requirements, UserTables
 from synth.question.catalogs import catalogs_for
 from synth.question.names import as_mapping
 from synth.text.numbers import UNKNOWN, number_text
@@ -28,14 +29,14 @@ WORDS = ("course", "regime")  # columns that tell in words; all others have a un
 
 
 def state(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    design: Any = None,
+    p: Family,
+    requirements: Requirements,
+    design: DesignSource | None = None,
     *,
-    at: Mapping[str, Any],
-    values: Mapping[str, Any] | None = None,
+    at: Mapping[str, object],
+    values: DesignValues | None = None,
     parts: Mapping[str, str] | None = None,
-    catalogs: Any = None,
+    catalogs: UserTables = None,
 ) -> pd.DataFrame:
     """Return the state of one design at an operating point, such as a speed.
 
@@ -75,7 +76,7 @@ def state(
     )
 
 
-def read_point(problem: DesignProblem, entries: Mapping[str, Any]) -> dict[str, float]:
+def read_point(problem: DesignProblem, entries: Mapping[str, object]) -> dict[str, float]:
     """Return an operating point in SI.
 
     Raises

@@ -21,6 +21,7 @@ from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, knee_of
+from synth.question.arguments import Family, UserTables
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from synth.results import Design, ParetoFront, design_columns, design_row, foremost, named_designs
@@ -31,7 +32,7 @@ from synth.results.hookspecs import Made
 from synth.results.loading import COMPARISON, load_front
 from synth.results.notebook import NotebookFrame
 from synth.results.offered import Offered
-from synth.results.report_request import ComparisonRequest, ReportOptions, ReportRequest
+from synth.results.report_request import AboutSource, ComparisonRequest, ReportOptions, ReportRequest
 from synth.robust.counterpart import nominal
 from synth.text.plain_text import csv_cell
 
@@ -39,7 +40,6 @@ CURVES = ("*.svg",)
 PLAIN = ReportOptions()
 DRAWN = 8  # designs whose drawings the explorer has, the first by rank
 Hook = TypeVar("Hook")
-FamilyLike = str | type[DesignProblem] | DesignProblem | None  # for a loaded front of a problem of one's own
 
 
 @dataclass(frozen=True)
@@ -116,10 +116,10 @@ def report(
     folder: str | Path,
     how: ReportOptions = PLAIN,
     *,
-    design: Any = 1,
+    design: int | str | Sequence[int | str] = 1,
     full: int = 5,
-    problem: FamilyLike = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
 ) -> WrittenReport:
     """Write the report of a front, and calculation sheets of some of its designs.
 
@@ -153,7 +153,12 @@ def report(
 
 
 def explore(
-    front: ParetoFront, height: int = 760, *, about: Any = None, problem: FamilyLike = None, catalogs: Any = None
+    front: ParetoFront,
+    height: int = 760,
+    *,
+    about: AboutSource = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
 ) -> NotebookFrame:
     """Return the explorer of a front as a frame for a notebook; arguments as for :func:`report`.
 
@@ -167,7 +172,12 @@ def explore(
 
 
 def explored(
-    front: ParetoFront, *, about: Any = None, problem: FamilyLike = None, catalogs: Any = None, drawn: int = DRAWN
+    front: ParetoFront,
+    *,
+    about: AboutSource = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
+    drawn: int = DRAWN,
 ) -> dict[str, Any]:
     """Explorer record of a front, as JSON holds it; arguments as for :func:`report`.
 
@@ -185,7 +195,7 @@ def explored(
     return record(ReportRequest(calculation=read, front=front, how=how, drawings=pictures, **_related_results(front)))
 
 
-def explored_comparison(source: Path, about: Any = None) -> dict[str, Any]:
+def explored_comparison(source: Path, about: AboutSource = None) -> dict[str, Any]:
     """Explorer record of the common front of several families, as JSON holds it.
 
     Raises
@@ -215,8 +225,8 @@ def _of_front(
     full: int,
     how: ReportOptions,
     place: Path,
-    problem: FamilyLike = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
 ) -> Made:
     """Return the files of the report of a front, which will stand in a place."""
     if full < 0 or full != int(full):
@@ -245,13 +255,13 @@ def _draws(how: ReportOptions) -> bool:
     return bool({"svg", "dxf", "step", "glb"} & set(how.formats))
 
 
-def _calculation(front: ParetoFront, problem: FamilyLike, catalogs: Any) -> Calculation:
+def _calculation(front: ParetoFront, problem: Family | None, catalogs: UserTables) -> Calculation:
     """Calculation of a front: the one that was saved with it, whatever is given, where there is one."""
     saved = "calculation" in front.kept
     return calculation(front) if saved else calculation(front, problem=problem, catalogs=catalogs if problem else None)
 
 
-def _family(front: ParetoFront, read: Calculation, problem: FamilyLike) -> DesignProblem:
+def _family(front: ParetoFront, read: Calculation, problem: Family | None) -> DesignProblem:
     """Family of a front, whose hooks need no trace: all options are stated, as its calculation has them.
 
     Raises
@@ -264,7 +274,7 @@ def _family(front: ParetoFront, read: Calculation, problem: FamilyLike) -> Desig
     return load(front.frame.family, **read.options) if problem is None else load(problem)
 
 
-def _differences(front: ParetoFront, read: Calculation, problem: FamilyLike, catalogs: Any) -> list[str]:
+def _differences(front: ParetoFront, read: Calculation, problem: Family | None, catalogs: UserTables) -> list[str]:
     """Remarks on tables that have changed; none without the family."""
     if front.question is not None:
         return []
@@ -280,7 +290,7 @@ def _drawings(
     front: ParetoFront,
     read: Calculation,
     designs: Sequence[Design],
-    problem: FamilyLike = None,
+    problem: Family | None = None,
     *,
     requested: bool = False,
 ) -> tuple[dict[int, Drawing], list[str]]:
@@ -377,7 +387,7 @@ def _listed(entry: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict
     raise KeyError(f"design #{entry['rank']} of {family}")
 
 
-def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) -> list[Mapping[str, Any]]:
+def _chosen_of_all(listed: Sequence[Mapping[str, object]], words: Sequence[str]) -> list[Mapping[str, Any]]:
     """Return the designs of a common front that are named by rank, or as its knee."""
     if not listed and list(words) in (["1"], [KNEE]):
         return []
@@ -424,7 +434,7 @@ def _near_of(path: Path, front: ParetoFront) -> dict[str, Any]:
     return {}
 
 
-def _offered(front: ParetoFront, problem: FamilyLike, catalogs: Any) -> Offered:
+def _offered(front: ParetoFront, problem: Family | None, catalogs: UserTables) -> Offered:
     """Rows that slots offer; of a front that was saved without them the question is posed again where it can be."""
     if front.question is None and not front.kept.get("offered"):
         with suppress(InputError):

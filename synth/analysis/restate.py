@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import Family, UserTables
 from synth.question.catalogs import as_catalogs, catalogs_for, refuse_unused
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -23,7 +24,7 @@ IN_MEMORY = "a table in memory"
 
 
 def problem_of(
-    front: ParetoFront, problem: Any = None, catalogs: Any = None, kept: bool = False
+    front: ParetoFront, problem: Family | None = None, catalogs: UserTables = None, kept: bool = False
 ) -> tuple[DesignProblem, Catalogs]:
     """Return the problem of a front and its tables.
 
@@ -101,7 +102,9 @@ def table_differences(front: ParetoFront, tables: Catalogs) -> tuple[list[str], 
     return gone, changed
 
 
-def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None, kept: bool = False) -> Instance:
+def question_of(
+    front: ParetoFront, problem: Family | None = None, catalogs: UserTables = None, kept: bool = False
+) -> Instance:
     """Return the question that a front answers; arguments as of :func:`problem_of`.
 
     Raises

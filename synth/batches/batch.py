@@ -16,13 +16,14 @@ from typing import IO, TYPE_CHECKING, Any
 from sqlalchemy import URL
 
 from synth.batches.batch_folder import DATABASE
+from synth.batches.entries import BatchProgress, RowSource
 from synth.batches.executors import Cluster, Inline, Processes
 from synth.batches.outputs import BEST, write_outputs
 from synth.batches.row_checks import PlanProgress, checked_rows
 from synth.batches.row_groups import RowGroups
 from synth.batches.row_questions import Fault, Questioner, ReadRow, canonical_position, read_mapping
 from synth.batches.row_remarks import RowRemarks
-from synth.batches.row_table import read_table
+from synth.batches.row_table import RowTable, read_table
 from synth.batches.runner import Runner, Shares
 from synth.batches.settings import BATCHES, BatchSettings
 from synth.batches.store import Store
@@ -32,6 +33,7 @@ from synth.folders.csv_style import ENGLISH, GERMAN, CsvStyle, list_with_points
 from synth.folders.output_folder import claimed, settle
 from synth.kernels.loading import native_code
 from synth.model.registry import families, load
+from synth.question.arguments import Family, Limits, Objectives, PartRules, Pins, UserTables
 from synth.question.catalogs import as_catalogs
 from synth.question.count_domain import stated_value
 from synth.question.names import as_mapping
@@ -41,15 +43,12 @@ from synth.queue.database import digest, encoded, file_url
 from synth.queue.job_queue import Claim
 from synth.queue.job_table import BATCH
 from synth.results.provenance import code_digest, problem_digest, processor
+from synth.results.report_request import AboutSource
 from synth.text.input_limits import INPUT_LIMITS
 from synth.text.plain_text import as_meant
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from synth.model.problem import DesignProblem
-
-Progress = Callable[[Mapping[str, Any]], None]
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class BatchResult:
         *,
         row: str | int | None = None,
         formats: Sequence[str] = ("html",),
-        about: Any = None,
+        about: AboutSource = None,
         fonts: Sequence[str | Path] = (),
     ) -> Path:
         """Write report.html: rows by state, all of them to filter and sort, failures with reasons, one row in full.
@@ -109,14 +108,13 @@ class BatchResult:
             Something asked is wrong; then nothing is written. Or an extra is not installed: what can be made without
             it is written.
         """
-        from synth.batches.batch_report import BatchOptions, report_result
+        from synth.batches.batch_report import BatchOptions, report_batch
         from synth.results.report_request import ReportOptions
 
         options = BatchOptions("" if row is None else str(row).strip(), ReportOptions.read(formats, about, fonts=fonts))
         target = self.folder if folder is None else Path(folder)
-        return report_result(
-            self.folder, target, options, self.database, self.job, self.catalogs, self.user_family
-        ).complete()
+        memory = {"tables": self.catalogs, "family": self.user_family}
+        return report_batch(self.folder, target, options, self.database, self.job, **memory).complete()
 
 
 def _frame_of(path: Path, **how: Any) -> pd.DataFrame:
@@ -142,24 +140,24 @@ def _as_meant(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def batch(
-    p: str | type[DesignProblem] | DesignProblem | None,
-    table: Any,
+    p: Family | None,
+    table: RowSource,
     output: str | Path | None = None,
     *,
-    mapping: Any = None,
-    objectives: Any = None,
+    mapping: Mapping[str, str] | str | Path | None = None,
+    objectives: Objectives = None,
     points: int = 30,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    parts: PartRules | None = None,
+    limits: Limits | None = None,
+    fix: Pins | None = None,
     gap: float = 1e-3,
     grid: bool = True,
     workers: int = 1,
     seed: int = 0,
     scheduler: str | None = None,
     database: str | None = None,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: BatchProgress | None = None,
     time_limit: float | None = None,
 ) -> BatchResult:
     """Find the ranked designs for every row of a table of requirements.
@@ -254,11 +252,11 @@ class BatchJob:
 
     def __init__(
         self,
-        problem: Any,
-        table: Any,
+        problem: Family | None,
+        table: RowSource | RowTable,
         folder: Path,
-        mapping: Any,
-        catalogs: Any,
+        mapping: Mapping[str, str] | str | Path | None,
+        catalogs: UserTables,
         database: str | None,
         settings: SearchSettings,
         common: Mapping[str, Any],
@@ -328,7 +326,7 @@ class BatchJob:
 
     # -- plan ----------------------------------------------------------------------------------
 
-    def plan(self, workers: int | None = None, progress: Progress | None = None) -> bool:
+    def plan(self, workers: int | None = None, progress: BatchProgress | None = None) -> bool:
         """Check all rows and write the job, unless it is there already.
 
         Parameters
@@ -359,7 +357,7 @@ class BatchJob:
                     place.unlink(missing_ok=True)
             raise
 
-    def _planned(self, workers: int | None, progress: Progress | None) -> bool:
+    def _planned(self, workers: int | None, progress: BatchProgress | None) -> bool:
         if self._is_planned():
             self._reopen()
             return True
@@ -373,7 +371,7 @@ class BatchJob:
             }
             return not self.store.create(job, rows, self._rows_per_unit())
 
-    def plan_claimed(self, job: str, claim: Claim, owner: str, catalogs: Mapping[str, Any]) -> bool:
+    def plan_claimed(self, job: str, claim: Claim, owner: str, catalogs: Mapping[str, object]) -> bool:
         """Check all rows and write them to a job that stands there without them.
 
         Parameters
@@ -415,7 +413,7 @@ class BatchJob:
         self._refuse(first, count)
 
     @contextmanager
-    def _checked(self, workers: int | None = None, progress: Progress | None = None) -> Iterator[Iterator[Any]]:
+    def _checked(self, workers: int | None = None, progress: BatchProgress | None = None) -> Iterator[Iterator[Any]]:
         """Check all rows, and give them as they are kept.
 
         Raises
@@ -447,7 +445,8 @@ class BatchJob:
             yield plan_progress.each((company.placed(*waiting) for waiting in _read_again(checked, count)), "written")
 
     def _rows_per_unit(self) -> int:
-        return self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit
+        single = self.settings["points"] == 1 or self._has_one_objective()  # each row asks for one best design
+        return self.numbers.rows_per_unit if single else self.numbers.fronts_per_unit
 
     def _is_planned(self) -> bool:
         place = self.address if isinstance(self.address, str) else Path(str(self.address.database))
@@ -457,10 +456,6 @@ class BatchJob:
         if record is not None:
             self.id = record.id  # one that a service has made has an id of its own
         return record is not None
-
-    def _is_single(self) -> bool:
-        """True if each row asks for one best design only."""
-        return self.settings["points"] == 1 or self._has_one_objective()
 
     def _has_one_objective(self) -> bool:
         return len(self.settings["objectives"] or ()) == 1
@@ -538,8 +533,8 @@ class BatchJob:
         self,
         workers: int,
         scheduler: str | None,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-        keep: Any = None,
+        progress: BatchProgress | None,
+        keep: object = None,
     ) -> BatchResult:
         """Plan, work off and write the job, as ``batch`` does; ``keep`` lives as long as the result."""
         with closing(self), claimed(self.folder, self.id):
@@ -553,7 +548,7 @@ class BatchJob:
         self,
         workers: int | None,
         scheduler: str | None,
-        progress: Callable[[Mapping[str, Any]], None] | None,
+        progress: BatchProgress | None,
         say: Callable[[str], None] = lambda sentence: None,
     ) -> str:
         """Work the job off; return why it was stopped, or an empty text."""
@@ -572,7 +567,7 @@ def work_off(
     shares: Shares,
     workers: int | None,
     scheduler: str | None,
-    progress: Callable[[Mapping[str, Any]], None] | None,
+    progress: BatchProgress | None,
     say: Callable[[str], None],
     numbers: BatchSettings = BATCHES,
 ) -> str:
@@ -667,7 +662,7 @@ def resume(
     job: str,
     workers: int | None,
     scheduler: str | None,
-    progress: Callable[[Mapping[str, Any]], None] | None,
+    progress: BatchProgress | None,
     say: Callable[[str], None],
 ) -> str:
     """Go on with a job from what the database says alone; return why it was stopped, or an empty text.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+
+from sqlalchemy import URL
 
 from synth.batches.store import Store
 from synth.errors import InputError
@@ -16,7 +17,7 @@ DATABASE = "jobs.sqlite"  # beside the results, unless another one is named
 SUMMARY = "batch.json"
 
 
-def opened_batch(source: Any, database: Any = None) -> Store:
+def opened_batch(source: str | Path, database: str | URL | None = None) -> Store:
     """Return the database of a batch: the one that is named, or that in its folder.
 
     Raises
@@ -36,7 +37,7 @@ def opened_batch(source: Any, database: Any = None) -> Store:
     return Store(file_url(file.resolve()), create=False)
 
 
-def job_of_folder(store: Store, source: Any, job: str | None = None) -> Job:
+def job_of_folder(store: Store, source: str | Path, job: str | None = None) -> Job:
     """Return the job that is meant: by its id, or the latest that was written to the folder.
 
     Raises

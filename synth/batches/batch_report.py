@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from synth.analysis.calculation import calculation_of
 from synth.analysis.drawing import drawings_of
-from synth.analysis.evaluate import evaluate_in_si
+from synth.analysis.evaluate import analysed
 from synth.analysis.reporting import WrittenReport, installed, write_report
 from synth.batches.batch_folder import job_of_folder, job_written, opened_batch
+from synth.batches.entries import RowQuestion
 from synth.batches.outputs import BRIEF, GROUPS, RANKING, SHORT, best_design, explanation_of, missed_limits, status_of
 from synth.batches.solve import GROUP, LIKE
 from synth.batches.store import Answered, Store
@@ -22,9 +23,11 @@ from synth.errors import ExtraNeededError, InputError
 from synth.folders.csv_style import unstyled
 from synth.folders.files import read_bytes, read_json
 from synth.folders.output_folder import BATCH, check_kind
+from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.order.feasibility import Status
 from synth.order.margins import MARGINS
+from synth.question.arguments import UserTables
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from synth.question.request import Request
@@ -36,6 +39,7 @@ from synth.results.provenance import installed_versions
 from synth.results.report_request import BatchReportRequest, ReportOptions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
+from synth.tables.catalogs import Catalogs
 from synth.text.numbers import typed_number
 from synth.text.plain_text import as_meant
 
@@ -55,70 +59,34 @@ class BatchOptions:
     how: ReportOptions
 
 
-def report_batch(source: Path, folder: Path, options: BatchOptions, database: str | None = None) -> WrittenReport:
+def report_batch(
+    source: Path,
+    folder: Path,
+    options: BatchOptions,
+    database: str | None = None,
+    job: str | None = None,
+    *,
+    tables: UserTables = None,
+    family: type[DesignProblem] | None = None,
+) -> WrittenReport:
     """Write the report of the batch that stands in a folder.
+
+    ``job``, ``tables`` and ``family`` are those of a batch that ran from Python.
 
     Raises
     ------
     InputError
         There is no such batch or row, or something asked is wrong; then nothing is written.
     """
-    written = job_written(source)
     with opened_batch(source, database) as store:
-        job = job_of_folder(store, source, written)
-        return _written(store, job, source, folder, options, _tables_of(job, None), None)
+        reader = BatchReader(store, job_of_folder(store, source, job or job_written(source)), tables, family)
+        check_kind(folder, BATCH)
+        if job_written(folder) not in (None, reader.job.id):
+            raise InputError("output", str(folder), "another folder: this one holds another batch")
+        return write_report(folder, *reader.files(options, source))
 
 
-def report_result(
-    source: Path, folder: Path, options: BatchOptions, database: Any, job: str, tables: Any = None, problem: Any = None
-) -> WrittenReport:
-    """Write the report of a batch that ran from Python, with its ``tables`` and ``problem``.
-
-    Else, returns and raises as :func:`report_batch`.
-    """
-    with opened_batch(source, database) as store:
-        record = job_of_folder(store, source, job)
-        return _written(store, record, source, folder, options, _tables_of(record, tables), problem)
-
-
-def batch_report_files(
-    store: Store, job: Job, options: BatchOptions, tables: Any = None, problem: Any = None, folder: Path | None = None
-) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
-    """Files of the report of a batch, its notes, whether some row has designs, and missing extras.
-
-    Parameters
-    ----------
-    store, job
-        Where the batch is kept.
-    options : BatchOptions
-    tables : catalogs, InputError or None
-        User tables; why they cannot be had.
-    problem : DesignProblem subclass, optional
-        A problem that is not registered.
-    folder : Path, optional
-        A folder in which a size range may stand.
-    """
-    for word in options.how.formats or ("",):
-        if word not in FORMATS:
-            raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
-    make = installed(report_named("batch_files"), "report")
-    record, notes = _BatchReader(store, job, tables, problem).record(options.row, folder)
-    files, messages, lacking = make(BatchReportRequest(record, options.how))
-    return files, [*notes, *messages], any(row.designs for row in record.rows), lacking
-
-
-def _written(
-    store: Store, job: Job, source: Path, folder: Path, options: BatchOptions, tables: Any, problem: Any
-) -> WrittenReport:
-    check_kind(folder, BATCH)
-    there = job_written(folder)
-    if there not in (None, job.id):
-        raise InputError("output", str(folder), "another folder: this one holds another batch")
-    files, notes, has_designs, lacking = batch_report_files(store, job, options, tables, problem, source)
-    return write_report(folder, files, notes, has_designs, lacking)
-
-
-def _tables_of(job: Job, catalogs: Any) -> Any:
+def _tables_of(job: Job, catalogs: UserTables) -> Catalogs | InputError:
     """User tables of a batch, or why they cannot be had."""
     source = job.content.get("catalogs") if catalogs is None else catalogs
     if source == "memory":
@@ -129,17 +97,23 @@ def _tables_of(job: Job, catalogs: Any) -> Any:
         return error
 
 
-class _BatchReader:
+class BatchReader:
     """Reads a batch, row by row.
 
     Parameters
     ----------
-    store, job, tables, user_family
-        As for :func:`batch_report_files`.
+    store, job
+        Where the batch is kept.
+    tables : optional
+        User tables that were in memory.
+    family : DesignProblem subclass, optional
+        A problem that is not registered.
     """
 
-    def __init__(self, store: Store, job: Job, tables: Any, user_family: Any) -> None:
-        self.store, self.job, self.tables, self.user_family = store, job, tables, user_family
+    def __init__(
+        self, store: Store, job: Job, tables: UserTables = None, family: type[DesignProblem] | None = None
+    ) -> None:
+        self.store, self.job, self.tables, self.family = store, job, _tables_of(job, tables), family
         content = job.content
         self.headings = tuple(str(column["title"]) for column in content["columns"])
         positions = [int(column["position"]) for column in content["columns"]]
@@ -152,6 +126,21 @@ class _BatchReader:
             key: {name: len(RANKING) + k for k, name in enumerate(n for group in GROUPS for n in layout[group])}
             for key, layout in self.layouts.items()
         }
+
+    def files(
+        self, options: BatchOptions, folder: Path | None = None
+    ) -> tuple[dict[str, str | bytes], list[str], bool, tuple[ExtraNeededError, ...]]:
+        """Files of the report of the batch, its notes, whether some row has designs, and missing extras.
+
+        ``folder``: one in which a size range may stand.
+        """
+        for word in options.how.formats or ("",):
+            if word not in FORMATS:
+                raise InputError("formats", word, f"some of {', '.join(FORMATS)} for a batch", ("formats",))
+        make = installed(report_named("batch_files"), "report")
+        record, notes = self.record(options.row, folder)
+        files, messages, lacking = make(BatchReportRequest(record, options.how))
+        return files, [*notes, *messages], any(row.designs for row in record.rows), lacking
 
     def record(self, named: str, folder: Path | None) -> tuple[BatchRecord, list[str]]:
         """Batch with one row in full, and notes."""
@@ -212,11 +201,11 @@ class _BatchReader:
         try:
             if isinstance(self.tables, InputError):
                 raise self.tables
-            return self._computed(row, answered, question)
+            return self._computed(row, answered, question, self.tables)
         except InputError as error:
             return RowInFull(row, note=f"its designs cannot be computed again: {error}")
 
-    def _computed(self, row: BatchRow, answered: Answered, question: Mapping[str, Any]) -> RowInFull:
+    def _computed(self, row: BatchRow, answered: Answered, question: RowQuestion, catalogs: Catalogs) -> RowInFull:
         """Return a row with its front.
 
         Raises
@@ -227,12 +216,12 @@ class _BatchReader:
         content: Mapping[str, Any] = answered.content or {}
         settings = self.job.content["settings"]
         request_content = {key: value for key, value in question.items() if key not in (LIKE, GROUP)}
-        is_user_family = self.user_family is not None and self.user_family.name == question["family"]
-        problem = load(self.user_family if is_user_family else question["family"], **question["options"])
+        users, family = self.family, question["family"]
+        problem = load(users if users is not None and users.name == family else family, **question["options"])
         request = Request.from_json(
             {**request_content, "objectives": settings["objectives"], "grid": settings["grid"]},
             problem=problem,
-            catalogs=as_catalogs(self.tables),
+            catalogs=catalogs,
         )
         instance = Instance(request)
         designs = [
@@ -259,7 +248,7 @@ class _BatchReader:
     def _design(
         self, instance: Instance, request: Request, kept: Mapping[str, Any], cells: Sequence[str], row: BatchRow
     ) -> Design:
-        design = evaluate_in_si(
+        design = analysed(
             instance.problem,
             request.requirements,
             {**kept["values"], **kept["choices"]},

@@ -19,6 +19,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from functools import cache
 from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext
 from queue import SimpleQueue
 from typing import Any
 
@@ -108,7 +109,7 @@ class Processes(Executor):
 class _Worker:
     """One process, which ends as soon as this side of its lifeline is closed, by hand or by death."""
 
-    def __init__(self, context: Any) -> None:
+    def __init__(self, context: SpawnContext) -> None:
         far, self._near = context.Pipe(duplex=False)
         self.with_designs = context.RawValue("q", 0)
         self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far, self.with_designs))
@@ -120,7 +121,7 @@ class _Worker:
         self.pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _begin(lifeline: Connection, shared_count: Any) -> None:
+def _begin(lifeline: Connection, shared_count: object) -> None:
     """Prepare a worker process: one thread, deaf to Ctrl-C and SIGTERM, and gone when its master is.
 
     ``shared_count``: memory for the number of rows of its group that have designs.

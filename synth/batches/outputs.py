@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
+from synth.batches.entries import Layout
 from synth.batches.store import Answered, Store
 from synth.folders.csv_style import ENGLISH, CsvStyle
 from synth.folders.files import csv_writer, read_json
@@ -154,12 +155,13 @@ def _write_designs(file: TextIO, store: Store, job: str, content: Mapping[str, A
             write([*identity, *cells[: len(RANKING)], *line])
 
 
-def _common_columns(layouts: Mapping[str, Mapping[str, Any]]) -> tuple[list[list[str]], dict[str, list[int]]]:
+def _common_columns(layouts: Mapping[str, Layout]) -> tuple[list[list[str]], dict[str, list[int]]]:
     """Return the columns that hold all layouts, by group, and where each layout puts its cells.
 
     The order follows from the layouts alone: of each family as it declares them, families by name.
     """
-    order = sorted(layouts, key=lambda key: (layouts[key]["family"], -_width(layouts[key]), key))
+    widths = {key: sum(len(layout[group]) for group in GROUPS) for key, layout in layouts.items()}
+    order = sorted(layouts, key=lambda key: (layouts[key]["family"], -widths[key], key))
     where: dict[str, int] = {}  # column -> the first group that has it
     groups: list[list[str]] = [[] for _ in GROUPS]
     for k, group in enumerate(GROUPS):
@@ -183,10 +185,6 @@ def _carried(content: Mapping[str, Any]) -> tuple[list[str], list[int]]:
     columns = [column for column in content["columns"] if column["carried"]]
     titles = [f"input: {column['title']}" if column["title"] in ours else column["title"] for column in columns]
     return titles, [column["position"] for column in columns]
-
-
-def _width(layout: Mapping[str, Any]) -> int:
-    return sum(len(layout[group]) for group in GROUPS)
 
 
 # ---- rows.csv -------------------------------------------------------------------------------------------------------
@@ -293,13 +291,13 @@ def _reason(row: Answered) -> str:
     return f"nearest design misses {', '.join(map(words, names[:NAMED_LIMITS]))}{more}"
 
 
-def _grouped(layout: Mapping[str, Any], cells: Sequence[str]) -> dict[str, dict[str, str]]:
+def _grouped(layout: Layout, cells: Sequence[str]) -> dict[str, dict[str, str]]:
     """Return the cells of a design by group and heading."""
     values = iter(cells[len(RANKING) :])
     return {group: {name: next(values) for name in layout[group]} for group in GROUPS}
 
 
-def best_design(layout: Mapping[str, Any], cells: Sequence[str], groups: Sequence[str] = BRIEF) -> str:
+def best_design(layout: Layout, cells: Sequence[str], groups: Sequence[str] = BRIEF) -> str:
     """Return a design in words: objectives, sizes, choices and parts, or some of them."""
     by_group = _grouped(layout, cells)
     return ", ".join(_cell_text(name, cell) for group in groups for name, cell in by_group[group].items() if cell)
@@ -313,7 +311,7 @@ def _cell_text(heading: str, cell: str) -> str:
     return f"{name} {typed_number(float(cell))}{'' if unit in ('', '-') else f' {unit}'}"
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
 
 

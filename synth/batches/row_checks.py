@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -12,11 +12,13 @@ from functools import cached_property, lru_cache
 from itertools import chain, islice
 from typing import Any, TypeVar
 
+from synth.batches.entries import BatchProgress
 from synth.batches.executors import Processes
 from synth.batches.row_questions import Questioner, ReadRow
 from synth.batches.row_table import RowTable
 from synth.batches.settings import PlanSettings
 from synth.model.registry import load
+from synth.question.arguments import UserTables
 from synth.question.catalogs import as_catalogs
 
 Lines = list[tuple[int, tuple[str, ...]]]
@@ -37,7 +39,7 @@ class PlanProgress:
         Its rows are counted only where it takes so long that somebody is told.
     """
 
-    def __init__(self, show: Callable[[Mapping[str, Any]], None] | None, pause: float, table: RowTable) -> None:
+    def __init__(self, show: BatchProgress | None, pause: float, table: RowTable) -> None:
         self._show, self._pause, self._table = show, pause, table
 
     @cached_property
@@ -92,7 +94,7 @@ class RowChecker:
         return hash(self.job)
 
     @classmethod
-    def of(cls, questioner: Questioner, job: str, catalogs: Any) -> RowChecker:
+    def of(cls, questioner: Questioner, job: str, catalogs: UserTables) -> RowChecker:
         """Checker of the rows of a questioner; ``catalogs`` as they were stated."""
         user_family, table = questioner.user_family, questioner.table
         return cls(
@@ -131,7 +133,7 @@ def _questioner(checker: RowChecker) -> Questioner:
 
 
 def checked_rows(
-    questioner: Questioner, job: str, catalogs: Any, workers: int | None, settings: PlanSettings
+    questioner: Questioner, job: str, catalogs: UserTables, workers: int | None, settings: PlanSettings
 ) -> Iterator[ReadRow]:
     """Read and check the rows of a table, in its order.
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import sqlite3
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from synth.batches.entries import RowQuestion
 from synth.batches.settings import BATCHES, GroupSettings
 from synth.batches.solve import GROUP
 from synth.queue.database import digest
@@ -34,7 +35,7 @@ class GroupMember:
     rows: int
     number: int
 
-    def with_group(self, question: Mapping[str, Any]) -> dict[str, Any]:
+    def with_group(self, question: RowQuestion) -> dict[str, Any]:
         """Question of a member with its group."""
         return {**question, GROUP: {"name": self.name, "rows": self.rows}}
 

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from synth.batches.cells import READERS
+from synth.batches.entries import RowQuestion
 from synth.batches.row_table import RowTable
 from synth.batches.vocabulary import FAMILY, FIX, LIMITS, OPTIONS, PARTS, STRUCTURE, Universe, Word, words_of
 from synth.batches.warm_starts import place
 from synth.errors import InputError, UnknownOptionError, shortened
 from synth.model.problem import DesignProblem
 from synth.model.registry import families, load
+from synth.question.arguments import Family, UserTables
 from synth.question.catalogs import catalogs_for
 from synth.question.count_domain import is_list
 from synth.question.instance import Instance
@@ -79,7 +81,7 @@ class ReadRow:
     cells: tuple[str, ...]
     family: str
     key: str | None
-    question: Mapping[str, Any] | None
+    question: RowQuestion | None
     structure: str
     alike: str
     place: tuple[float, ...]
@@ -191,11 +193,11 @@ class Questioner:
     def __init__(
         self,
         table: RowTable,
-        problem: Any,
+        problem: Family | None,
         mapping: Mapping[str, str],
         settings: Mapping[str, Any],
-        common: Mapping[str, Mapping[str, Any]],
-        catalogs: Any,
+        common: Mapping[str, Mapping[str, object]],
+        catalogs: UserTables,
         named: set[str] | None = None,
     ) -> None:
         self.table, self.mapping, self.settings = table, mapping, dict(settings)
@@ -432,7 +434,7 @@ class Questioner:
 
     # -- the whole question --------------------------------------------------------------------
 
-    def _check(self, line: int, question: Mapping[str, Any]) -> str:
+    def _check(self, line: int, question: RowQuestion) -> str:
         """Pose the question as the search would, and return its key."""
         variant = self._variants[encoded([question["family"], question["options"]])]
         assert isinstance(variant, _Variant)
@@ -472,7 +474,7 @@ class Questioner:
         return Fault(line, "", shown, error.expected)
 
 
-def _header(table: RowTable, mapping: Mapping[str, str], user_family: Any) -> tuple[str, ...]:
+def _header(table: RowTable, mapping: Mapping[str, str], user_family: type[DesignProblem] | None) -> tuple[str, ...]:
     """Return the header of a table.
 
     Raises
@@ -508,7 +510,7 @@ class _Wrong(Exception):
         self.faults = faults
 
 
-def alikeness(question: Mapping[str, Any]) -> str:
+def alikeness(question: RowQuestion) -> str:
     """Digest that is shared by questions which differ in the numbers of their requirements alone."""
     return digest({**question, REQUIREMENTS: sorted(question[REQUIREMENTS])})
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import islice
 from pathlib import Path
-from typing import Any
 
 from synth.errors import Described, InputError
 from synth.folders.files import open_bytes, read_bytes
@@ -123,7 +122,7 @@ class RowTable:
         return delimited_text(first_lines(raw, self.name, self.most, named.encoding), self.name)
 
 
-def read_table(table: Any) -> RowTable:
+def read_table(table: object) -> RowTable:
     """Return the rows of a batch, whatever form they have.
 
     Parameters
@@ -162,7 +161,7 @@ def read_table(table: Any) -> RowTable:
     raise InputError("rows", type(table).__name__, "a CSV or .xlsx file, a DataFrame, or a list of mappings")
 
 
-def text_of(value: Any) -> str:
+def text_of(value: object) -> str:
     """Return a cell as the text that somebody would have typed.
 
     Examples
@@ -175,7 +174,7 @@ def text_of(value: Any) -> str:
     return cell_text(value)
 
 
-def _several(name: str, value: Any) -> list[str]:
+def _several(name: str, value: object) -> list[str]:
     """Parsed entry of a mapping; a list of comparisons is several entries, one of names is one."""
     if not isinstance(value, (list, tuple)):
         return [text_of(value)]

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy.exc import OperationalError
 
+from synth.batches.entries import BatchProgress
 from synth.batches.executors import Cluster, Inline, Processes, is_foreign, is_lost
 from synth.batches.settings import BATCHES, RunnerSettings
 from synth.batches.signs import show
@@ -20,6 +21,9 @@ from synth.batches.solve import OtherCodeError, is_group, solve_unit
 from synth.batches.store import NONE_UNGROUPED, Account, Outcome, Store
 from synth.batches.unit_results import sorted_out
 from synth.errors import InputError
+from synth.model.problem import DesignProblem
+from synth.question.arguments import UserTables
+from synth.question.settings import ProgressState
 from synth.queue.job_queue import Claim
 from synth.queue.job_table import CANCELLED
 from synth.queue.owners import new_owner
@@ -34,8 +38,8 @@ class Shares:
     """What all units of a job are solved with."""
 
     settings: Mapping[str, Any]
-    catalogs: Any
-    user_family: Any
+    catalogs: UserTables
+    user_family: type[DesignProblem] | None
 
 
 class Runner:
@@ -59,8 +63,8 @@ class Runner:
         store: Store,
         job: str,
         shares: Shares,
-        executor: Any,
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        executor: Inline | Processes | Cluster,
+        progress: BatchProgress | None = None,
         settings: RunnerSettings = BATCHES.runner,
     ) -> None:
         self.settings = settings
@@ -211,7 +215,7 @@ class Runner:
             except (OperationalError, OSError, InputError):
                 continue  # the database may be back at the next beat, long before a lease ends
 
-    def _hear(self, state: Mapping[str, Any]) -> None:
+    def _hear(self, state: ProgressState) -> None:
         """Take note of how far the group is that this process searches."""
         self.with_designs = int(state["incumbents"])
         try:

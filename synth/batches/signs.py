@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
+
+from synth.question.settings import ProgressState
 
 _shown: list[Any] = []  # the number that this process shares with its master, if it has one
 
 
-def share(number: Any) -> None:
+def share(number: object) -> None:
     """Show from now on in a number that another process reads."""
     _shown[:] = [number]
 
 
-def show(state: Mapping[str, Any]) -> None:
+def show(state: ProgressState) -> None:
     """Show the progress of a search; where nobody looks, nothing."""
     for number in _shown:
         number.value = int(state["incumbents"])

@@ -11,15 +11,18 @@ import math
 import time
 import traceback
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from synth.batches.entries import RowQuestion
 from synth.errors import InputError
 from synth.system.deadline import NEEDLESS, Stopped, until
 
 if TYPE_CHECKING:
     from synth.bounds.branching import BranchingStatistics
     from synth.model.problem import DesignProblem
+    from synth.question.arguments import UserTables
     from synth.question.settings import Progress
     from synth.results import Design, ParetoFront
     from synth.search.question import Question
@@ -74,7 +77,7 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return answers
 
 
-def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
+def is_group(questions: Mapping[str, RowQuestion]) -> bool:
     """True if questions are a group, and all of it; what is left of one is answered alone."""
     groups = [question.get(GROUP) for question in questions.values()]
     return bool(groups) and groups[0] is not None and groups.count(groups[0]) == len(groups) == groups[0]["rows"]
@@ -88,7 +91,10 @@ def error_text(error: BaseException) -> str:
 
 
 def answered_together(
-    questions: Mapping[str, Mapping[str, Any]], settings: Mapping[str, Any], shared: Shared, progress: Progress | None
+    questions: Mapping[str, RowQuestion],
+    settings: Mapping[str, object],
+    shared: Shared,
+    progress: Progress | None,
 ) -> dict[str, dict[str, Any]]:
     """Search the designs for the questions of a group at once.
 
@@ -148,7 +154,7 @@ def _settled(questions: Mapping[str, Question], progress: Progress | None) -> di
     return {key: record(front, share) for key, front in settled.items()}
 
 
-def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> dict[str, Any]:
+def answer(question: RowQuestion, settings: Mapping[str, object], shared: Shared) -> dict[str, Any]:
     """Search the designs for one question.
 
     Parameters
@@ -182,7 +188,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     return record(front, time.monotonic() - begin)
 
 
-def _checked_question(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
+def _checked_question(question: RowQuestion, settings: Mapping[str, object], shared: Shared) -> Question:
     """Check a question as a whole."""
     from synth.question.request import Request
     from synth.question.settings import SearchSettings
@@ -289,6 +295,7 @@ def _unknowns(design: Design) -> dict[str, Any]:
 # ---- what a worker keeps --------------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
 class Shared:
     """What all questions of a job share: tables, and a problem that is not registered.
 
@@ -296,14 +303,9 @@ class Shared:
     is the same.
     """
 
-    def __init__(self, job: str, catalogs: Any, user_family: Any) -> None:
-        self.job, self.catalogs, self.user_family = job, catalogs, user_family
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Shared) and self.job == other.job
-
-    def __hash__(self) -> int:
-        return hash(self.job)
+    job: str
+    catalogs: UserTables = field(compare=False)
+    user_family: type[DesignProblem] | None = field(compare=False)
 
 
 @lru_cache(maxsize=2)

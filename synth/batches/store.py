@@ -18,7 +18,7 @@ from sqlalchemy.exc import IntegrityError
 
 from synth.batches.solve import GROUP
 from synth.queue.database import digest
-from synth.queue.job_queue import Claim, JobQueue, held_by
+from synth.queue.job_queue import Claim, JobQueue, hand_over
 from synth.queue.job_table import BATCH, BODY, DONE, KEEP, LOCAL, OPEN, ROWS, Ending, insert_event
 from synth.queue.models import Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 
@@ -69,7 +69,7 @@ class Answered:
 class Store(JobQueue):
     """A job database with what batches keep in it."""
 
-    def create(self, job: Mapping[str, Any], rows: Iterable[Mapping[str, Any]], rows_per_unit: int) -> bool:
+    def create(self, job: Mapping[str, object], rows: Iterable[Mapping[str, object]], rows_per_unit: int) -> bool:
         """Write a batch with its rows, questions and units, all or nothing.
 
         Parameters
@@ -113,9 +113,9 @@ class Store(JobQueue):
         job: str,
         claim: Claim,
         owner: str,
-        content: Mapping[str, Any],
+        content: Mapping[str, object],
         basis: str,
-        rows: Iterable[Mapping[str, Any]],
+        rows: Iterable[Mapping[str, object]],
         rows_per_unit: int,
     ) -> bool:
         """Write the rows of a batch that stands there without them, if the owner still holds the unit of planning.
@@ -135,12 +135,7 @@ class Store(JobQueue):
             False where another owner has the unit, or the job is gone; then nothing is written.
         """
         with self.engine.begin() as connection:
-            held = connection.execute(
-                sa.update(WorkUnit)
-                .where(*held_by(claim, owner))
-                .values(state=DONE, lease=None, attempts=claim.attempts + 1)
-            )
-            if held.rowcount != 1:
+            if not hand_over(connection, claim, owner, state=DONE, attempts=claim.attempts + 1):
                 return False
             stored = connection.execute(sa.select(Job.content).where(Job.id == job)).scalar_one()
             # By which the same request is known when it comes again, and how long it is kept.
@@ -153,7 +148,7 @@ class Store(JobQueue):
         return True
 
     def _fill_on(
-        self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, Any]], rows_per_unit: int
+        self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, object]], rows_per_unit: int
     ) -> None:
         count = self._write_rows(connection, job, rows)
         connection.execute(sa.update(Job).where(Job.id == job).values(rows=count))
@@ -193,7 +188,7 @@ class Store(JobQueue):
             self.settle(job)
         return goes_on
 
-    def _write_rows(self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, Any]]) -> int:
+    def _write_rows(self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, object]]) -> int:
         count = 0
         for chunk in _chunks(rows, self.settings.chunk):
             questions = [{"job": job, "unit": None, **row["question"]} for row in chunk if row["question"] is not None]
@@ -315,10 +310,7 @@ class Store(JobQueue):
             if attempts >= most_attempts
         }
         with self.engine.begin() as connection:
-            held = connection.execute(
-                sa.update(WorkUnit).where(*held_by(claim, owner)).values(state=DONE, lease=None, attempts=attempts)
-            )
-            if held.rowcount != 1:
+            if not hand_over(connection, claim, owner, state=DONE, attempts=attempts):
                 return False
             layouts = {digest(o.layout): o.layout for o in final.values() if o.layout is not None}
             if layouts:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
+from synth.batches.entries import RowAnswer
 from synth.batches.solve import UNGROUPED
 from synth.batches.store import Outcome
 
 
-def sorted_out(results: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, Outcome], dict[str, str], dict[str, str]]:
+def sorted_out(
+    results: Mapping[str, RowAnswer],
+) -> tuple[dict[str, Outcome], dict[str, str], dict[str, str]]:
     """Answers, errors, and reasons to leave the group, of what ``solve_unit`` returns; by question."""
     outcomes: dict[str, Outcome] = {}
     errors: dict[str, str] = {}

@@ -28,7 +28,7 @@ class Word:
     unit: Unit | None
 
 
-def word_of(declaration: Declaration, name: str, settings: Mapping[str, Any]) -> Word:
+def word_of(declaration: Declaration, name: str, settings: Mapping[str, object]) -> Word:
     """Declared object for a name."""
     d = declaration
     kinds: dict[str, Mapping[str, Any]] = {
@@ -47,7 +47,7 @@ def word_of(declaration: Declaration, name: str, settings: Mapping[str, Any]) ->
     return Word(name, kind, parse_unit(unit) if unit else None)
 
 
-def words_of(declaration: Declaration, settings: Mapping[str, Any]) -> dict[str, Word]:
+def words_of(declaration: Declaration, settings: Mapping[str, object]) -> dict[str, Word]:
     """Return every spelling (name or symbol) of what was declared, and what it stands for."""
     declared = {spelling: word_of(declaration, name, settings) for spelling, name in declaration.names().items()}
     return {name: word_of(declaration, name, settings) for name in settings if name not in declared} | declared
@@ -100,9 +100,9 @@ class Universe:
     user_family : DesignProblem subclass or instance, optional
     """
 
-    def __init__(self, used: Set[str], user_family: Any = None) -> None:
+    def __init__(self, used: Set[str], user_family: type[DesignProblem] | None = None) -> None:
         problems: list[Any] = [*every_family()]
-        if user_family is not None and not isinstance(user_family, str):
+        if user_family is not None:
             problems.append(user_family)
         self.words: dict[str, list[Word]] = {}
         self.symbols: set[str] = set()  # and names, of the families that rows name

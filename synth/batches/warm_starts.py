@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from synth.batches.entries import RowQuestion
 from synth.batches.settings import BATCHES, WarmStartSettings
 from synth.batches.solve import LIKE
 from synth.queue.database import digest
@@ -39,13 +40,13 @@ class WarmStarts:
         self._teachers: dict[str, dict[str, tuple[tuple[float, ...], Mapping[str, Any]]]] = {}
         self._nearest: dict[str, tuple[list[str], Any]] = {}
 
-    def show(self, structure: str, key: str, where: tuple[float, ...], question: Mapping[str, Any]) -> None:
+    def show(self, structure: str, key: str, where: tuple[float, ...], question: RowQuestion) -> None:
         """Show one question: its structure, key, place and content."""
         if int(key[:12], 16) % self._settings.one_in == 0:
             self._teachers.setdefault(structure, {})[key] = (where, question)
 
     def taught(
-        self, structure: str, key: str, where: tuple[float, ...], question: Mapping[str, Any]
+        self, structure: str, key: str, where: tuple[float, ...], question: RowQuestion
     ) -> tuple[str, Mapping[str, Any], str]:
         """Return the key of a question and the question, its teacher in it, and the key of that teacher.
 

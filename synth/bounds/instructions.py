@@ -20,6 +20,7 @@ from synth.bounds.intervals import BACKWARD, FORWARD, loosened
 from synth.model.program import OP_SELECT, OPERATIONS
 from synth.operations.enclosures import unbounded
 from synth.operations.record import Interval
+from synth.order.margins import Numbers
 
 WIDTH = 6  # of an instruction: what is done, where the result goes, and up to four operands
 Row = tuple[int, ...]
@@ -130,7 +131,7 @@ class Op(IntEnum):
     MET_DIV = auto()
 
 
-def _erf(x: Any) -> Any:
+def _erf(x: Numbers) -> Any:
     from scipy.special import erf  # costly to import; few formulas name it
 
     return erf(x)

@@ -20,6 +20,7 @@ import numpy as np
 from synth.model.program import OPERATIONS
 from synth.operations.enclosures import where_sure
 from synth.operations.record import Interval
+from synth.order.margins import Numbers
 from synth.special import SpecialFunction
 
 ROUNDING = 1e-8  # relative: ends of an interval that pass each other by less do so by rounding
@@ -42,7 +43,7 @@ def special_range(function: SpecialFunction, args: Sequence[Interval]) -> Interv
     return where_sure(inside, (least, most))
 
 
-def loosened(limit: Any, size: Any, share: float) -> Any:
+def loosened(limit: Numbers, size: Numbers, share: float) -> Any:
     """The limit moved by a share of its size: outward by the slack that feasibility and rounding may use.
 
     Parameters

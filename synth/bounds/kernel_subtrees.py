@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -216,7 +215,7 @@ class SubtreeCode:
         # must not depend on it.
         ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
 
-        def grown(first: int, last: int, read: Any) -> tuple[Boxes, np.ndarray, int]:
+        def grown(first: int, last: int, read: object) -> tuple[Boxes, np.ndarray, int]:
             """Grow a part; ``read``: what its records have addresses of, which must not end before it does."""
             count = last - first
             # At most all halves of the last generation come back, beside the boxes at hand.

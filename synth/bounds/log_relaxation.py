@@ -46,7 +46,8 @@ from synth.bounds.root_propagation import Leaves, propagated_boxes
 from synth.bounds.settings import TogetherLimits
 from synth.model.constraint import NodeConstraint
 from synth.model.program import Program
-from synth.order.margins import above, below
+from synth.order.margins import Numbers, above, below
+from synth.special import SpecialFunction
 
 ROUNDED = 1e-11  # in logarithm: more than the rounding of any formula, and of the coefficients here
 SUMMED = 1e-13  # of the terms of a sum: more than the rounding of adding them up
@@ -159,7 +160,7 @@ class LogRelaxation:
         leaves = Leaves(boxes.low.T, boxes.high.T, (ends[0], ends[1]), question.constants[False], question.right_sides)
         return propagated_boxes(self.nodes, leaves, list(cutoffs.T), self.settings.sweeps)
 
-    def _sign(self, k: int, low: Any, high: Any, count: int) -> np.ndarray:
+    def _sign(self, k: int, low: Numbers, high: Numbers, count: int) -> np.ndarray:
         """Return the sign of a node per box; 0 where it is not known, or where nothing may be concluded of it."""
         usable = self.nodes.kind[k] == CONSTANT or self.nodes.narrows[k]
         sign = (np.asarray(low) > 0).astype(np.int8) - (np.asarray(high) < 0).astype(np.int8)
@@ -302,7 +303,7 @@ class _Programs:
         high = np.minimum(self.high[:, j] - self.low[:, i], start + self.width @ np.maximum(form, 0.0) + ROUNDED)
         return np.minimum(low, high) - ROUNDED, np.maximum(low, high) + ROUNDED
 
-    def _elastic(self, relation: Relation, function: Any) -> None:
+    def _elastic(self, relation: Relation, function: SpecialFunction) -> None:
         """Bound the logarithm of a special function by its elasticities, from two corners."""
         c, *args = relation.nodes
         places = [self.forms.place[a] for a in args]
@@ -397,6 +398,6 @@ def _bound(
     return float(np.minimum(residual, 0.0) @ width + multipliers @ right) - rounding - loose, residual
 
 
-def _select(values: Any, rows: np.ndarray) -> Any:
+def _select(values: Numbers, rows: np.ndarray) -> Any:
     """Values of a node in the given boxes; a scalar holds in all of them."""
-    return values if np.ndim(values) == 0 else values[rows]
+    return values[rows] if isinstance(values, np.ndarray) and values.ndim else values

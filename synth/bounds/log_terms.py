@@ -14,6 +14,7 @@ import numpy as np
 
 from synth.bounds.curvature import BOTH, INF, Curvature, Ends
 from synth.model.program import Node
+from synth.order.margins import Numbers
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def without_common(a: Term, b: Term) -> tuple[Term, Term, Term]:
     return shared, times(a, shared, -1.0), times(b, shared, -1.0)
 
 
-def _product(a: Any, b: Any) -> Any:
+def _product(a: Numbers, b: Numbers) -> Any:
     """Multiply; zero times infinity is zero, because every factor is finite and only its range has no end."""
     return np.where((np.asarray(a) == 0) | (np.asarray(b) == 0), 0.0, np.asarray(a) * np.asarray(b))
 

@@ -244,6 +244,6 @@ def _least_known(values: np.ndarray) -> float:
     return float(known.min()) if len(known) else np.nan
 
 
-def _symbols(expression: Any, calls: Sequence[SpecialCall]) -> set[str]:
+def _symbols(expression: ca.SX, calls: Sequence[SpecialCall]) -> set[str]:
     """Return the symbols that an expression reads, special functions written out."""
     return {str(s) for s in ca.symvar(expanded(expression, calls))}

@@ -9,11 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from synth.batches.entries import RowSource
 from synth.batches.row_table import ROWS, read_table
 from synth.client.remote_job import Progress, RemoteJob, job_of
 from synth.client.transport import CLIENT, ClientSettings, ServiceRefusedError, Transport
 from synth.errors import InputError
 from synth.folders.files import csv_text, read_bytes
+from synth.question.arguments import DesignValues, Families, Objectives, Requirements, Scatter, Value, Variations
 from synth.question.count_domain import stated_value
 from synth.results import ParetoFront
 from synth.tables.table_file import table_file
@@ -117,7 +119,7 @@ class ServiceClient:
         found: list[dict[str, Any]] = self._transport.ask("GET", "/jobs", params=filters).json()["jobs"]
         return found
 
-    def submit(self, kind: str, request: Mapping[str, Any], **more: Any) -> RemoteJob:
+    def submit(self, kind: str, request: Mapping[str, object], **more: Any) -> RemoteJob:
         """Ask for a job of any kind without waiting for it.
 
         Parameters
@@ -144,8 +146,8 @@ class ServiceClient:
     def synthesize(
         self,
         p: str | DesignProblem,
-        requirements: Mapping[str, Any],
-        objectives: Any = None,
+        requirements: Requirements,
+        objectives: Objectives = None,
         points: int | None = None,
         *,
         progress: Progress | None = None,
@@ -170,9 +172,9 @@ class ServiceClient:
 
     def compare(
         self,
-        families: Any,
-        requirements: Mapping[str, Any],
-        objectives: Any = None,
+        families: Families,
+        requirements: Requirements,
+        objectives: Objectives = None,
         points: int | None = None,
         *,
         progress: Progress | None = None,
@@ -187,9 +189,9 @@ class ServiceClient:
     def whatif(
         self,
         p: str | DesignProblem,
-        requirements: Mapping[str, Any],
-        vary: Mapping[str, Any],
-        objectives: Any = None,
+        requirements: Requirements,
+        vary: Variations,
+        objectives: Objectives = None,
         points: int | None = None,
         *,
         progress: Progress | None = None,
@@ -200,13 +202,19 @@ class ServiceClient:
         return self.submit("whatif", spec).wait(progress)
 
     def explain(
-        self, p: str | DesignProblem, requirements: Mapping[str, Any], *, progress: Progress | None = None, **asked: Any
+        self, p: str | DesignProblem, requirements: Requirements, *, progress: Progress | None = None, **asked: Any
     ) -> RemoteJob:
         """Tell why nothing is feasible, and what would make it so: as ``synth.explain``."""
         return self.submit("explain", _spec(p, requirements, **asked)).wait(progress)
 
     def prices(
-        self, front: Source, design: Any = None, step: Any = None, *, progress: Progress | None = None, **asked: Any
+        self,
+        front: Source,
+        design: int | Sequence[int] | None = None,
+        step: Value | None = None,
+        *,
+        progress: Progress | None = None,
+        **asked: Any,
     ) -> RemoteJob:
         """Tell what a per cent of everything costs: as ``synth.prices``."""
         return self._of("prices", front, progress, design=design, step=step, **asked)
@@ -215,7 +223,7 @@ class ServiceClient:
         self,
         front: Source,
         design: int,
-        within: Any = None,
+        within: Value | None = None,
         *,
         count: int | None = None,
         progress: Progress | None = None,
@@ -224,7 +232,9 @@ class ServiceClient:
         """Find designs of other parts that are nearly as good: as ``synth.near_equals``."""
         return self._of("near_equals", front, progress, design=design, within=within, count=count, **asked)
 
-    def rate(self, front: Source, robust: Any = None, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
+    def rate(
+        self, front: Source, robust: Scatter | None = None, *, progress: Progress | None = None, **asked: Any
+    ) -> RemoteJob:
         """Tell how designs stand what scatters: as ``synth.rate``."""
         return self._of("rate", front, progress, robust=robust, **asked)
 
@@ -244,7 +254,7 @@ class ServiceClient:
         """
         return self._of("report", front, progress, **asked)
 
-    def batch(self, p: str | None, table: Any, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
+    def batch(self, p: str | None, table: RowSource, *, progress: Progress | None = None, **asked: Any) -> RemoteJob:
         """Find the designs for every row of a table: as ``synth.batch``; ``frame("designs.csv")`` returns them.
 
         Parameters
@@ -274,9 +284,9 @@ class ServiceClient:
     def evaluate(
         self,
         p: str | DesignProblem,
-        requirements: Mapping[str, Any],
+        requirements: Requirements,
         *,
-        values: Mapping[str, Any] | None = None,
+        values: DesignValues | None = None,
         parts: Mapping[str, str] | None = None,
         **asked: Any,
     ) -> dict[str, Any]:
@@ -287,7 +297,7 @@ class ServiceClient:
 
     # -- what is brought -----------------------------------------------------------------------
 
-    def upload(self, table: Any) -> str:
+    def upload(self, table: RowSource) -> str:
         """Bring a table of rows to the service; return its id there, which is good for a day.
 
         Parameters
@@ -341,7 +351,7 @@ class ServiceClient:
         weakref.finalize(front, self._fronts.pop, id(front), None)
         return front
 
-    def _of(self, kind: str, source: Any, progress: Progress | None, **asked: Any) -> RemoteJob:
+    def _of(self, kind: str, source: Source, progress: Progress | None, **asked: Any) -> RemoteJob:
         """Ask for something about an earlier job, or about a front that came from one."""
         named = self._fronts.get(id(source), source) if isinstance(source, ParetoFront) else source
         return self.submit(kind, {"of": job_of(named), **_given(**asked)}).wait(progress)
@@ -358,7 +368,7 @@ def _family(p: str | DesignProblem) -> tuple[str, dict[str, str]]:
     return name, {str(key): str(label) for key, label in options.items()}
 
 
-def _spec(p: str | DesignProblem, requirements: Mapping[str, Any], **asked: Any) -> dict[str, Any]:
+def _spec(p: str | DesignProblem, requirements: Requirements, **asked: Any) -> dict[str, Any]:
     family, options = _family(p)
     return {"family": family, "requirements": dict(requirements), **_given(options=options or None, **asked)}
 
@@ -368,7 +378,7 @@ def _given(**asked: Any) -> dict[str, Any]:
     return {name: value for name, value in asked.items() if value is not None}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Request as JSON holds it: numbers of NumPy as numbers, tuples as lists."""
     if isinstance(value, Mapping):
         return {str(key): _plain(entry) for key, entry in value.items()}

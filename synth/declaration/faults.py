@@ -90,7 +90,7 @@ class SourceLine:
 class _NoValue(TypeError):
     """A symbol or an expression of symbols was asked for its value."""
 
-    def __init__(self, expression: Any) -> None:
+    def __init__(self, expression: ca.SX) -> None:
         super().__init__("a symbol has no value in a declaration")
         self.expression = expression
 
@@ -102,7 +102,7 @@ def _refused(convert: Callable[..., Any]) -> Callable[..., Any]:
     """Refuse a conversion of what holds symbols, while a problem is declared."""
 
     @functools.wraps(convert)
-    def converted(expression: Any, *arguments: Any) -> Any:
+    def converted(expression: ca.SX, *arguments: Any) -> Any:
         if _declaring.get() and not expression.is_constant():
             raise _NoValue(expression)
         return convert(expression, *arguments)
@@ -118,7 +118,7 @@ def _of_numbers(compare: Callable[..., Any]) -> Callable[..., Any]:
     """Refuse a comparison of symbols with a text, which is never true, while a problem is declared."""
 
     @functools.wraps(compare)
-    def compared(expression: Any, other: Any) -> Any:
+    def compared(expression: ca.SX, other: object) -> Any:
         if _declaring.get() and isinstance(other, str):
             names = ", ".join(_names(expression)[:MOST_NAMES]) or "a number"
             raise DeclarationError(f"{names} is compared with {other!r}, a text; use {TEXTS}")

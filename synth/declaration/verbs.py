@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar, overload
 
 import casadi as ca
 import numpy as np
@@ -48,23 +49,38 @@ ca.GlobalOptions.setNumpyMode(-1)
 
 SWITCHED = {"yes": "on", "no": "off"}  # YAML does not tell a bare on from yes
 
+Declared = TypeVar("Declared")  # what the attribute of a block is
 
-class BlockField(Protocol):
-    """What may stand in a :class:`Block`: it declares itself under the name of the attribute."""
 
-    @property
-    def default(self) -> Any:
-        """Value where the user states none; a function of the block for one that follows from fields above."""
+class BlockField(ABC, Generic[Declared]):
+    """What may stand in a :class:`Block`: it declares itself under the name of the attribute.
 
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Any:
+    ``default`` counts where the user states nothing; it may be a function of the block for a value that follows from
+    fields above.
+    """
+
+    default: Any
+
+    @abstractmethod
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Declared:
         """Declare the field under a name; return what the attribute of the block is.
 
         ``group`` is that of the block, for a requirement or option that names none.
         """
 
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Self: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Declared: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        """The field itself on access through the class, where it has no value yet."""
+        if block is None:
+            return self
+        raise AttributeError("this field of the block is declared further down")
+
 
 @dataclass(frozen=True)
-class Requirement:
+class Requirement(BlockField[Quantity]):
     """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
 
     ``default`` may be a function that takes the block and returns the default from fields that stand above.
@@ -80,31 +96,13 @@ class Requirement:
     source: str = ""
     group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Quantity:
+    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
-        return d.requirement(
-            name,
-            self.unit,
-            default,
-            self.lower,
-            self.upper,
-            self.optional,
-            self.symbol,
-            self.text,
-            self.source,
-            self.group or group,
-        )
-
-    @overload
-    def __get__(self, block: None, kind: type[Block]) -> Requirement: ...
-    @overload
-    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
-    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
-        return _field_of(self, block)
+        return d.requirement(name, **{**vars(self), "default": default, "group": self.group or group})
 
 
 @dataclass(frozen=True)
-class Option:
+class Option(BlockField[str]):
     """An option as field of a :class:`Block`, whose attribute is the word chosen; see :meth:`Declaration.option`.
 
     The choices are words, or the designations of a ``table``.
@@ -118,21 +116,14 @@ class Option:
     source: str = ""
     group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> str:
+    def declared(self, d: Declaration, name: str, default: str, group: str) -> str:
         """Declare the option; return the chosen word."""
         choices = d.designations(self.table) if self.table else self.choices
         return d.option(name, choices, default, self.symbol, self.text, self.source, self.group or group)
 
-    @overload
-    def __get__(self, block: None, kind: type[Block]) -> Option: ...
-    @overload
-    def __get__(self, block: Block, kind: type[Block]) -> str: ...
-    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
-        return _field_of(self, block)
-
 
 @dataclass(frozen=True)
-class Variable:
+class Variable(BlockField[Quantity]):
     """A variable as field of a :class:`Block`; see :meth:`Declaration.variable`."""
 
     unit: str
@@ -145,22 +136,15 @@ class Variable:
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Quantity:
+    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the variable; return its symbol. What the search decides belongs to no group."""
         if default is not None:
             raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
         return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
 
-    @overload
-    def __get__(self, block: None, kind: type[Block]) -> Variable: ...
-    @overload
-    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
-    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
-        return _field_of(self, block)
-
 
 @dataclass(frozen=True)
-class Slot:
+class Slot(BlockField[Part]):
     """A slot as field of a :class:`Block`; see :meth:`Declaration.part`."""
 
     table: str
@@ -171,25 +155,11 @@ class Slot:
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Part:
+    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Part:
         """Declare the slot; return the part whose columns are symbols. What the search decides has no group."""
         if default is not None:
             raise DeclarationError(f"{d.problem}: slot {name} has no default, it is what the search decides")
         return d.part(name, self.table, self.where, self.symbol, self.text, self.source)
-
-    @overload
-    def __get__(self, block: None, kind: type[Block]) -> Slot: ...
-    @overload
-    def __get__(self, block: Block, kind: type[Block]) -> Part: ...
-    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
-        return _field_of(self, block)
-
-
-def _field_of(descriptor: Any, block: Block | None) -> Any:
-    """The field itself on access through the class, where it has no value yet."""
-    if block is None:
-        return descriptor
-    raise AttributeError("this field of the block is declared further down")
 
 
 class Block:
@@ -238,12 +208,12 @@ class Block:
             self.__dict__[name] = field.declared(d, name, default, group)
 
     @classmethod
-    def fields(cls) -> dict[str, BlockField]:
+    def fields(cls) -> dict[str, BlockField[Any]]:
         """Declarations of the block, by name and in order."""
         everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
-        return {name: value for name, value in everything if isinstance(value, (Requirement, Option, Variable, Slot))}
+        return {name: value for name, value in everything if isinstance(value, BlockField)}
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is what was declared; it cannot be set")
 
 
@@ -306,7 +276,7 @@ class Declaration:
         """Every name and symbol in use, those of steps and constants too."""
         return frozenset(self._symbols)
 
-    def _number(self, what: str, value: Any, unit: Unit | None = None, end: bool = False) -> float:
+    def _number(self, what: str, value: object, unit: Unit | None = None, end: bool = False) -> float:
         """Convert a number to SI; refuse what is none. ``end`` allows the open end of a range."""
         right = "a number or inf" if end else "a finite number"
         si = math.nan
@@ -326,7 +296,7 @@ class Declaration:
         except InputError as error:
             raise DeclarationError(f"{self.problem}: {what} has {error}") from error
 
-    def _expression(self, what: str, value: Any) -> ca.SX:
+    def _expression(self, what: str, value: Quantity | float) -> ca.SX:
         """Scalar expression of a declaration; the line that states it is kept for faults that the trace shows."""
         try:
             expression = ca.SX(value)
@@ -373,7 +343,7 @@ class Declaration:
         self,
         name: str,
         unit: str,
-        default: Any = None,
+        default: Quantity | float | None = None,
         lower: float | None = None,
         upper: float | None = None,
         optional: bool = False,
@@ -584,7 +554,7 @@ class Declaration:
         self,
         name: str,
         unit: str,
-        expr: Any,
+        expr: Quantity | float,
         symbol: str | None = None,
         text: str = "",
         source: str = "",
@@ -607,7 +577,7 @@ class Declaration:
         return record.sx
 
     def step(
-        self, name: str, unit: str, expr: Any, symbol: str | None = None, text: str = "", source: str = ""
+        self, name: str, unit: str, expr: Quantity | float, symbol: str | None = None, text: str = "", source: str = ""
     ) -> Quantity:
         """Name a quantity on the way to others, so that hooks read it from ``design.steps``; return its expression.
 
@@ -634,7 +604,7 @@ class Declaration:
     def next_row(
         self,
         name: str,
-        quantity: Any,
+        quantity: Quantity | float,
         table: str,
         column: str,
         beside: RowRange | None = None,
@@ -670,15 +640,15 @@ class Declaration:
         needed = self._expression(f"next row {name}", quantity)
         self.next_rows[name] = NextRowRecord(name, unit, name, text, source, needed, table, column, beside, typed)
 
-    def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+    def at_most(self, name: str, value: Quantity | float, limit: Quantity | float, unit: str, **details: Any) -> None:
         """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""
         self._limit(name, "at_most", value, limit, unit, **details)
 
-    def at_least(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+    def at_least(self, name: str, value: Quantity | float, limit: Quantity | float, unit: str, **details: Any) -> None:
         """Declare the limit ``value >= limit``."""
         self._limit(name, "at_least", value, limit, unit, **details)
 
-    def equal(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+    def equal(self, name: str, value: Quantity | float, limit: Quantity | float, unit: str, **details: Any) -> None:
         """Declare the limit ``value == limit``."""
         self._limit(name, "equal", value, limit, unit, **details)
 
@@ -686,8 +656,8 @@ class Declaration:
         self,
         name: str,
         sense: str,
-        value: Any,
-        limit: Any,
+        value: Quantity | float,
+        limit: Quantity | float,
         unit: str,
         guard: bool = False,
         text: str = "",
@@ -738,11 +708,11 @@ class Declaration:
         """
         self.headlines = Headline(names, sized_by)
 
-    def refuse(self, code: str, when: Any, message: str) -> None:
+    def refuse(self, code: str, when: Quantity | float, message: str) -> None:
         """Refuse input (or leave out rows) for which ``when`` holds."""
         self.refusals.append(Refusal(code, self._expression(f"refusal {code}", when), message))
 
-    def advise(self, code: str, when: Any, message: str, source: str = "") -> None:
+    def advise(self, code: str, when: Quantity | float, message: str, source: str = "") -> None:
         """Print a remark on the designs for which ``when`` holds."""
         self.advices.append(Advice(code, self._expression(f"advice {code}", when), message, source))
 

@@ -167,6 +167,13 @@ def csv_writer(file: TextIO) -> Callable[[Sequence[Any]], object]:
     return lambda cells: writer.writerow([csv_cell(cell) for cell in cells])
 
 
+def table_frame(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
+    """Frame of a table."""
+    import pandas as pd  # costly to import; most runs write CSV only
+
+    return pd.DataFrame(rows, columns=list(columns))
+
+
 def frame_csv(frame: pd.DataFrame, float_format: str | None = None) -> str:
     """Return a frame as CSV, without its index."""
     plain = frame.rename(columns=csv_cell)
@@ -193,7 +200,7 @@ def resolved_source(source: str, folder: Path) -> str:
     return str((folder / source).resolve())
 
 
-def yaml_text(content: Any) -> str:
+def yaml_text(content: object) -> str:
     """Return a YAML text that reads back as it was, and acts on no terminal."""
     import yaml  # costly to import
 

@@ -111,7 +111,7 @@ KINDS: Mapping[str, Kind] = _kinds(
 )
 
 
-def kind(name: Any) -> Kind:
+def kind(name: object) -> Kind:
     """Return a kind by its name.
 
     Raises

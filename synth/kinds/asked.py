@@ -50,7 +50,7 @@ Own = TypeVar("Own", bound=VerbRequest)
 # ---- keys -----------------------------------------------------------------------------------------------------------
 
 
-def about_front(request: Any, verb: type[Own]) -> tuple[FrontRequest, Own]:
+def about_front(request: object, verb: type[Own]) -> tuple[FrontRequest, Own]:
     """Front that a request is about, and what it asks of it.
 
     Raises
@@ -68,7 +68,7 @@ def about_front(request: Any, verb: type[Own]) -> tuple[FrontRequest, Own]:
     return front, own
 
 
-def check_entry(key: str, value: Any) -> None:
+def check_entry(key: str, value: object) -> None:
     """Refuse an entry of a spec that is not of its kind; other entries are for the kind of job to check.
 
     Which tables there are is known to ``catalogs_of`` alone.
@@ -83,7 +83,7 @@ def check_entry(key: str, value: Any) -> None:
         FIELDS[key].read(in_request(key), stated_entries(key, value))
 
 
-def stated_entries(key: str, value: Any) -> Any:
+def stated_entries(key: str, value: object) -> Any:
     """Value of an entry of a spec, without entries of its own that are None: those are not stated, or taken back."""
     if key not in MAPPINGS or not isinstance(value, Mapping):
         return value
@@ -91,7 +91,7 @@ def stated_entries(key: str, value: Any) -> Any:
 
 
 def spec_of(
-    request: Any, sources: Sources, more: Collection[str] = (), several: bool = False
+    request: object, sources: Sources, more: Collection[str] = (), several: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Spec of a request as it stands, and the entries under some more keys.
 
@@ -126,7 +126,7 @@ def spec_of(
     return _without_none(patched({key: value for key, value in before.items() if key in SPEC}, given)), own
 
 
-def _without_none(spec: Mapping[str, Any]) -> dict[str, Any]:
+def _without_none(spec: Mapping[str, object]) -> dict[str, Any]:
     return {key: stated_entries(key, value) for key, value in spec.items()}
 
 
@@ -147,7 +147,7 @@ def problem_of(spec: Mapping[str, Any]) -> DesignProblem:
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 
-def catalogs_of(stated: Any, sources: Sources) -> Catalogs:
+def catalogs_of(stated: object, sources: Sources) -> Catalogs:
     """Return the tables that a request names: references to texts, never paths.
 
     Parameters
@@ -173,10 +173,10 @@ def catalogs_of(stated: Any, sources: Sources) -> Catalogs:
     return _catalogs(tuple(found))
 
 
-def _texts(table: str, source: Any, sources: Sources) -> tuple[bool, tuple[TableText, ...]]:
+def _texts(table: str, source: str | Sequence[object], sources: Sources) -> tuple[bool, tuple[TableText, ...]]:
     """Return whether shipped rows are extended, and the texts that are meant."""
     extends = isinstance(source, (list, tuple)) and len(source) > 1 and source[0] == "+"
-    entries = list(source[1:]) if extends else [source]
+    entries: list[object] = list(source[1:]) if extends else [source]
     texts = []
     for entry in entries:
         field = f"{WHERE}: catalogs: {table}"
@@ -198,7 +198,7 @@ def _catalogs(stated: tuple[tuple[str, bool, tuple[TableText, ...]], ...]) -> Ca
     return found
 
 
-def digests(stated: Any, sources: Sources) -> dict[str, str]:
+def digests(stated: Mapping[str, str | list[str]] | None, sources: Sources) -> dict[str, str]:
     """Return the SHA-256 of every table that a request names, by reference."""
     entries = [x for value in (stated or {}).values() for x in (value if isinstance(value, list) else [value])]
     return {entry: sources.tables[entry].digest for entry in entries if entry in sources.tables}
@@ -207,7 +207,7 @@ def digests(stated: Any, sources: Sources) -> dict[str, str]:
 # ---- earlier jobs ---------------------------------------------------------------------------------------------------
 
 
-def records_of(sources: Sources, job: Any) -> Mapping[str, bytes]:
+def records_of(sources: Sources, job: object) -> Mapping[str, bytes]:
     """Return the records of an earlier job.
 
     Raises
@@ -247,7 +247,7 @@ def fronts_in(records: Mapping[str, bytes]) -> dict[str, str]:
     return {name.split("/")[0]: name for name in records if name.endswith(f"/{FRONT_FILE}")}
 
 
-def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = True) -> ParetoFront:
+def front_in(records: Mapping[str, bytes], family: object = None, check: bool = True) -> ParetoFront:
     """Return a front of an earlier job: of several families that of the one that is named.
 
     Parameters
@@ -270,7 +270,7 @@ def front_in(records: Mapping[str, bytes], family: Any = None, check: bool = Tru
     if "" not in names and not (isinstance(family, str) and family in names):
         right = f"one of those that the job compares: {', '.join(names)}"
         raise InputError(f"{WHERE}: {FAMILY}", None if family is None else shown_kind(family), right, (FAMILY,))
-    name = names["" if family is None else family]
+    name = names[family if isinstance(family, str) else ""]
     with at(OF):
         content = _json_of(records, name)
         if content.get("format") != FRONT_FORMAT:
@@ -304,7 +304,7 @@ def is_comparison(records: Mapping[str, bytes]) -> bool:
 # ---- questions ------------------------------------------------------------------------------------------------------
 
 
-def question_of(spec: Mapping[str, Any], sources: Sources, **usual: Any) -> tuple[Request, SearchSettings]:
+def question_of(spec: Mapping[str, object], sources: Sources, **usual: Any) -> tuple[Request, SearchSettings]:
     """Request to one family in a spec, and how it is searched; ``usual`` counts where the spec states nothing.
 
     Raises
@@ -326,7 +326,7 @@ def question_of(spec: Mapping[str, Any], sources: Sources, **usual: Any) -> tupl
     return request, settings
 
 
-def settings_of(spec: Mapping[str, Any], **usual: Any) -> SearchSettings:
+def settings_of(spec: Mapping[str, object], **usual: Any) -> SearchSettings:
     """Search settings of a spec. How many threads work at it is not for a request to say, and changes nothing.
 
     Raises
@@ -397,13 +397,13 @@ def _shown(value: Any, unit: str) -> str:
 def told(tell: ReportProgress) -> ReportProgress:
     """Return a progress function that tells what JSON can hold."""
 
-    def show(state: Mapping[str, Any]) -> None:
+    def show(state: Mapping[str, object]) -> None:
         tell(plain({key: _number(value) for key, value in state.items()}))
 
     return show
 
 
-def _number(value: Any) -> Any:
+def _number(value: object) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
@@ -413,7 +413,7 @@ def question_record(name: str, posed: Mapping[str, Any], sources: Sources) -> Re
     return json_record(QUESTION, content)
 
 
-def json_record(name: str, content: Mapping[str, Any]) -> Record:
+def json_record(name: str, content: Mapping[str, object]) -> Record:
     """Return a record of JSON."""
     return Record.of(name, json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 

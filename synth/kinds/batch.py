@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.batches.batch import BatchJob
-from synth.batches.batch_report import BatchOptions, batch_report_files
+from synth.batches.batch_report import BatchOptions, BatchReader
 from synth.batches.outputs import write_outputs
 from synth.batches.row_questions import Fault
 from synth.batches.row_table import RowTable, read_table
@@ -43,7 +43,7 @@ REPORTS = {"report.html": "html", "report.pdf": "pdf", "batch.xlsx": "xlsx"}  # 
 STATED = "rows.json"  # what rows are kept as that stand in a request
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request: its table as a whole, its settings, and rows until one can be asked.
 
     All of them are checked when it is planned.
@@ -174,13 +174,14 @@ def _report(name: str, file: str, sources: Sources) -> bytes | str:
         job = store.job(name)
         if job is None:
             raise UnknownFileError(file)
-        made, *_, lacking = batch_report_files(store, job, options, catalogs_of(job.content.get("catalogs"), sources))
+        tables = catalogs_of(job.content.get("catalogs"), sources)
+        made, *_, lacking = BatchReader(store, job, tables).files(options)
         if file not in made:
             raise first_with_others(lacking)
         return made[file]
 
 
-def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:
+def table_of(stated: Mapping[str, object], sources: Sources) -> Record:
     """Return the table of a request: a file that was brought, or rows that stand in it.
 
     Raises
@@ -193,13 +194,14 @@ def table_of(stated: Mapping[str, Any], sources: Sources) -> Record:
         raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
     if ROWS in stated:
         return Record.of(STATED, json.dumps(_stated_rows(stated[ROWS]), ensure_ascii=False))
-    found = sources.files.get(stated[UPLOAD]) if isinstance(stated[UPLOAD], str) else None
+    upload = stated[UPLOAD]
+    found = sources.files.get(upload) if isinstance(upload, str) else None
     if found is None:
-        raise InputError(f"{WHERE}: {UPLOAD}", stated[UPLOAD], "the id of a file that was uploaded", (UPLOAD,))
+        raise InputError(f"{WHERE}: {UPLOAD}", upload, "the id of a file that was uploaded", (UPLOAD,))
     return Record.of(f"{Path(found.name).stem or 'rows'}{_ending(found.name)}", found.content)
 
 
-def _stated_rows(rows: Any) -> list[Any]:
+def _stated_rows(rows: object) -> list[Any]:
     """Return rows that stand in a request.
 
     Raises
@@ -226,7 +228,7 @@ def _ending(name: str) -> str:
 
 
 @contextmanager
-def _job(stated: Mapping[str, Any], table: Record, sources: Sources) -> Iterator[BatchJob]:
+def _job(stated: Mapping[str, object], table: Record, sources: Sources) -> Iterator[BatchJob]:
     """Give a batch that knows its table and its settings; nothing of it is written.
 
     Raises

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from synth.errors import InputError
@@ -20,7 +20,8 @@ from synth.kinds.asked import (
     told,
     words,
 )
-from synth.question.request import check_grid, listed_objectives
+from synth.question.arguments import UserTables
+from synth.question.request import Request, check_grid, listed_objectives
 from synth.question.settings import SearchSettings
 from synth.question.spec_keys import asks_several, read_keys
 from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
@@ -45,7 +46,7 @@ from synth.verbs.requests import SPEC
 KEPT = (FRONT_FILE, CALCULATION, OFFERED)  # of the front of each family; the rest is rendered from these
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request: the sheet, and that one family at least can be asked.
 
     Raises
@@ -81,7 +82,7 @@ def _titled(one: Applicant) -> str:
     return (one.problem.title or words(one.problem.name)) + words(one.label.removeprefix(one.problem.name))
 
 
-def _one_can_be_asked(found: list[Applicant], asked: Any, settings: SearchSettings) -> None:
+def _one_can_be_asked(found: list[Applicant], asked: Callable[[Applicant], Request], settings: SearchSettings) -> None:
     """Refuse what no family can be asked, as the search would."""
     first: InputError | None = None
     for one in found:
@@ -97,7 +98,7 @@ def _one_can_be_asked(found: list[Applicant], asked: Any, settings: SearchSettin
         raise first
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Search all families and put their designs on one front."""
     content, settings = _read(request)
     asked: dict[str, Any] = {key: content[key] or None for key in (*KEYS, "weights") if key != "requirements"}
@@ -138,7 +139,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     return facts
 
 
-def _read(spec: Mapping[str, Any]) -> tuple[dict[str, Any], SearchSettings]:
+def _read(spec: Mapping[str, object]) -> tuple[dict[str, Any], SearchSettings]:
     """Return the entries of a spec as the verb takes them, and how it is searched."""
     content = read_keys({key: value for key, value in spec.items() if key != "catalogs"}, WHERE, SPEC)
     if not asks_several(content[FAMILY]):
@@ -153,7 +154,7 @@ def _grid(content: Mapping[str, Any]) -> bool:
     return True if content["grid"] is None else check_grid(content["grid"])
 
 
-def _stated(content: Mapping[str, Any], settings: SearchSettings, catalogs: Any) -> dict[str, Any]:
+def _stated(content: Mapping[str, Any], settings: SearchSettings, catalogs: UserTables) -> dict[str, Any]:
     """Return the request as it is stored; the order of requirements means nothing."""
     families = content[FAMILY]
     stated: dict[str, Any] = {FAMILY: families if isinstance(families, str) else [plain(one) for one in families]}

@@ -62,7 +62,7 @@ def _column(heading: str, cells: Sequence[Any]) -> Column:
     return Column(name=name, type="text" if text else "number", unit=None if text else unit)
 
 
-def _cell(value: Any) -> Any:
+def _cell(value: object) -> Any:
     return finite(value) if isinstance(value, float) else value
 
 

@@ -33,7 +33,7 @@ MAIN = "explanation.json"
 PHYSICS = "physics"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request; what a search alone goes by (points, gap, weights) is left out.
 
     Raises
@@ -54,7 +54,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
+def beside(request: Mapping[str, object], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
     """Return the spec in a request, and what is wrong beside it."""
     spec = {key: value for key, value in request.items() if key != PHYSICS}
     faults: list[InputError] = []
@@ -63,7 +63,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     return spec, faults
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what excludes each other and what would help."""
     spec, own = spec_of(request, sources, (PHYSICS,))
     found = explanation_of(*_asked(spec, sources), told(tell), ExplainRequest.read(own, in_request).physics)
@@ -86,7 +86,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     }
 
 
-def _asked(spec: Mapping[str, Any], sources: Sources) -> tuple[Request, SearchSettings]:
+def _asked(spec: Mapping[str, object], sources: Sources) -> tuple[Request, SearchSettings]:
     asked, settings = question_of(spec, sources)
     asked = replace(asked, objectives=None, weights={})
     return asked, SearchSettings(points=1, gap=WAYS_OUT.gap, seed=settings.seed, time_limit=settings.time_limit)

@@ -9,7 +9,7 @@ import tempfile
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from synth.analysis.drawing import is_drawn
 from synth.analysis.reporting import explored, explored_comparison
@@ -70,7 +70,7 @@ def render(
     kind: str,
     records: Mapping[str, bytes],
     name: str,
-    options: Mapping[str, Any] | None = None,
+    options: Mapping[str, object] | None = None,
     sources: Sources = NOTHING,
 ) -> Record:
     """Return one file of a job.
@@ -125,11 +125,11 @@ def render(
     return Record.of(name, _report(records, name, given, sources))
 
 
-def _request(given: Mapping[str, Any], form: str) -> FrontReportRequest:
+def _request(given: Mapping[str, object], form: str) -> FrontReportRequest:
     return FrontReportRequest.read({**given, "formats": [form]}, in_request)
 
 
-def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, Any], sources: Sources) -> bytes:
+def _report(records: Mapping[str, bytes], name: str, given: Mapping[str, object], sources: Sources) -> bytes:
     """Return one file of a report of a front."""
     files, notes = reported(records, _request(given, name.rsplit(".", 1)[-1]), sources)
     if name not in files:

@@ -14,7 +14,7 @@ from synth.verbs.requests import NearEqualsRequest
 MAIN = "near_equals.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -33,20 +33,11 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what is nearly as good."""
     of, asked = about_front(request, NearEqualsRequest)
     front, tables = front_of(of, sources)
-    found = near_equals(
-        front,
-        asked.design,
-        asked.within,
-        count=asked.count,
-        catalogs=tables,
-        seed=asked.seed,
-        progress=told(tell),
-        time_limit=asked.time_limit,
-    )
+    found = near_equals(front, catalogs=tables, progress=told(tell), **vars(asked))
     return {**of_files(found.files()), **by_name(question_record("near_equals", request, sources))}
 
 

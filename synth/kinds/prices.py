@@ -15,7 +15,7 @@ from synth.verbs.requests import PricesRequest
 MAIN = "prices.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request; ``design`` is a rank or a list of ranks, all where it is left out.
 
     Raises
@@ -34,11 +34,11 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Price everything."""
     of, asked = about_front(request, PricesRequest)
     front, tables = front_of(of, sources)
-    found = prices(front, asked.design, asked.step, catalogs=tables, progress=told(tell), time_limit=asked.time_limit)
+    found = prices(front, catalogs=tables, progress=told(tell), **vars(asked))
     return {**of_files(found.files()), **by_name(question_record("prices", request, sources))}
 
 

@@ -40,7 +40,7 @@ MAIN = "rating.json"
 ROBUST = "robust"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -60,7 +60,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Rate the designs."""
     given = _designs(request, sources)
     found = rate(
@@ -105,7 +105,7 @@ class _Given:
     time_limit: float | None
 
 
-def _designs(request: Mapping[str, Any], sources: Sources) -> _Given:
+def _designs(request: Mapping[str, object], sources: Sources) -> _Given:
     if isinstance(request, Mapping) and request.get(OF) is not None:
         of, asked = about_front(request, RateRequest)
         front, tables = front_of(of, sources)
@@ -134,7 +134,7 @@ def _designs(request: Mapping[str, Any], sources: Sources) -> _Given:
     )
 
 
-def _block(stated: Mapping[str, Any] | None) -> dict[str, Any]:
+def _block(stated: Mapping[str, object] | None) -> dict[str, Any]:
     """What scatters.
 
     Raises

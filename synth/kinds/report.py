@@ -39,7 +39,7 @@ def options_of(asked: FrontReportRequest) -> ReportOptions:
     return ReportOptions(formats=asked.formats, length=asked.length, about=About.of(asked.about))
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -66,7 +66,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     return CheckedRequest(request={**of.to_json(), **asked.to_json()}, title=f"Report: {title}", families=families)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Write the report and the sheets."""
     tell({"stage": "report", "done": 0.0, "message": ""})
     of, asked = about_front(request, FrontReportRequest)

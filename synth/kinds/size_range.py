@@ -21,7 +21,7 @@ from synth.verbs.requests import OF, VERBS, SizeRangeRequest
 MAIN = "size_range.json"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request: the batch must be there and done.
 
     Raises
@@ -38,7 +38,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Choose the variants."""
     job = _batch(request[OF], sources)
     stated = job.request.get("catalogs")
@@ -51,16 +51,7 @@ def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> 
         catalogs=catalogs_of(stated, sources) if stated else None,
     )
     asked = SizeRangeRequest.read(request, in_request)
-    found = size_range(
-        source,
-        asked.variants,
-        asked.objective,
-        per_row=asked.per_row,
-        candidates=asked.candidates,
-        gap=asked.gap,
-        time_limit=asked.time_limit,
-    )
-    return of_files(found.files())
+    return of_files(size_range(source, **vars(asked)).files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
@@ -70,7 +61,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     return {"outcome": "optimal", **{name: content[name] for name in told}}
 
 
-def _batch(job: Any, sources: Sources) -> Job:
+def _batch(job: object, sources: Sources) -> Job:
     """Return the batch that is meant, which must be done.
 
     Raises

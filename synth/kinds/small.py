@@ -31,6 +31,7 @@ from synth.kinds.settings import KIND_SETTINGS, KindSettings
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_declaration, load
+from synth.question.arguments import Family
 from synth.question.catalogs import as_catalogs, lacking_columns, misspelt_columns, refuse_unused
 from synth.question.examples import Example, examples_of
 from synth.question.examples import examples as all_examples
@@ -89,7 +90,7 @@ def _family(problem: DesignProblem, declared: Declaration) -> dict[str, Any]:
     }
 
 
-def declaration(family: Any, options: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def declaration(family: Family, options: Mapping[str, object] | None = None) -> dict[str, Any]:
     """Declaration of a family, as a form shows it.
 
     Parameters
@@ -129,7 +130,7 @@ def _section(row: Mapping[str, Any]) -> str:
     return SECTIONS.get(row["kind"], str(row["kind"]))
 
 
-def _cell(value: Any) -> Any:
+def _cell(value: object) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -152,7 +153,7 @@ def _example(one: Example) -> dict[str, Any]:
 # ---- a given design -------------------------------------------------------------------------------------------------
 
 
-def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
+def evaluate(design: object, sources: Sources = NOTHING) -> dict[str, Any]:
     """Return the record of a given design, with what says how to show it.
 
     Parameters
@@ -193,7 +194,7 @@ def evaluate(design: Any, sources: Sources = NOTHING) -> dict[str, Any]:
 # ---- checks ---------------------------------------------------------------------------------------------------------
 
 
-def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIND_SETTINGS) -> dict[str, Any]:
+def check(request: object, sources: Sources = NOTHING, settings: KindSettings = KIND_SETTINGS) -> dict[str, Any]:
     """Faults of a question, all at once as far as one fault does not hide another; nothing is raised.
 
     Parameters
@@ -216,7 +217,7 @@ def check(request: Any, sources: Sources = NOTHING, settings: KindSettings = KIN
 
 
 def all_faults(
-    spec: Mapping[str, Any],
+    spec: Mapping[str, object],
     sources: Sources,
     first: InputError,
     keys: Sequence[str] = (),
@@ -256,7 +257,7 @@ class _Check:
         self.combinations: int | None = None
         self.end = time.monotonic() + settings.seconds
 
-    def of(self, request: Any) -> dict[str, Any]:
+    def of(self, request: object) -> dict[str, Any]:
         self._caught(self._looked_at, request)
         return {
             "ready": not self.faults,
@@ -266,7 +267,7 @@ class _Check:
             "combinations": None if self.faults else self.combinations,
         }
 
-    def _looked_at(self, request: Any) -> None:
+    def _looked_at(self, request: object) -> None:
         """Note all that is wrong; what is raised is one fault more, after which nothing is looked at."""
         spec = self._entries(request)
         family = spec.get(FAMILY)
@@ -293,7 +294,7 @@ class _Check:
 
     # -- entries by themselves -----------------------------------------------------------------
 
-    def _entries(self, request: Any) -> dict[str, Any]:
+    def _entries(self, request: object) -> dict[str, Any]:
         """Entries under the keys of a spec that are of the right kind."""
         if isinstance(request, Mapping):
             for key in [key for key in request if key not in self.keys]:
@@ -302,13 +303,13 @@ class _Check:
         found = self._caught(spec_of, request, self.sources, (), True)
         return {} if found is None else found[0]
 
-    def _entry(self, key: str, value: Any) -> Any:
+    def _entry(self, key: str, value: object) -> Any:
         """Entry under one key, without parts of a wrong kind; None where nothing is left."""
         if key not in MAPPINGS or not isinstance(value, Mapping):
             return value if self._fits(key, value) else None
         return {name: entry for name, entry in value.items() if self._fits(key, {name: entry})}
 
-    def _fits(self, key: str, value: Any) -> bool:
+    def _fits(self, key: str, value: object) -> bool:
         """True if an entry is of its kind; note where it is not."""
         faults: list[InputError] = []
         if value is not None:
@@ -413,7 +414,7 @@ class _Check:
         self._caught(chosen_objectives, model, spec.get("objectives"))
         self._caught(read_remaining, spec.get("robust") or None)
 
-    def _posed(self, spec: Mapping[str, Any], problem: DesignProblem, tables: Catalogs) -> InputError | None:
+    def _posed(self, spec: Mapping[str, object], problem: DesignProblem, tables: Catalogs) -> InputError | None:
         """Pose the question; return and note what is refused."""
         try:
             asked = Request.from_json(spec, WHERE, problem=problem, catalogs=tables)

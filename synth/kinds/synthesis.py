@@ -29,7 +29,7 @@ from synth.search.question import pose
 from synth.search.synthesize import find_front
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request.
 
     Raises
@@ -61,7 +61,7 @@ def checked(asked: Request, settings: SearchSettings) -> None:
         Rater(asked, asked.robust)
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Search the designs; every other file of a front is rendered from these records."""
     asked, settings = question_of(request, sources)
     front = find_front(asked, settings, told(tell))

@@ -32,7 +32,7 @@ MAIN = "verification.json"
 WHOLE = "all of the comparison"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request; without ``family`` a comparison is checked as a whole.
 
     Raises
@@ -55,7 +55,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Check what was saved; how far the proof is cannot be told before it ends."""
     tell({"stage": "verify", "done": 0.0, "message": ""})
     of, asked = about_front(request, VerifyRequest)
@@ -77,7 +77,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     return {"outcome": content["verdict"], "findings": len(content["findings"]), **{k: content[k] for k in kept}}
 
 
-def _with_kept(found: Verification, records: Mapping[str, bytes], family: Any) -> Verification:
+def _with_kept(found: Verification, records: Mapping[str, bytes], family: object) -> Verification:
     """Return a verification that looks at the records beside that of the front as well."""
     folder = "" if family is None else f"{family}/"
     front = read_json(records, f"{folder}{FRONT_FILE}")

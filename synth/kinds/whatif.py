@@ -30,6 +30,7 @@ from synth.kinds.asked import (
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.model import Model
 from synth.order.feasibility import Status
+from synth.question.arguments import Objectives
 from synth.question.objectives import chosen_objectives
 from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.results.plain import plain
@@ -44,7 +45,7 @@ MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
 
 
-def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
+def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     """Check a request; of many steps some are posed, spread evenly, and all when the work begins.
 
     Raises
@@ -72,7 +73,7 @@ def read(request: Mapping[str, Any], sources: Sources) -> CheckedRequest:
     )
 
 
-def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
+def beside(request: Mapping[str, object], sources: Sources) -> tuple[dict[str, Any], list[InputError]]:
     """Return the spec in a request, and what is wrong with what varies.
 
     A requirement that is varied need not be stated: its first value stands in the spec then.
@@ -113,7 +114,7 @@ def beside(request: Mapping[str, Any], sources: Sources) -> tuple[dict[str, Any]
     return spec, faults
 
 
-def work(request: Mapping[str, Any], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
+def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Answer all steps, and find where the best parts or counts change."""
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     beyond = WhatIfRequest.read(own, in_request)
@@ -144,7 +145,7 @@ def summary(records: Mapping[str, bytes]) -> dict[str, Any]:
     }
 
 
-def _objectives(model: Model, stated: Any) -> list[str]:
+def _objectives(model: Model, stated: Objectives) -> list[str]:
     """Return the objectives of a spec; where they are wrong, which its check tells, those of the family."""
     try:
         return list(chosen_objectives(model, stated))
@@ -161,10 +162,10 @@ def _ends(values: Mapping[str, object]) -> tuple[object, ...]:
     return tuple(values[key] for key in VARIED_ENDS)
 
 
-def _stated_vary(stated: Mapping[str, Any]) -> dict[str, Any]:
+def _stated_vary(stated: Mapping[str, object]) -> dict[str, Any]:
     """Varied quantity as it is stored."""
 
-    def entry(values: Any) -> Any:
+    def entry(values: object) -> Any:
         if isinstance(values, Mapping):
             return {key: values[key] for key in VARIED_ENDS}
         return plain(list(values) if isinstance(values, Sequence) and not isinstance(values, str) else values)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -91,7 +90,7 @@ class Constraint:
             gone |= np.isnan(np.asarray(data[k], dtype=float))
         return gone
 
-    def declared(self, value: Any) -> Limit:
+    def declared(self, value: ca.SX) -> Limit:
         """Return the limit on a number as a declaration states it, of the expression that has its value there."""
         assert not isinstance(self.bound, int)
         return Limit(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -350,7 +350,7 @@ class Model:
             program.outputs.append(node)
         return node
 
-    def _refusal_inputs(self, code: str, when: Any) -> frozenset[str]:
+    def _refusal_inputs(self, code: str, when: ca.SX) -> frozenset[str]:
         """Return the discrete unknowns (slots, counts, choices) that a refusal speaks of."""
         used = {str(s) for s in ca.symvar(expanded(when, self.calls))}
         if used & {str(v.sx) for v in self.variables}:
@@ -508,7 +508,7 @@ class Model:
         sizes = compiled([*np.asarray(variables, dtype=float).T, *data])
         return {name: _column(x, len(variables)) for name, x in zip(nodes, sizes, strict=True)}
 
-    def number(self, expression: Any, values: Mapping[str, float]) -> float:
+    def number(self, expression: ca.SX, values: Mapping[str, float]) -> float:
         """Return the value of an expression of the declaration that no variable is in.
 
         What evaluates it is built once per model, not once per question.
@@ -522,7 +522,7 @@ class Model:
         function, names = self.numeric(expression)
         return float(function.call([values[name] for name in names])[0])
 
-    def numeric(self, expression: Any) -> tuple[Any, list[str]]:
+    def numeric(self, expression: ca.SX) -> tuple[Any, list[str]]:
         """Return the function that evaluates an expression of the declaration, and the names of its arguments."""
         made: tuple[Any, list[str]] = self.function(
             ("number", id(expression)), lambda: numeric(expanded(expression, self.calls))
@@ -535,7 +535,7 @@ class Model:
             ("refusal", id(refusal)), lambda: Program(self.inputs, [refusal.when], self.calls).compile()
         )
 
-    def function(self, key: Any, make: Callable[[], Any]) -> Any:
+    def function(self, key: Hashable, make: Callable[[], Any]) -> Any:
         """Return an object that is built once per model, for example a CasADi function or a solver.
 
         A model may serve a process for long, asked for ever other limits: what was not used for longest is given up.
@@ -553,7 +553,7 @@ class Model:
         return built
 
 
-def _column(x: Any, count: int) -> np.ndarray:
+def _column(x: InputValue, count: int) -> np.ndarray:
     """Return an output as an array over the batch."""
     if isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == float:
         return x

@@ -8,13 +8,13 @@ from typing import Any
 import casadi as ca
 
 
-def number(expression: Any, values: Mapping[str, float]) -> float:
+def number(expression: ca.SX, values: Mapping[str, float]) -> float:
     """Evaluate an expression whose symbols all have values."""
     function, names = numeric(expression)
     return float(function.call([values[name] for name in names])[0])
 
 
-def numeric(expression: Any) -> tuple[Any, list[str]]:
+def numeric(expression: ca.SX) -> tuple[Any, list[str]]:
     """Return the function that evaluates an expression, and the names of its arguments."""
     symbols = ca.symvar(ca.SX(expression))
     return ca.Function("number", symbols, [ca.SX(expression)]), [str(s) for s in symbols]

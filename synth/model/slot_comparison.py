@@ -25,6 +25,7 @@ from synth.tables.conditions import (
     may_be_condition,
     parse_condition,
 )
+from synth.tables.schema import Column
 from synth.text.row_cells import text_code
 from synth.units import parse_quantity
 
@@ -113,7 +114,7 @@ class _ConditionReader:
             result = ca.logic_or(result, other)
         return result
 
-    def _compared(self, test: Test, operand: Any, column: Any, value: Value) -> Any:
+    def _compared(self, test: Test, operand: ca.SX, column: Column, value: Value) -> Any:
         compare = _COMPARE["==" if test.op == "in" else test.op]
         if not value.column:
             return compare(operand, self._constant(test, column, value))
@@ -129,7 +130,7 @@ class _ConditionReader:
             raise self.condition.wrong(value.position, value.text, right)
         return compare(operand, getattr(part, name))
 
-    def _constant(self, test: Test, column: Any, value: Value) -> float:
+    def _constant(self, test: Test, column: Column, value: Value) -> float:
         if column.numeric:
             try:
                 return float(parse_quantity(value.text, column.scale, column.name))

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from synth.kernels.threads import side_by_side
-from synth.model.program import Program
+from synth.model.program import InputValue, Program
 from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_numpy import InteriorPoint
 from synth.nlp.kernel_solver import KernelSolver, kernel_solver
@@ -57,11 +57,44 @@ class Tasks:
     elastic: float = 0.0
     moved: np.ndarray | None = None
 
-    def take(self, rows: np.ndarray) -> Tasks:
+    def take(self, rows: np.ndarray | slice) -> Tasks:
         """Problems at the given positions."""
         moved = None if self.moved is None else self.moved[rows]
         arrays = self.weights[rows], self.slopes[rows], self.cutoffs[rows]
         return Tasks(*arrays, self.goal_scales, self.t_weight, self.elastic, moved)
+
+
+@dataclass(frozen=True)
+class ProblemInputs:
+    """Numbers of a batch of problems of one program.
+
+    Parameters
+    ----------
+    data : list of numbers or arrays (problems,)
+        Data inputs of the program; NaN where a column has no value.
+    low, high : array (problems, variables)
+        SI; equal bounds pin a variable.
+    bounds : list of float
+        Constant right sides, in the order of the constraints.
+    void : array of bool (problems, constraints)
+        Limits that do not count.
+    """
+
+    data: Sequence[InputValue]
+    low: np.ndarray
+    high: np.ndarray
+    bounds: Sequence[float]
+    void: np.ndarray
+
+    def take(self, rows: np.ndarray | slice) -> ProblemInputs:
+        """Numbers of the problems at the given positions."""
+        data = [x if np.ndim(x) == 0 else np.asarray(x)[rows] for x in self.data]
+        return ProblemInputs(data, self.low[rows], self.high[rows], self.bounds, self.void[rows])
+
+    def clean(self) -> list[np.ndarray]:
+        """Data inputs with one in place of a missing value."""
+        columns = (np.asarray(x, dtype=float) for x in self.data)
+        return [np.where(np.isnan(x), 1.0, x) for x in columns]
 
 
 @dataclass(frozen=True)
@@ -142,30 +175,15 @@ class BatchNlp:
         sides = [k for c in plain for k in c.nodes]
         return program.compile(sides) if sides else None
 
-    def solve(
-        self,
-        tasks: Tasks,
-        data: Sequence[Any],
-        start: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: Sequence[float],
-        void: np.ndarray,
-        workers: int = 1,
-    ) -> Solutions:
+    def solve(self, tasks: Tasks, inputs: ProblemInputs, start: np.ndarray, workers: int = 1) -> Solutions:
         """Solve all problems, each from its start, and again from other starts where that fails.
 
         Parameters
         ----------
         tasks : Tasks
-        data : list of numbers or arrays (problems,)
-            Data inputs of the program; NaN where a column has no value.
-        start, low, high : array (problems, variables)
-            SI; equal bounds pin a variable.
-        bounds : list of float
-            Constant right sides, in the order of the constraints.
-        void : array of bool (problems, constraints)
-            Limits that do not count.
+        inputs : ProblemInputs
+        start : array (problems, variables)
+            SI.
         workers : int
             Threads that may solve at the same time, where the kernel computes.
 
@@ -174,29 +192,12 @@ class BatchNlp:
         Solutions
         """
         count = len(tasks.weights)
-        columns = [np.asarray(x, dtype=float) for x in data]
         chunk = self.settings.kernel_at_once if self.compiled else self.settings.at_once
 
         def solved(first: int) -> Solutions:
             deadline.check()  # threads beside know of no end
             rows = slice(first, min(first + chunk, count))
-            return self._solve_part(
-                Tasks(
-                    tasks.weights[rows],
-                    tasks.slopes[rows],
-                    tasks.cutoffs[rows],
-                    tasks.goal_scales,
-                    tasks.t_weight,
-                    tasks.elastic,
-                    None if tasks.moved is None else tasks.moved[rows],
-                ),
-                [x if x.ndim == 0 else x[rows] for x in columns],
-                start[rows],
-                low[rows],
-                high[rows],
-                bounds,
-                void[rows],
-            )
+            return self._solve_part(tasks.take(rows), inputs.take(rows), start[rows])
 
         work = [partial(solved, first) for first in range(0, max(count, 1), chunk)]
         parts = side_by_side(work, workers if self.compiled else 1)
@@ -206,18 +207,10 @@ class BatchNlp:
 
     # -- one chunk -----------------------------------------------------------------------------
 
-    def _solve_part(
-        self,
-        tasks: Tasks,
-        data: Sequence[np.ndarray],
-        start: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: Sequence[float],
-        void: np.ndarray,
-    ) -> Solutions:
+    def _solve_part(self, tasks: Tasks, inputs: ProblemInputs, start: np.ndarray) -> Solutions:
+        low, high, bounds = inputs.low, inputs.high, inputs.bounds
         with np.errstate(all="ignore"):
-            clean = [np.where(np.isnan(x), 1.0, x) for x in data]
+            clean = inputs.clean()
             scales = self._scales(low, high)
             first = np.clip(start, low, high)
             sizes = self._inverse_sizes(tasks, [*first.T, *clean], bounds)
@@ -227,7 +220,7 @@ class BatchNlp:
                 start=self._to_search(first, scales),
                 low=self._to_search(low, scales),
                 high=self._to_search(high, scales),
-                counts=np.concatenate([~void, np.isfinite(tasks.cutoffs)], axis=1).T,
+                counts=np.concatenate([~inputs.void, np.isfinite(tasks.cutoffs)], axis=1).T,
                 slopes=self._slopes(tasks),
                 rights=self._rights(tasks),
                 weights=(tasks.weights * worth[:, None]).T,

@@ -29,7 +29,7 @@ import numpy as np
 
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SELECT, Program
-from synth.nlp.batch import BatchNlp, Solutions, Tasks, worth_of
+from synth.nlp.batch import BatchNlp, ProblemInputs, Solutions, Tasks, worth_of
 from synth.nlp.rows import Rows
 from synth.nlp.settings import NLP, NlpSettings
 
@@ -226,7 +226,7 @@ class Pieces:
         return np.stack([read.get(k, nothing) for k in self.decisions], axis=1)
 
 
-def _piece(op: int, way: Any, args: Sequence[Any]) -> Any:
+def _piece(op: int, way: ca.SX, args: Sequence[Any]) -> Any:
     """Value of a decision, as an expression of which way it goes."""
     if op in (ca.OP_LT, ca.OP_LE):
         return way
@@ -286,30 +286,21 @@ class PiecedNlp:
         program, rows = self.pieces.written()
         return BatchNlp(program, self.pieces.n, rows, conditions=len(self.pieces), settings=self.nlp_settings)
 
-    def doubtful(self, solutions: Solutions, data: Sequence[Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    def doubtful(self, solutions: Solutions, inputs: ProblemInputs) -> np.ndarray:
         """Solutions of the unsplit formulas that may be no optima: on a kink, or not converged."""
         with np.errstate(all="ignore"):
-            ways, apart, _ = self.pieces.at([*solutions.variables.T, *_clean(data)], _reach(low, high))
+            points = [*solutions.variables.T, *inputs.clean()]
+            ways, apart, _ = self.pieces.at(points, _reach(inputs.low, inputs.high))
         tied = np.any(self.pieces.live(ways) & (apart <= self.settings.tie), axis=1)
         doubtful: np.ndarray = ~solutions.converged | tied
         return doubtful
 
-    def solve(
-        self,
-        tasks: Tasks,
-        data: Sequence[Any],
-        start: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: Sequence[float],
-        void: np.ndarray,
-        workers: int = 1,
-    ) -> Solutions:
+    def solve(self, tasks: Tasks, inputs: ProblemInputs, start: np.ndarray, workers: int = 1) -> Solutions:
         """Solve all problems, each from its start and the pieces there; parameters as of ``BatchNlp.solve``."""
-        question = _Question(self, tasks, [np.asarray(x, dtype=float) for x in data], low, high, bounds, void, workers)
+        question, low, high = _Question(self, tasks, inputs, workers), inputs.low, inputs.high
         with np.errstate(all="ignore"):
             start = np.clip(start, low, high)
-            ways, _, size = self.pieces.at([*start.T, *_clean(data)], _reach(low, high))
+            ways, _, size = self.pieces.at([*start.T, *question.clean_data], _reach(low, high))
             everything = np.arange(len(start))
             state = question.solved(everything, ways, start, size)
             tried = [_Tried(w) for w in ways]
@@ -339,25 +330,22 @@ class _Question:
 
     solver: PiecedNlp
     tasks: Tasks
-    data: Sequence[np.ndarray]
-    low: np.ndarray
-    high: np.ndarray
-    bounds: Sequence[float]
-    void: np.ndarray
+    numbers: ProblemInputs
     workers: int
 
     def inputs(self, rows: np.ndarray) -> list[np.ndarray]:
         """Return the data of some problems."""
-        return [x if x.ndim == 0 else x[rows] for x in self._clean_data]
+        return [x if x.ndim == 0 else x[rows] for x in self.clean_data]
 
     @cached_property
-    def _clean_data(self) -> list[np.ndarray]:
-        return _clean(self.data)
+    def clean_data(self) -> list[np.ndarray]:
+        """Data of all problems, without gaps."""
+        return self.numbers.clean()
 
     def _tasks_of(self, rows: np.ndarray, ways: np.ndarray, size: np.ndarray) -> tuple[Tasks, list[Any]]:
         """Tasks restricted to the given pieces, and their data."""
         tasks, settings, pieces = self.tasks.take(rows), self.solver.settings, self.solver.pieces
-        moved = np.zeros(self.void[rows].shape) if tasks.moved is None else tasks.moved
+        moved = np.zeros(self.numbers.void[rows].shape) if tasks.moved is None else tasks.moved
         margin = np.broadcast_to(np.where(pieces.compares, -settings.margin, 0.0), ways.shape)
         tasks = replace(tasks, moved=np.concatenate([moved, margin], axis=1))
         return tasks, [*self.inputs(rows), *ways.T.astype(float), *(1.0 / size).T]
@@ -365,19 +353,20 @@ class _Question:
     def solved(self, rows: np.ndarray, ways: np.ndarray, start: np.ndarray, size: np.ndarray) -> _State:
         """Solve problems with given pieces."""
         tasks, data = self._tasks_of(rows, ways, size)
-        pieces, low, high = self.solver.pieces, self.low[rows], self.high[rows]
-        live = pieces.live(ways)
-        void = np.concatenate([self.void[rows], ~live], axis=1)
-        ended = self.solver.nlp.solve(tasks, data, start, low, high, self._right_sides(), void, self.workers)
+        pieces, numbers = self.solver.pieces, self.numbers.take(rows)
+        live, low, high = pieces.live(ways), numbers.low, numbers.high
+        void = np.concatenate([numbers.void, ~live], axis=1)
+        inputs = ProblemInputs(data, low, high, self._right_sides(), void)
+        ended = self.solver.nlp.solve(tasks, inputs, start, self.workers)
         # In a branch that is not taken decisions go the way they would if it were: an exchange may lead there.
         there, _, _ = pieces.at([*ended.variables.T, *self.inputs(rows)], _reach(low, high))
         ways = np.where(live, ways, there)
-        constraints = self.void.shape[1]
+        constraints = numbers.void.shape[1]
         of_task = replace(ended, constraint_multipliers=ended.constraint_multipliers[:, :constraints])
         return _State(of_task, ended.constraint_multipliers[:, constraints:], ways, start, size)
 
     def _right_sides(self) -> list[float]:
-        return [*self.bounds, *([0.0] * len(self.solver.pieces))]
+        return [*self.numbers.bounds, *([0.0] * len(self.solver.pieces))]
 
     def better(self, rows: np.ndarray, new: Solutions, old: Solutions) -> np.ndarray:
         """Tell which answers are better than the old ones of these problems."""
@@ -418,7 +407,7 @@ class _Question:
             the edge of a max that must be small, it is not the right one here.)
         """
         solver, settings, nlp = self.solver, self.solver.settings, self.solver.nlp
-        count, constraints, best = len(solver.pieces), self.void.shape[1], state.best.take(rows)
+        count, constraints, best = len(solver.pieces), self.numbers.void.shape[1], state.best.take(rows)
         pressed, apart = np.zeros((len(rows), count)), np.zeros((len(rows), count), dtype=bool)
         if not len(rows):
             return pressed, apart
@@ -448,7 +437,7 @@ class _Question:
     def _slopes(self, rows: np.ndarray, state: _State, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and derivatives of all rows at the solutions of problems, with the given pieces."""
         tasks, data = self._tasks_of(rows, ways, state.size[rows])
-        points, ends = state.best.variables[rows], (self.low[rows], self.high[rows])
+        points, ends = state.best.variables[rows], (self.numbers.low[rows], self.numbers.high[rows])
         return self.solver.nlp.slopes(tasks, data, state.start[rows], points, *ends, self._right_sides())
 
 
@@ -456,10 +445,6 @@ def _turned(ways: np.ndarray, which: int | np.integer[Any] | np.ndarray) -> np.n
     result = ways.copy()
     result[..., which] = ~result[..., which]
     return result
-
-
-def _clean(data: Sequence[Any]) -> list[Any]:
-    return [np.where(np.isnan(x), 1.0, x) for x in data]
 
 
 def _reach(low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -494,49 +479,31 @@ class KinkedNlp:
         return self.first.compiled
 
     def solve(
-        self,
-        tasks: Tasks,
-        data: Sequence[Any],
-        start: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: Sequence[float],
-        void: np.ndarray,
-        workers: int = 1,
-        rough: bool = False,
+        self, tasks: Tasks, inputs: ProblemInputs, start: np.ndarray, workers: int = 1, rough: bool = False
     ) -> Solutions:
         """Solve all problems, each from its start; parameters as of ``BatchNlp.solve``.
 
         ``rough``: answers may be near optima.
         """
-        solutions = self.first.solve(tasks, data, start, low, high, bounds, void, workers)
+        solutions = self.first.solve(tasks, inputs, start, workers)
         if rough:
             return solutions
         if self.rounded:
             doubtful = np.arange(len(start))
         else:
-            doubtful = np.flatnonzero(self.pieced.doubtful(solutions, data, low, high))
+            doubtful = np.flatnonzero(self.pieced.doubtful(solutions, inputs))
         if not len(doubtful):
             return solutions
-        arrays = [np.asarray(x, dtype=float) for x in data]
-        sharp = self.pieced.solve(
-            tasks.take(doubtful),
-            [x if x.ndim == 0 else x[doubtful] for x in arrays],
-            solutions.variables[doubtful],
-            low[doubtful],
-            high[doubtful],
-            bounds,
-            void[doubtful],
-            workers,
-        )
+        again = tasks.take(doubtful)
+        sharp = self.pieced.solve(again, inputs.take(doubtful), solutions.variables[doubtful], workers)
         # An answer to other formulas is none, but may be a design; one to the same formulas may be better.
         known, missed = solutions.take(doubtful), self.pieced.nlp_settings.missed
         lost = (known.violation <= missed) & (sharp.violation > missed)
         if self.rounded:
             solutions.converged[doubtful] = False
         else:
-            cost, before = _cost(tasks.take(doubtful), sharp), _cost(tasks.take(doubtful), known)
-            least = self.pieced.settings.gain / worth_of(tasks.take(doubtful))
+            cost, before = _cost(again, sharp), _cost(again, known)
+            least = self.pieced.settings.gain / worth_of(again)
             held = (known.violation <= missed) & known.converged
             lost |= held & (before < cost - least)
         solutions.put(doubtful[~lost], sharp.take(~lost))

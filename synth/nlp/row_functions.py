@@ -81,7 +81,7 @@ class RowFunctions:
         self.stored = sorted(k for k in read if not self.moving[k] and self.nodes[k].op != ca.OP_CONST)
         self.fixed_order = [k for k in reached(self.nodes, self.stored) if self.nodes[k].op != ca.OP_CONST]
 
-    def _sides(self, program: Program, inputs: Sequence[Any], bounds: Any, sizes: Any) -> list[Any]:
+    def _sides(self, program: Program, inputs: Sequence[Any], bounds: ca.SX, sizes: ca.SX) -> list[Any]:
         """Kind of each row: value over limit, a scaled difference, or an objective."""
         rows = self.rows
         values: dict[int, Any] = {}
@@ -186,13 +186,13 @@ def _continued_logarithm(sweeps: DerivativeSweeps, ratio: int) -> int:
     return form
 
 
-def _rounded_edge(op: int, a: Any, b: Any, edge: float) -> Any:
+def _rounded_edge(op: int, a: ca.SX, b: ca.SX, edge: float) -> Any:
     """Return the larger or smaller of two with a round edge: where both are equal, Newton steps need a curvature."""
     apart = ca.sqrt((a - b) ** 2 + edge**2 * (a**2 + b**2))
     return 0.5 * (a + b + (apart if op == ca.OP_FMAX else -apart))
 
 
-def _scalars(vector: Any) -> list[Any]:
+def _scalars(vector: ca.SX) -> list[Any]:
     return [vector[k] for k in range(vector.shape[0])]
 
 

@@ -29,12 +29,12 @@ def subtract(a: Interval, b: Interval) -> Interval:
 _least = np.minimum.reduce  # a third of the cost of np.min, which counts at some 10^4 calls per batch
 
 
-def _surely(values: Any) -> bool:
+def _surely(values: float | np.ndarray) -> bool:
     """True if no value is negative (not-a-number counts as unknown)."""
     return bool((_least(values) if np.ndim(values) else values) >= 0.0)
 
 
-def _surely_above(values: Any) -> bool:
+def _surely_above(values: float | np.ndarray) -> bool:
     """True if all values are above zero."""
     return bool((_least(values) if np.ndim(values) else values) > 0.0)
 
@@ -193,7 +193,7 @@ def angle(a: Interval, b: Interval) -> Interval:
     return np.where(inside, np.arctan(ratio[0]), -np.pi), np.where(inside, np.arctan(ratio[1]), np.pi)
 
 
-def _truth(sure: Any, never: Any) -> Interval:
+def _truth(sure: float | np.ndarray, never: float | np.ndarray) -> Interval:
     """One where surely true, 0 where surely not, and both where nothing is known."""
     return np.asarray(sure, dtype=float), 1.0 - np.asarray(never, dtype=float)
 
@@ -319,7 +319,7 @@ def back_power(r: Interval, a: Interval, b: Interval) -> Interval | None:
     return None
 
 
-def where_sure(sure: Any, r: Interval) -> Interval:
+def where_sure(sure: float | np.ndarray, r: Interval) -> Interval:
     """An interval where it is sure that it counts; elsewhere nothing is known."""
     return np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf)
 

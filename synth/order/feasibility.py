@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from synth.order.margins import Numbers
+
 TOLERANCE = 1e-6
 SLACK = 2 * TOLERANCE  # by which bounds loosen limits: what holds within the tolerance, and rounding
 SLACKS_PER_GAP = 500
@@ -27,7 +29,7 @@ class Status(StrEnum):
     FAILED = "failed"  # numerical failure
 
 
-def size_of_miss(value: Any, limit: Any, scale: Any) -> Any:
+def size_of_miss(value: Numbers, limit: Numbers, scale: Numbers) -> Any:
     """Size that people measure a miss by: the limit, unless that vanishes beside the terms.
 
     Parameters
@@ -40,7 +42,7 @@ def size_of_miss(value: Any, limit: Any, scale: Any) -> Any:
     return np.maximum(np.maximum(np.abs(value), np.abs(limit)), np.maximum(VANISHING * scale, SMALLEST))
 
 
-def missed_share(value: Any, limit: Any, sense: str, scale: Any) -> Any:
+def missed_share(value: Numbers, limit: Numbers, sense: str, scale: Numbers) -> Any:
     """Share by which a limit is missed, comparable between limits; not positive where it holds.
 
     Of a limit that is missed it is 1 - 1/utilisation where both sides are positive, and finite where they are not.
@@ -72,7 +74,7 @@ def slack_for(gap: float) -> float:
     return min(SLACK, gap / SLACKS_PER_GAP)
 
 
-def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
+def residual(value: Numbers, limit: Numbers, sense: str, scale: Numbers) -> Any:
     """Return the signed, scaled violation of a limit; positive = violated.
 
     A share of its terms where these are larger than the sides: what holds is told by it, but not which of two limits is
@@ -97,12 +99,12 @@ def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
     return difference / size
 
 
-def holds(residuals: Any, guard: bool, tolerance: Any = TOLERANCE) -> Any:
+def holds(residuals: Numbers, guard: bool, tolerance: Numbers = TOLERANCE) -> Any:
     """True if a limit holds: within the tolerance, for a guard strictly."""
     return residuals < 0.0 if guard else residuals <= tolerance
 
 
-def utilisation(value: Any, limit: Any, sense: str) -> Any:
+def utilisation(value: Numbers, limit: Numbers, sense: str) -> Any:
     """Used share of a limit, for people: value/limit, or limit/value for ``at_least``.
 
     Where a side is not positive it is 0 (holds) or infinite (violated); an equality that holds counts as 1.

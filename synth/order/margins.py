@@ -8,9 +8,11 @@ missed by (``synth.order.feasibility``), what the search takes for equal inside 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+
+Numbers: TypeAlias = "float | np.ndarray"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +41,7 @@ class Margins:
 MARGINS = Margins()
 
 
-def below(ends: Any, relative: float, absolute: float = 0.0) -> Any:
+def below(ends: Numbers, relative: float, absolute: float = 0.0) -> Any:
     """Return ends moved down by a share of their size, whatever their sign.
 
     Parameters
@@ -59,7 +61,7 @@ def below(ends: Any, relative: float, absolute: float = 0.0) -> Any:
     return np.minimum(ends * (1 - relative), ends * (1 + relative)) - absolute
 
 
-def above(ends: Any, relative: float, absolute: float = 0.0) -> Any:
+def above(ends: Numbers, relative: float, absolute: float = 0.0) -> Any:
     """Return ends moved up, as :func:`below` moves them down.
 
     Examples
@@ -70,7 +72,7 @@ def above(ends: Any, relative: float, absolute: float = 0.0) -> Any:
     return np.maximum(ends * (1 + relative), ends * (1 - relative)) + absolute
 
 
-def within(values: Any, low: Any, high: Any, relative: float, absolute: float = 0.0) -> Any:
+def within(values: Numbers, low: Numbers, high: Numbers, relative: float, absolute: float = 0.0) -> Any:
     """Tell which values lie between two ends, both moved outward.
 
     Examples

@@ -24,26 +24,26 @@ class Ref:
 Expr: TypeAlias = Any  # a Ref, or a float or bool that is the same in all boxes
 
 
-def _erf(x: Any, out: Any = None) -> Any:
+def _erf(x: np.ndarray, out: np.ndarray | None = None) -> Any:
     from scipy.special import erf  # only formulas that name it need it
 
     return erf(x, out) if out is not None else erf(x)
 
 
-def _minimum(a: Any, b: Any, out: Any = None) -> Any:
+def _minimum(a: np.ndarray, b: np.ndarray, out: np.ndarray | None = None) -> Any:
     return np.minimum(a, b, out=out)  # these two take no third argument by position
 
 
-def _maximum(a: Any, b: Any, out: Any = None) -> Any:
+def _maximum(a: np.ndarray, b: np.ndarray, out: np.ndarray | None = None) -> Any:
     return np.maximum(a, b, out=out)
 
 
-def _choose(mask: Any, yes: Any, no: Any, out: np.ndarray) -> None:
+def _choose(mask: np.ndarray, yes: np.ndarray, no: np.ndarray, out: np.ndarray) -> None:
     np.copyto(out, no)
     np.copyto(out, yes, where=mask)
 
 
-def _as_number(mask: Any, out: np.ndarray) -> None:
+def _as_number(mask: np.ndarray, out: np.ndarray) -> None:
     np.copyto(out, mask)
 
 
@@ -238,7 +238,7 @@ class Kernel:
     def __len__(self) -> int:
         return len(self._plan)
 
-    def _constant(self, value: Any) -> int:
+    def _constant(self, value: float | bool) -> int:
         key = (type(value), value if value == value else "nan")
         if key not in self._constants:
             self._constants[key] = len(self._slots)

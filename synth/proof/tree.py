@@ -50,7 +50,7 @@ class ProofBoxes:
     def __len__(self) -> int:
         return int(self.discrete.shape[1])
 
-    def take(self, which: Any) -> ProofBoxes:
+    def take(self, which: np.ndarray | slice) -> ProofBoxes:
         """Boxes of a mask or of positions."""
         return ProofBoxes(self.real[:, which], self.discrete[:, which])
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 from synth.declaration import Declaration
 from synth.declaration.records import Part
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
-from synth.tables.catalogs import Catalogs
+from synth.question.arguments import UserTables
+from synth.tables.catalogs import Catalogs, KeptRows
 
 ALIKE = 0.75  # of two names of columns, of which one may be a misspelling of the other: `density` and `densty` are 0.92
 _shipped: dict[str, Catalogs] = {}
@@ -19,9 +19,9 @@ _shipped: dict[str, Catalogs] = {}
 
 def catalogs_for(
     problem: DesignProblem,
-    spec: Any,
+    spec: UserTables,
     base: Path | None = None,
-    kept: Mapping[str, Sequence[Mapping[str, Any]]] | None = None,
+    kept: KeptRows | None = None,
 ) -> Catalogs:
     """Return catalogues for what the user gave with a question.
 
@@ -115,7 +115,7 @@ def meant_by(name: str, known: Iterable[str]) -> str | None:
     return folded[close[0]] if close else None
 
 
-def as_catalogs(spec: Any) -> Catalogs:
+def as_catalogs(spec: UserTables) -> Catalogs:
     """Return catalogues for what the user gave; the shipped ones are made once."""
     if isinstance(spec, Catalogs):
         return spec

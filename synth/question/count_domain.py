@@ -8,9 +8,9 @@ stand in one list, both hold. A text in square brackets, ``"[8, 12, 16]"``, is s
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence, Sized
 from collections.abc import Set as AbstractSet
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from synth.units import parse_quantity
 COMPARES = re.compile(r"^\s*[<>=]|\.\.")
 
 
-def entries(value: Any) -> list[Any]:
+def entries(value: object) -> list[Any]:
     """Conditions on one quantity, entry by entry: a list as it stands, a text in brackets taken apart.
 
     Examples
@@ -46,19 +46,19 @@ def entries(value: Any) -> list[Any]:
     return [value]
 
 
-def compares(entry: Any) -> bool:
+def compares(entry: object) -> bool:
     """True if an entry is a limit, with a sign or a range, and no value of a set."""
     return isinstance(entry, str) and COMPARES.search(entry) is not None
 
 
-def is_list(value: Any) -> bool:
+def is_list(value: object) -> TypeGuard[str | Collection[object]]:
     """True if a list of entries is meant: a list, or a text in square brackets."""
     if isinstance(value, str):
         return value.strip().startswith("[")
     return isinstance(value, (list, tuple, range, np.ndarray, AbstractSet))
 
 
-def values_of_set(count: Count, value: Any, field: str) -> np.ndarray:
+def values_of_set(count: Count, value: object, field: str) -> np.ndarray:
     """Return the steps of a count that a set allows, in rising order.
 
     Parameters
@@ -75,7 +75,7 @@ def values_of_set(count: Count, value: Any, field: str) -> np.ndarray:
         When the set is empty, or one of it is no step of the count.
     """
     steps, label = count.values, f"{field}: {count.name}"
-    if not isinstance(value, str) and len(value) > INPUT_LIMITS.listed:
+    if isinstance(value, Sized) and not isinstance(value, str) and len(value) > INPUT_LIMITS.listed:
         raise InputError(label, f"{len(value)} values", f"at most {INPUT_LIMITS.listed}")
     given = [entry for entry in entries(value) if not compares(entry)]
     if not given:
@@ -111,7 +111,7 @@ def stated(asked: Mapping[Any, Any] | None) -> dict[Any, Any]:
     return {name: stated_value(value) for name, value in (asked or {}).items()}
 
 
-def stated_value(value: Any) -> Any:
+def stated_value(value: object) -> Any:
     """Conditions on one name as files keep them."""
     if is_list(value) and not isinstance(value, str):
         return [stated_value(entry) for entry in entries(value)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class Instance(SearchSpace):
         labels = {c.name: c.labels for c in model.declaration.choices.values()}
         super().__init__(model, ranges, limits, selection, Combinations(selection, labels))
 
-    def _traced(self, given: frozenset[str], rules: Mapping[str, Any]) -> tuple[tuple[SlotComparison, ...], Model]:
+    def _traced(self, given: frozenset[str], rules: Mapping[str, object]) -> tuple[tuple[SlotComparison, ...], Model]:
         """Return the conditions that compare slots, and the model that refuses what they exclude."""
         plain = self.problem.model(given, self.catalogs)
         slots = plain.declaration.slots

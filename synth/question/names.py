@@ -12,6 +12,7 @@ from synth.declaration import Declaration, RequirementRecord
 from synth.errors import InputError
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
+from synth.question.arguments import Requirements
 from synth.tables.catalogs import Catalogs
 from synth.units import TORQUE_OF_POWER, parse_quantity, parse_unit
 
@@ -24,7 +25,7 @@ def _declared(family: type[DesignProblem], options: tuple[tuple[str, str], ...],
     return family(**dict(options)).declaration(frozenset(), catalogs)
 
 
-def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
+def as_mapping(value: object, field: str, example: str) -> Mapping[str, Any]:
     """Mapping of names to values; nothing given is an empty mapping.
 
     Raises
@@ -39,7 +40,7 @@ def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
     return value
 
 
-def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs) -> dict[str, Any]:
+def known_requirements(problem: DesignProblem, requirements: Requirements, catalogs: Catalogs) -> dict[str, Any]:
     """Return the requirements by public name; values of None count as not given.
 
     Raises
@@ -60,7 +61,7 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     return result
 
 
-def requirement_named(word: str, value: Any, problem: DesignProblem, model: Model, catalogs: Catalogs) -> str:
+def requirement_named(word: str, value: object, problem: DesignProblem, model: Model, catalogs: Catalogs) -> str:
     """Return the public name of a requirement.
 
     Raises
@@ -74,7 +75,7 @@ def requirement_named(word: str, value: Any, problem: DesignProblem, model: Mode
     return model.name_of(word, "requirements", list(model.declaration.requirements), "a requirement")
 
 
-def refuse_power(word: str, value: Any, requirements: Collection[RequirementRecord]) -> None:
+def refuse_power(word: str, value: object, requirements: Collection[RequirementRecord]) -> None:
     """Refuse a power where a torque is asked, and say how that follows from it.
 
     Parameters
@@ -99,7 +100,7 @@ def refuse_power(word: str, value: Any, requirements: Collection[RequirementReco
         raise InputError(f"requirement {word}", value, right, ("requirements", word))
 
 
-def _is_power(value: Any) -> bool:
+def _is_power(value: object) -> bool:
     if not isinstance(value, str) or not value.strip()[-1:].isalpha():
         return False  # a bare number is one of anything
     try:
@@ -109,7 +110,9 @@ def _is_power(value: Any) -> bool:
     return True
 
 
-def _refuse_of_other_options(problem: DesignProblem, word: str, value: Any, model: Model, catalogs: Catalogs) -> None:
+def _refuse_of_other_options(
+    problem: DesignProblem, word: str, value: object, model: Model, catalogs: Catalogs
+) -> None:
     """Refuse a requirement that the problem has with another value of one of its options, and say with which.
 
     Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TypeGuard
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from synth.tables.table import Table
 from synth.text.numbers import typed_number
 
 
-def select(model: Model, catalogs: Catalogs, rules: Mapping[str, Any], limits: UserLimits) -> Selection:
+def select(model: Model, catalogs: Catalogs, rules: Mapping[str, object], limits: UserLimits) -> Selection:
     """Parts and values left by slots, rules, limits and pins; refusals of the family are not applied here.
 
     Parameters
@@ -82,7 +82,7 @@ def _meets_once(text: str, table: Table) -> np.ndarray:
     return table.once(("meets", text), partial(_meets, text, table))
 
 
-def _undecided(rule: Any, table: Table) -> np.ndarray:
+def _undecided(rule: object, table: Table) -> np.ndarray:
     """Rows of which an empty cell decides whether they meet a rule: none where it is no condition on columns."""
     if _is_condition(rule, table):
         condition = parse_condition(rule).local()
@@ -97,7 +97,7 @@ def _undecided_of_user(text: str, table: Table) -> np.ndarray:
 
 
 def _rows_of(
-    part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
+    part: Part, table: Table, wanted: Mapping[str, object], limits: UserLimits, selection: Selection
 ) -> np.ndarray:
     """Rows of the table that may fill a slot; those that are not complete are noted."""
     # Of shipped rows the family knows which its conditions leave out; a user learns which of theirs lack what decides.
@@ -133,7 +133,7 @@ def _rows_of(
 
 
 def _refuse_empty(
-    part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
+    part: Part, table: Table, wanted: Mapping[str, object], limits: UserLimits, selection: Selection
 ) -> None:
     """Say why no row is left for a slot: by which condition, rule or missing value."""
     asked = [wanted[part.slot]] if part.slot in wanted else []
@@ -166,12 +166,12 @@ def _meets(text: str, table: Table) -> np.ndarray:
     return condition.mask(table)
 
 
-def _is_condition(rule: Any, table: Table) -> bool:
+def _is_condition(rule: object, table: Table) -> TypeGuard[str]:
     """Whether a rule of the user is a condition on columns."""
     return isinstance(rule, str) and rule not in table.designations and may_be_condition(rule)
 
 
-def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
+def _part_rule(part: Part, table: Table, rule: object) -> np.ndarray:
     """Rows that a rule of the user allows: a condition, a designation, or a list of these."""
     keep = np.zeros(len(table), dtype=bool)
     if _is_condition(rule, table):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -52,7 +51,9 @@ def _refused(model: Model, values: RequirementValues, refusal: Refusal) -> Refus
     return RefusedError(refusal.code, ", ".join(shown.values()), refusal.message, path)
 
 
-def leave_out_refused(model: Model, values: RequirementValues, selection: Selection, fixed: Mapping[str, Any]) -> None:
+def leave_out_refused(
+    model: Model, values: RequirementValues, selection: Selection, fixed: Mapping[str, object]
+) -> None:
     """Leave out rows, counts and choices that a refusal over one of them forbids; note the refusals over several.
 
     Parameters
@@ -83,7 +84,7 @@ def _leave_out_one(
     refusal: Refusal,
     name: str,
     known: Mapping[str, float],
-    fixed: Mapping[str, Any],
+    fixed: Mapping[str, object],
 ) -> None:
     """Leave out what a refusal forbids of one slot, count or choice."""
     bad = np.array(

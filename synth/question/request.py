@@ -12,6 +12,7 @@ import numpy as np
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import Family, Limits, Objectives, PartRules, Pins, Requirements, Scatter, UserTables
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.question.count_domain import stated
 from synth.question.names import as_mapping
@@ -61,12 +62,12 @@ class Request:
     """
 
     problem: DesignProblem
-    requirements: Mapping[str, Any]
+    requirements: Requirements
     catalogs: Catalogs = field(default_factory=lambda: as_catalogs(None))
-    objectives: Any = None
-    parts: Mapping[str, Any] = field(default_factory=dict)
-    limits: Mapping[str, Any] = field(default_factory=dict)
-    fix: Mapping[str, Any] = field(default_factory=dict)
+    objectives: Objectives = None
+    parts: PartRules = field(default_factory=dict)
+    limits: Limits = field(default_factory=dict)
+    fix: Pins = field(default_factory=dict)
     weights: Mapping[str, float] = field(default_factory=dict)
     robust: Uncertainty | None = None
     grid: bool = True
@@ -80,10 +81,10 @@ class Request:
     @classmethod
     def of(
         cls,
-        p: str | type[DesignProblem] | DesignProblem,
-        requirements: Mapping[str, Any],
-        catalogs: Any = None,
-        robust: Any = None,
+        p: Family,
+        requirements: Requirements,
+        catalogs: UserTables = None,
+        robust: Scatter | None = None,
         *,
         folder: Path | None = None,
         **asked: Any,
@@ -118,7 +119,7 @@ class Request:
     @classmethod
     def from_json(
         cls,
-        content: Mapping[str, Any],
+        content: Mapping[str, object],
         where: str = "request",
         folder: Path | None = None,
         problem: DesignProblem | None = None,
@@ -185,7 +186,7 @@ class Request:
         return {slot: rule if isinstance(rule, str) else list(rule) for slot, rule in self.parts.items()}
 
 
-def check_grid(grid: Any) -> bool:
+def check_grid(grid: object) -> bool:
     """Return whether makeable values are asked for.
 
     Raises
@@ -198,7 +199,7 @@ def check_grid(grid: Any) -> bool:
     return bool(grid)
 
 
-def listed_objectives(objectives: Any) -> Any:
+def listed_objectives(objectives: Objectives) -> Any:
     """Return objectives as files keep them."""
     if objectives is None or isinstance(objectives, Mapping):
         return objectives if objectives is None else dict(objectives)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from numbers import Real
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeGuard
 
 from synth.errors import Described, InputError, at, whole_number
 from synth.text.input_limits import INPUT_LIMITS
@@ -76,7 +76,7 @@ class RequestField:
     metavar: str | None = None
     needed: str = ""
 
-    def read(self, where: str, value: Any) -> Any:
+    def read(self, where: str, value: object) -> Any:
         """Value as it is used; ``where`` names the field in messages.
 
         Raises
@@ -96,12 +96,12 @@ class RequestField:
 # ---- readers --------------------------------------------------------------------------------------------------------
 
 
-def is_gap(value: Any) -> bool:
+def is_gap(value: object) -> TypeGuard[float]:
     """True if something can be the gap of a question: by how much a design may be better that is not excluded."""
     return is_number(value) and LEAST_GAP <= value <= LARGEST_GAP
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """Whether something is a number that a float holds, of any type; words and truth values are none."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
@@ -111,7 +111,7 @@ def is_number(value: Any) -> bool:
         return False
 
 
-def shown_kind(value: Any) -> Any:
+def shown_kind(value: object) -> Any:
     """Excerpt of a value that is of the wrong kind."""
     if value is None:
         return Described("nothing")
@@ -125,7 +125,7 @@ def shown_kind(value: Any) -> Any:
 def text(right: str = "a name") -> Reader:
     """Reader of a text that is not empty; ``right`` is what messages expect."""
 
-    def read(where: str, value: Any) -> str:
+    def read(where: str, value: object) -> str:
         if not isinstance(value, str) or not value.strip():
             raise InputError(where, shown_kind(value), right)
         return value
@@ -136,7 +136,7 @@ def text(right: str = "a name") -> Reader:
 _name = text()
 
 
-def _family(where: str, value: Any) -> Any:
+def _family(where: str, value: object) -> Any:
     """Return a name, or several: names, and mappings with what concerns one family alone."""
     if not isinstance(value, (list, tuple)):
         return _name(where, value)
@@ -149,7 +149,7 @@ def _family(where: str, value: Any) -> Any:
     return tuple(entries)
 
 
-def _one_family(where: str, entry: Any) -> Any:
+def _one_family(where: str, entry: object) -> Any:
     if not isinstance(entry, Mapping):
         return _name(where, entry)
     for key in entry:
@@ -166,7 +166,7 @@ def _one_family(where: str, entry: Any) -> Any:
 
 
 def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
-    def check(where: str, value: Any) -> Mapping[str, Any]:
+    def check(where: str, value: object) -> Mapping[str, Any]:
         if value is None:
             return MappingProxyType({})  # a key with nothing under it: all its lines are commented out
         if not isinstance(value, Mapping):
@@ -180,7 +180,7 @@ def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
     return check
 
 
-def _options(where: str, value: Any) -> Mapping[str, str]:
+def _options(where: str, value: object) -> Mapping[str, str]:
     options = dict(_mapping("guide_model: cz")(where, value))
     for name, chosen in options.items():
         if isinstance(chosen, bool):
@@ -194,7 +194,7 @@ def _options(where: str, value: Any) -> Mapping[str, str]:
 def _scalars(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
     """Return a check of names with one value; ``sets``: or a list of numbers and texts."""
 
-    def check(where: str, value: Any) -> Mapping[str, Any]:
+    def check(where: str, value: object) -> Mapping[str, Any]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
             if sets and isinstance(entry, (list, tuple)):
@@ -216,7 +216,7 @@ def _check_set(where: str, name: str, entries: Sequence[Any]) -> None:
 def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
     """Return a check of names with a text or a list of texts; ``sets``: numbers may stand in lists as well."""
 
-    def check(where: str, value: Any) -> Mapping[str, Any]:
+    def check(where: str, value: object) -> Mapping[str, Any]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
             listed = isinstance(entry, (list, tuple))
@@ -231,7 +231,7 @@ def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str
     return check
 
 
-def _objectives(where: str, value: Any) -> Any:
+def _objectives(where: str, value: object) -> Any:
     example = "names, for example '[mass, actuation_force]', or names with min or max, for example '{mass: min}'"
     if value is None:
         return None
@@ -246,7 +246,7 @@ def _objectives(where: str, value: Any) -> Any:
     return tuple(value)
 
 
-def _catalogs(where: str, value: Any) -> Any:
+def _catalogs(where: str, value: object) -> Any:
     if value is None or isinstance(value, str):
         return value
     expected = "a folder, or a mapping such as 'friction_materials: my_materials.csv' or 'core_plates: [+, more.csv]'"
@@ -259,7 +259,7 @@ def _catalogs(where: str, value: Any) -> Any:
     return MappingProxyType(dict(value))
 
 
-def _rows(where: str, value: Any) -> Mapping[str, Mapping[str, Any]]:
+def _rows(where: str, value: object) -> Mapping[str, Mapping[str, Any]]:
     """Return rows of tables as a design has kept them, in SI: TABLE/DESIGNATION -> column -> number or text."""
     rows = _mapping("units/B: {designation: B, table: units, mass: 4.0, hash: ...}")(where, value)
     for name, row in rows.items():
@@ -274,7 +274,7 @@ def _rows(where: str, value: Any) -> Mapping[str, Mapping[str, Any]]:
     return rows
 
 
-def _weights(where: str, value: Any) -> Mapping[str, float]:
+def _weights(where: str, value: object) -> Mapping[str, float]:
     weights = _mapping("mass: 2")(where, value)
     for name, weight in weights.items():
         if not is_number(weight) or weight < 0:
@@ -282,7 +282,7 @@ def _weights(where: str, value: Any) -> Mapping[str, float]:
     return weights
 
 
-def _gap(where: str, value: Any) -> float | None:
+def _gap(where: str, value: object) -> float | None:
     if value is None:
         return None
     if not is_gap(value):
@@ -290,13 +290,13 @@ def _gap(where: str, value: Any) -> float | None:
     return float(value)
 
 
-def _grid(where: str, value: Any) -> bool | None:
+def _grid(where: str, value: object) -> bool | None:
     if value is None or isinstance(value, bool):
         return value
     raise InputError(where, shown_kind(value), "true (makeable sizes) or false")
 
 
-def _seconds(where: str, value: Any) -> float | None:
+def _seconds(where: str, value: object) -> float | None:
     if value is None:
         return None
     if isinstance(value, str):
@@ -339,7 +339,7 @@ def whole_schema(least: int, most: int) -> Schema:
 def whole(least: int, most: int) -> ValueKind:
     """Whole number between two bounds."""
 
-    def read(where: str, value: Any) -> int | None:
+    def read(where: str, value: object) -> int | None:
         return None if value is None else whole_number(shown_kind(value), where, most, least)
 
     return ValueKind(whole_schema(least, most), read, int)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -40,7 +39,7 @@ class RequirementValues:
     rows: Mapping[str, float]
 
     @classmethod
-    def read(cls, model: Model, catalogs: Catalogs, asked: Mapping[str, Any]) -> RequirementValues:
+    def read(cls, model: Model, catalogs: Catalogs, asked: Mapping[str, object]) -> RequirementValues:
         """Return the values that a question states.
 
         Parameters
@@ -105,7 +104,7 @@ def _complete_rows(model: Model, catalogs: Catalogs) -> dict[str, float]:
     return values
 
 
-def _numbers(model: Model, asked: Mapping[str, Any], rows: Mapping[str, float]) -> dict[str, float]:
+def _numbers(model: Model, asked: Mapping[str, object], rows: Mapping[str, float]) -> dict[str, float]:
     """Return the SI value of every requirement in force; defaults are made of what stands before them."""
     values = dict[str, float]()
     for r in model.declaration.requirements.values():
@@ -123,7 +122,7 @@ def _numbers(model: Model, asked: Mapping[str, Any], rows: Mapping[str, float]) 
     return values
 
 
-def value_of(r: RequirementRecord, typed: Any) -> float:
+def value_of(r: RequirementRecord, typed: object) -> float:
     """Value of a requirement as typed, in SI.
 
     Raises
@@ -152,7 +151,7 @@ def _example(requirement: RequirementRecord) -> str:
     return f"'{shown:g} {requirement.unit}'"
 
 
-def _check_range(r: RequirementRecord, typed: Any, value: float) -> None:
+def _check_range(r: RequirementRecord, typed: object, value: float) -> None:
     if within(value, r.lower, r.upper, MARGINS.conversion):
         return
     low, high = typed_quantity(r.lower, r.unit), typed_quantity(r.upper, r.unit)

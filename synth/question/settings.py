@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, TypedDict
 
 from synth.errors import InputError
 from synth.question.request_fields import FIELDS, SEARCHED
 from synth.question.spec_keys import read_keys
 
-Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
 LEAST_SECONDS = 1e-3  # for a search when all that goes before it has taken the time there is
+
+
+class ProgressState(TypedDict, total=False):
+    """How far a search is; ``done`` from 0 to 1."""
+
+    stage: str
+    done: float
+    combinations: int
+    incumbents: int
+    message: str
+    columns: Sequence[str]  # of the known designs, now and then
+    points: Sequence[object]
+
+
+Progress = Callable[[ProgressState], None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +76,7 @@ class SearchSettings:
         return replace(self, time_limit=seconds)
 
     @classmethod
-    def from_json(cls, content: Mapping[str, Any], where: str = "settings") -> SearchSettings:
+    def from_json(cls, content: Mapping[str, object], where: str = "settings") -> SearchSettings:
         """Return the settings that a spec states; where it states none they are the usual ones.
 
         Parameters
@@ -85,7 +99,7 @@ class SearchSettings:
         return {name: value for name, value in asdict(self).items() if value is not None}
 
 
-def check_progress(progress: Any) -> None:
+def check_progress(progress: object) -> None:
     """Refuse what cannot be told how far a search is.
 
     Raises

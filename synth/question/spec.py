@@ -101,7 +101,7 @@ class Spec:
         return {name: value for name, value in values.items() if value is not None and value != {}}
 
 
-def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
+def spec_from_mapping(content: object, file: str, folder: Path) -> Spec:
     """Check a mapping that was read from a file (or came another way) and make a Spec of it.
 
     Parameters
@@ -129,7 +129,7 @@ class _StrictLoader(yaml.SafeLoader):
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012  (PyYAML's own habit)
 
-    def compose_node(self, parent: Any, index: Any) -> Any:
+    def compose_node(self, parent: yaml.Node | None, index: int) -> Any:
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         if self.check_event(yaml.events.AliasEvent):
             raise yaml.composer.ComposerError(None, None, "an alias (*name); write the value out", event.start_mark)
@@ -137,7 +137,7 @@ class _StrictLoader(yaml.SafeLoader):
             raise yaml.composer.ComposerError(None, None, "a tag (!name)", event.start_mark)
         return super().compose_node(parent, index)
 
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen: set[str] = set()
         for key, _ in node.value:
             if isinstance(key, yaml.ScalarNode):
@@ -158,7 +158,7 @@ for _tag, _pattern, _first in (
     _StrictLoader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
 
 
-def _decimal(loader: yaml.SafeLoader, node: Any) -> int:
+def _decimal(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
     text = loader.construct_scalar(node)
     try:
         return int(text)  # PyYAML's own would read 010 as eight
@@ -296,7 +296,7 @@ _SLIPS = (
 )
 
 
-def _yaml_advice(text: str, mark: Any, problem: str, slip: _Slip) -> str:
+def _yaml_advice(text: str, mark: yaml.Mark | None, problem: str, slip: _Slip) -> str:
     """Suggestion for slips that happen often."""
     lines = text.splitlines()
     line = lines[mark.line] if mark is not None and mark.line < len(lines) else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from synth.errors import InputError, gathered, refuse_gathered
@@ -22,7 +22,7 @@ def no_family(where: str) -> InputError:
     return InputError(f"{where}: family", None, f"the name of a family: {', '.join(family_names())}", ("family",))
 
 
-def refuse_several(family: Any, where: str) -> None:
+def refuse_several(family: object, where: str) -> None:
     """Refuse several families; ``where`` is the name of the spec that states them."""
     if not isinstance(family, (str, list, tuple)):
         raise InputError(f"{where}: family", shown_kind(family), "a name", ("family",))
@@ -30,30 +30,30 @@ def refuse_several(family: Any, where: str) -> None:
         raise InputError(f"{where}: family", shown_families(family), ONE_FAMILY, ("family",))
 
 
-def refuse_values(values: Mapping[str, Any] | None, where: str) -> None:
+def refuse_values(values: Mapping[str, object] | None, where: str) -> None:
     """Refuse a given design where a question is meant; ``where`` is the name of the spec that states it."""
     if values is not None:
         raise InputError(f"{where}: values", ", ".join(values), A_QUESTION, ("values",))
 
 
-def asks_several(family: Any) -> bool:
+def asks_several(family: object) -> bool:
     """True if several families are asked."""
     return not isinstance(family, str) or family == "any"
 
 
-def shown_families(family: Any) -> str:
+def shown_families(family: str | Iterable[object]) -> str:
     """Return the family or the families in words."""
     entries = [family] if isinstance(family, str) else family
     return ", ".join(str(x["family"]) if isinstance(x, Mapping) else str(x) for x in entries)
 
 
-def hint_at_key(key: Any) -> str:
+def hint_at_key(key: object) -> str:
     """Return the key that may be meant, or all that there are."""
     close = difflib.get_close_matches(str(key), FIELDS, n=1, cutoff=0.6)
     return f"{close[0]}" if close else "one of " + ", ".join(FIELDS)
 
 
-def read_keys(content: Any, where: str, keys: Collection[str]) -> dict[str, Any]:
+def read_keys(content: object, where: str, keys: Collection[str]) -> dict[str, Any]:
     """Checked content of some keys of a spec; None or an empty mapping where nothing is stated.
 
     Parameters

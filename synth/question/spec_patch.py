@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 
-def patched(spec: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]:
+def patched(spec: Mapping[str, object], patch: Mapping[str, object]) -> dict[str, Any]:
     """Return a spec with the entries of a patch in place of its own.
 
     Parameters

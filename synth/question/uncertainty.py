@@ -58,7 +58,7 @@ class Uncertainty:
         return replace(self, scenarios=MappingProxyType(joined))
 
 
-def read_block(robust: Any, where: str = "robust") -> Uncertainty:
+def read_block(robust: object, where: str = "robust") -> Uncertainty:
     """Read a ``robust`` block.
 
     Parameters
@@ -115,7 +115,7 @@ def read_block(robust: Any, where: str = "robust") -> Uncertainty:
     )
 
 
-def read_remaining(robust: Any, where: str = "robust") -> Uncertainty | None:
+def read_remaining(robust: object, where: str = "robust") -> Uncertainty | None:
     """Read a block without what has "none" for a range; None where there is none, or nothing is left that scatters.
 
     Raises
@@ -135,7 +135,7 @@ def read_remaining(robust: Any, where: str = "robust") -> Uncertainty | None:
     return None if block != robust and not left else read_block(block, where)
 
 
-def _scattering(ranges: Mapping[str, Any]) -> dict[str, Any]:
+def _scattering(ranges: Mapping[str, object]) -> dict[str, Any]:
     return {k: v for k, v in ranges.items() if not (isinstance(v, str) and words_of(v) == NONE)}
 
 
@@ -154,22 +154,22 @@ def check_number_of_ranges(ranges: int, where: str) -> None:
         raise InputError(where, f"{ranges} ranges", right, ("robust",))
 
 
-def _samples(value: Any, field: str) -> int:
-    number = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not number or not LEAST_SAMPLES <= value <= INPUT_LIMITS.samples or value & (value - 1):
+def _samples(value: object, field: str) -> int:
+    number = value if isinstance(value, (int, np.integer)) and not isinstance(value, bool) else 0
+    if not LEAST_SAMPLES <= number <= INPUT_LIMITS.samples or number & (number - 1):
         right = f"a power of 2 from {LEAST_SAMPLES} to {INPUT_LIMITS.samples}, such as {SAMPLES}"
         raise InputError(field, value, right)
-    return int(value)
+    return int(number)
 
 
-def _confidence(value: Any, field: str) -> float:
+def _confidence(value: object, field: str) -> float:
     confidence = parse_quantity(value, "-", field)
     if not 0.5 <= confidence <= 0.9999:
         raise InputError(field, value, "a share from 50 % to 99.99 %, for example 95 %")
     return confidence
 
 
-def _scenarios(value: Any, field: str) -> Mapping[str, tuple[tuple[float, ...], ...]]:
+def _scenarios(value: object, field: str) -> Mapping[str, tuple[tuple[float, ...], ...]]:
     expected = "limits with lists of positions from 0 to 1 in the ranges, as a result repeats them"
     if not isinstance(value, Mapping):
         raise InputError(field, value, expected)

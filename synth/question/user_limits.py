@@ -13,6 +13,7 @@ from synth.errors import InputError, at
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.order.margins import MARGINS, above
+from synth.question.arguments import Limits, Pins
 from synth.question.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.question.variable_ranges import VariableRanges
 from synth.text.input_limits import INPUT_LIMITS
@@ -53,9 +54,7 @@ class UserLimits:
         Slot, count or choice -> the designation, SI value or label that it is pinned to.
     """
 
-    def __init__(
-        self, model: Model, limits: Mapping[str, Any], fix: Mapping[str, Any], ranges: VariableRanges, restrict: bool
-    ) -> None:
+    def __init__(self, model: Model, limits: Limits, fix: Pins, ranges: VariableRanges, restrict: bool) -> None:
         self._model, self._ranges = model, ranges
         self.judging: list[Constraint] = []
         self.bounding: list[Constraint] = []
@@ -95,7 +94,7 @@ class UserLimits:
         """Return the sets of values that are allowed of a count."""
         return [steps for name, steps in self.count_sets if name == count]
 
-    def _limit(self, name: str, conditions: Any, restrict: bool) -> None:
+    def _limit(self, name: str, conditions: object, restrict: bool) -> None:
         model = self._model
         for sense, bound, place in read_limits(name, model.units[name], conditions):
             with at("limits", name, *place):
@@ -110,7 +109,7 @@ class UserLimits:
             with at("limits", name):
                 self._allow(name, conditions, "limits")
 
-    def _asks_set(self, name: str, conditions: Any) -> bool:
+    def _asks_set(self, name: str, conditions: object) -> bool:
         """True if what is asked of a quantity holds a set of allowed values, which only a count can have."""
         if not is_list(conditions) or (len(conditions) and all(map(compares, entries(conditions)))):
             return False
@@ -121,7 +120,7 @@ class UserLimits:
             raise InputError(f"limits: {name}", conditions, example, path)
         return True
 
-    def _allow(self, count: str, values: Any, field: str) -> None:
+    def _allow(self, count: str, values: object, field: str) -> None:
         self.count_sets.append((count, values_of_set(self._model.declaration.counts[count], values, field)))
 
     def _judge(self, limit: Constraint) -> None:
@@ -137,7 +136,7 @@ class UserLimits:
                 raise InputError(f"limits: {name}", f"{other.name} and {limit.name}", right)
         self.judging.append(limit)
 
-    def _pin(self, name: str, value: Any) -> None:
+    def _pin(self, name: str, value: object) -> None:
         model, d = self._model, self._model.declaration
         if name in d.counts and is_list(value):
             self._allow(name, value, "fix")
@@ -156,14 +155,14 @@ class UserLimits:
             self._judge(model.constraint_on(name, "equal", number_si, origin=Origin.PIN))
 
 
-def check_number_of_limits(limits: Mapping[str, Any]) -> None:
+def check_number_of_limits(limits: Limits) -> None:
     """Refuse more limits than a question may have, before any of them is read."""
     count = sum(len(texts) if is_list(texts) and not isinstance(texts, str) else 1 for texts in limits.values())
     if count > INPUT_LIMITS.limits:
         raise InputError("limits", f"{count} limits", f"at most {INPUT_LIMITS.limits}", ("limits",))
 
 
-def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tuple[int, ...]]]:
+def read_limits(name: str, unit: str, texts: object) -> list[tuple[str, float, tuple[int, ...]]]:
     """Return the comparisons that the user wrote about a quantity: sense, SI value, and the position in a list."""
     several = is_list(texts)
     found = list[tuple[str, float, tuple[int, ...]]]()
@@ -176,7 +175,7 @@ def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tupl
     return found
 
 
-def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+def _read_limit(name: str, unit: str, text: object) -> list[tuple[str, float]]:
     """Limits on a quantity in a text: sense and SI value of each."""
     label = f"limits: {name}"
     if isinstance(text, str) and ".." in text:

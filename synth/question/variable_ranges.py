@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -59,7 +58,7 @@ class VariableRanges:
             right = f"limits that leave something of {shown_range(v)}"
             raise InputError(f"limits: {v.name}", typed_quantity(limit.bound, v.unit), right)
 
-    def pin(self, name: str, typed: Any, value: float) -> None:
+    def pin(self, name: str, typed: object, value: float) -> None:
         """Let a variable have one value; any other name changes nothing.
 
         Parameters

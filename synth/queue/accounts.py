@@ -134,7 +134,7 @@ class Accounts:
 
     # -- tenants -------------------------------------------------------------------------------
 
-    def tenant(self, name: str, limits: Mapping[str, Any]) -> int:
+    def tenant(self, name: str, limits: Mapping[str, object]) -> int:
         """Return the number of a tenant; one that is new gets these limits.
 
         Raises

@@ -19,6 +19,7 @@ from typing import Any, Self
 import sqlalchemy as sa
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
+from sqlalchemy.orm import DeclarativeBase
 
 from synth.errors import InputError
 from synth.queue.models import VERSION_TABLE
@@ -33,12 +34,12 @@ DISK_FULL = "53100"  # state that PostgreSQL tells where it has no room
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
 
 
-def encoded(value: Any) -> str:
+def encoded(value: object) -> str:
     """Return JSON of one form only: the same value always gives the same text."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
 
 
-def digest(value: Any) -> str:
+def digest(value: object) -> str:
     """Return the SHA-256 of a value that JSON can hold."""
     return hashlib.sha256(encoded(value).encode("utf-8", "surrogatepass")).hexdigest()
 
@@ -164,7 +165,7 @@ def _report_fault(context: sa.engine.ExceptionContext) -> None:
         raise DamagedError(file, reason) from error
 
 
-def _prepare_sqlite(connection: Any, patience: float) -> None:
+def _prepare_sqlite(connection: sqlite3.Connection, patience: float) -> None:
     cursor = connection.cursor()
     for pragma in (f"busy_timeout={1000 * patience:.0f}", "synchronous=NORMAL", "foreign_keys=ON"):
         cursor.execute(f"PRAGMA {pragma}")
@@ -172,7 +173,7 @@ def _prepare_sqlite(connection: Any, patience: float) -> None:
     cursor.close()
 
 
-def _write_ahead(cursor: Any, patience: float) -> None:
+def _write_ahead(cursor: sqlite3.Cursor, patience: float) -> None:
     """Let there be readers and one writer at a time; a killed process loses nothing that was committed.
 
     While another process writes into a file that is new, SQLite refuses to change it so without waiting at all.
@@ -364,7 +365,7 @@ class Database:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def insert_once(self, table: Any) -> Any:
+    def insert_once(self, table: type[DeclarativeBase]) -> Any:
         """Return an insert that leaves what is there already."""
         make = sqlite.insert if self.engine.dialect.name == "sqlite" else postgresql.insert
         return make(table).on_conflict_do_nothing()

@@ -173,10 +173,7 @@ class JobQueue(JobTable):
     def give_back(self, claim: Claim, owner: str) -> bool:
         """Give one unit back, to be taken again; that is no failed attempt."""
         with self.engine.begin() as connection:
-            held = connection.execute(
-                sa.update(WorkUnit).where(*held_by(claim, owner)).values(state=OPEN, owner=None, lease=None)
-            )
-        return bool(held.rowcount == 1)
+            return hand_over(connection, claim, owner, state=OPEN, owner=None)
 
     def release_dead(self, job: str | None = None) -> int:
         """Take units back from processes of this machine that are gone, without waiting for their leases."""
@@ -193,15 +190,11 @@ class JobQueue(JobTable):
     def put_back(self, job: str, claim: Claim, owner: str, error: str) -> bool:
         """Leave a whole unit to be tried again, after an attempt that ended in an error."""
         with self.engine.begin() as connection:
-            held = connection.execute(
-                sa.update(WorkUnit)
-                .where(*held_by(claim, owner))
-                .values(state=OPEN, owner=None, lease=None, attempts=claim.attempts + 1)
-            )
-            if held.rowcount == 1:
+            held = hand_over(connection, claim, owner, state=OPEN, owner=None, attempts=claim.attempts + 1)
+            if held:
                 what = f" of {len(claim.questions)} questions" if claim.questions else ""
                 insert_event(connection, job, "failed", f"attempt {claim.attempts + 1}{what}: {error}")
-        return bool(held.rowcount == 1)
+        return held
 
     def complete(self, job: str, claim: Claim, owner: str, ending: Ending) -> bool:
         """Write how a job of one unit ended, if the owner still holds the unit and the job has not ended.
@@ -212,12 +205,8 @@ class JobQueue(JobTable):
             False where another owner has the unit, or the job was cancelled; then nothing of it is written.
         """
         with self.engine.begin() as connection:
-            held = connection.execute(
-                sa.update(WorkUnit)
-                .where(*held_by(claim, owner))
-                .values(state=DONE, lease=None, attempts=claim.attempts + 1)
-            )
-            if held.rowcount == 1 and self._end_on(connection, job, ending):
+            held = hand_over(connection, claim, owner, state=DONE, attempts=claim.attempts + 1)
+            if held and self._end_on(connection, job, ending):
                 return True
             connection.rollback()
         return False
@@ -227,7 +216,7 @@ class JobQueue(JobTable):
         with self.engine.connect() as connection:
             return set(connection.scalars(sa.select(Job.id).where(Job.id.in_(list(jobs)), Job.state.in_(LIVE))))
 
-    def progress(self, job: str, state: Mapping[str, Any]) -> None:
+    def progress(self, job: str, state: Mapping[str, object]) -> None:
         """Note how far a job is; of one that has ended nothing is noted."""
         with self.engine.begin() as connection:
             connection.execute(
@@ -245,7 +234,7 @@ class JobQueue(JobTable):
 
     # -- workers -------------------------------------------------------------------------------
 
-    def sign(self, owner: str, host: str, code: str, slots: Mapping[str, Any]) -> None:
+    def sign(self, owner: str, host: str, code: str, slots: Mapping[str, object]) -> None:
         """Give a sign of life of a worker, and renew what it works on."""
         with self.engine.begin() as connection:
             seen = {"seen": moment(), "slots": dict(slots), "code": code}
@@ -284,14 +273,11 @@ class JobQueue(JobTable):
         return int(adopted.rowcount)
 
 
-def held_by(claim: Claim, owner: str) -> tuple[Any, ...]:
-    """Return the condition that a unit is still held under a claim."""
-    return (
-        WorkUnit.id == claim.unit,
-        WorkUnit.state == RUNNING,
-        WorkUnit.owner == owner,
-        WorkUnit.token == claim.token,
-    )
+def hand_over(connection: sa.Connection, claim: Claim, holder: str, **values: Any) -> bool:
+    """Write to a unit that its holder is done with; return whether it was still held under the claim."""
+    held = (WorkUnit.state == RUNNING, WorkUnit.owner == holder, WorkUnit.token == claim.token)
+    written = sa.update(WorkUnit).where(WorkUnit.id == claim.unit, *held).values(lease=None, **values)
+    return bool(connection.execute(written).rowcount == 1)
 
 
 def _free() -> sa.ColumnElement[bool]:

@@ -446,7 +446,7 @@ class JobTable(Database):
 
     # -- events --------------------------------------------------------------------------------
 
-    def add_event(self, job: str, kind: str, text: str = "", data: Mapping[str, Any] | None = None) -> None:
+    def add_event(self, job: str, kind: str, text: str = "", data: Mapping[str, object] | None = None) -> None:
         """Add an event."""
         with self.engine.begin() as connection:
             insert_event(connection, job, kind, text, data)
@@ -520,13 +520,13 @@ def _unused(keep: float | None = None) -> sa.ColumnElement[Any]:
     return sa.case((Job.expires.is_(None), None), else_=sa.func.coalesce(stays, Job.expires))
 
 
-def body_digest(body: Any) -> str:
+def body_digest(body: object) -> str:
     """Digest that tells two requests with the same idempotency key apart."""
     return digest(body)
 
 
 def insert_event(
-    connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, Any] | None = None
+    connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, object] | None = None
 ) -> None:
     """Add an event in the transaction of its cause."""
     content = None if data is None else dict(data)

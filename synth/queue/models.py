@@ -313,10 +313,10 @@ class moment(FunctionElement[float]):  # written as SQL writes functions
 
 
 @compiles(moment, "sqlite")
-def _moment_of_sqlite(element: Any, compiler: Any, **context: Any) -> str:
+def _moment_of_sqlite(element: object, compiler: object, **context: Any) -> str:
     return "((julianday('now') - 2440587.5) * 86400.0)"
 
 
 @compiles(moment, "postgresql")
-def _moment_of_postgresql(element: Any, compiler: Any, **context: Any) -> str:
+def _moment_of_postgresql(element: object, compiler: object, **context: Any) -> str:
     return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"

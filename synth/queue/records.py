@@ -126,7 +126,7 @@ class Mentioned:
     files: tuple[str, ...] = ()
 
 
-def mentioned(request: Any) -> Mentioned:
+def mentioned(request: object) -> Mentioned:
     """Jobs and tables that a request refers to; whatever is wrong with them is for ``read`` to say.
 
     A job that is mentioned may refer to tables itself: by its own request, which is asked the same way.
@@ -146,7 +146,7 @@ def mentioned(request: Any) -> Mentioned:
     return Mentioned(tables=tuple(tables), jobs=_named(job), files=_named(file))
 
 
-def _named(value: Any) -> tuple[str, ...]:
+def _named(value: object) -> tuple[str, ...]:
     return (value,) if isinstance(value, str) else ()
 
 

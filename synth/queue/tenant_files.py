@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
@@ -151,7 +150,7 @@ class TenantFiles:
 
     # -- what requests refer to ----------------------------------------------------------------
 
-    def sources(self, tenant: int, request: Any) -> Sources:
+    def sources(self, tenant: int, request: object) -> Sources:
         """Objects that a request refers to by name, as far as the tenant has them; others report what is missing.
 
         Parameters
@@ -170,7 +169,7 @@ class TenantFiles:
     def _collect(
         self,
         tenant: int,
-        request: Any,
+        request: object,
         tables: dict[str, TableText],
         records: dict[str, Mapping[str, bytes]],
         depth: int,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -76,7 +75,7 @@ def without_design(certificate: Certificate, interrupted: str) -> Status:
 
 
 def front_of(
-    question: Any,
+    question: object,
     frame: Frame,
     designs: Sequence[Design],
     certificate: Certificate,

@@ -20,7 +20,7 @@ from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import compact_json, digest_of, finite, intact
 from synth.text.numbers import percent
-from synth.text.row_cells import CODE_OF, cell_value, named_column, text_code
+from synth.text.row_cells import CODE_OF, Cell, cell_value, named_column, text_code
 
 CALCULATION_FORMAT = 1
 CALCULATION = "calculation.json"
@@ -321,7 +321,7 @@ class Calculation:
         return compact_json(self.content)
 
     @staticmethod
-    def from_json(content: Any, field: str = "calculation") -> Calculation:
+    def from_json(content: object, field: str = "calculation") -> Calculation:
         """Read a calculation.
 
         Parameters
@@ -400,7 +400,7 @@ def _input(q: NamedQuantity, design: Design) -> float:
         raise InputError(f"design: {q.name}", None, "a design of the question that is calculated") from None
 
 
-def part_value(row: Mapping[str, Any], columns: Iterable[str]) -> float:
+def part_value(row: Mapping[str, Cell], columns: Iterable[str]) -> float:
     """Cell of a row in the first of several columns that has a value.
 
     Parameters
@@ -414,18 +414,16 @@ def part_value(row: Mapping[str, Any], columns: Iterable[str]) -> float:
     return next((value for value in cells if not math.isnan(value)), math.nan)
 
 
-def _non_default_fields(record: Any) -> dict[str, Any]:
+def _non_default_fields(record: NamedQuantity | LimitRule | RemarkRule) -> dict[str, Any]:
     """Fields of a record that differ from the usual ones."""
     usual = {f.name: f.default for f in type(record).__dataclass_fields__.values()}
     kept: dict[str, Any] = {}
     for name, value in vars(record).items():
         if value != usual[name] and name in usual:
-            kept[name] = [finite(x) for x in value] if name == "bounds" else list(value) if _is_tuple(value) else value
+            kept[name] = (
+                [finite(x) for x in value] if name == "bounds" else list(value) if isinstance(value, tuple) else value
+            )
     return kept
-
-
-def _is_tuple(value: Any) -> bool:
-    return isinstance(value, tuple)
 
 
 def _read(kind: type[Any], entry: Mapping[str, Any]) -> Any:

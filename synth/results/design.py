@@ -16,6 +16,7 @@ from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
 from synth.results.plain import finite
 from synth.results.ratings import DesignRating
+from synth.text.row_cells import Cell
 from synth.units import finite_from_si, header, in_words, typed_quantity, written_quantity
 
 SOURCE = re.compile(r" \[[^\[\]]*\]$")  # behind a remark
@@ -28,7 +29,7 @@ class PartRow(Mapping[str, Any]):
     """
 
     def __init__(
-        self, table: str, digest: str, columns: Mapping[str, Any], units: Mapping[str, str] = MappingProxyType({})
+        self, table: str, digest: str, columns: Mapping[str, Cell], units: Mapping[str, str] = MappingProxyType({})
     ) -> None:
         self._columns = {**columns, "table": table, "hash": digest}
         self.units = units
@@ -180,7 +181,7 @@ class Design:
         named = [n for n, kind in frame.kinds.items() if kind in ("variable", "count")]
         return self._spec({n: typed_quantity(self.values[n], frame.units[n], None) for n in named})
 
-    def _spec(self, sizes: Mapping[str, Any]) -> dict[str, Any]:
+    def _spec(self, sizes: Mapping[str, object]) -> dict[str, Any]:
         """Return the mapping of a DESIGN.yaml with sizes as they are written there."""
         frame = self.frame
         values = {**sizes, **self.choices}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError, derived
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text
+from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import FRONT, save_files, save_result
 from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, Scale, knee_of
@@ -26,7 +26,7 @@ from synth.results.offered import OFFERED, Offered, load_offered, offered_conten
 from synth.results.plain import compact_json, digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
-from synth.results.report_request import ReportOptions
+from synth.results.report_request import AboutSource, ReportOptions
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
@@ -64,10 +64,7 @@ class ParetoFront:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers."""
-        import pandas as pd  # costly to import; most runs write CSV only
-
-        columns, rows = self.table()
-        frame = pd.DataFrame(rows, columns=columns)
+        frame = table_frame(*self.table())
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
     def save(self, folder: str | Path, csv: CsvStyle = ENGLISH) -> Path:
@@ -170,7 +167,7 @@ class ParetoFront:
             files[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
         return files
 
-    def verify(self, problem: Any = None, catalogs: Any = None, time_limit: float = 120.0) -> Verification:
+    def verify(self, problem: object = None, catalogs: object = None, time_limit: float = 120.0) -> Verification:
         """Check the front without help of the search: the record, every design, and the claim of the certificate.
 
         Parameters
@@ -197,10 +194,10 @@ class ParetoFront:
     def improve(
         self,
         time_limit: float | None = None,
-        problem: Any = None,
-        catalogs: Any = None,
+        problem: object = None,
+        catalogs: object = None,
         workers: int = 1,
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        progress: Callable[[Mapping[str, object]], None] | None = None,
     ) -> ParetoFront:
         """Go on with the search from the designs of this front; the result is never worse.
 
@@ -231,14 +228,14 @@ class ParetoFront:
         self,
         folder: str | Path,
         *,
-        design: Any = 1,
+        design: int | str | Sequence[int | str] = 1,
         full: int = 5,
         formats: Sequence[str] = ("html",),
-        about: Any = None,
+        about: AboutSource = None,
         length: str = "normal",
         fonts: Sequence[str | Path] = (),
-        problem: Any = None,
-        catalogs: Any = None,
+        problem: object = None,
+        catalogs: object = None,
     ) -> Path:
         """Write report.html and the calculation sheets of some designs.
 
@@ -277,7 +274,7 @@ class ParetoFront:
         return door().report(self, folder, how, **options).complete()
 
     def explore(
-        self, height: int = 760, *, about: Any = None, problem: Any = None, catalogs: Any = None
+        self, height: int = 760, *, about: AboutSource = None, problem: object = None, catalogs: object = None
     ) -> NotebookFrame:
         """Show the front in a notebook, to be explored: charts, table and single designs linked.
 
@@ -350,7 +347,7 @@ class ParetoFront:
         return csv_text(*self.table())
 
     @staticmethod
-    def digest_of(content: Mapping[str, Any]) -> str:
+    def digest_of(content: Mapping[str, object]) -> str:
         """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
         return digest_of(content)
 

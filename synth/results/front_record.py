@@ -15,12 +15,12 @@ FRONT_FILE = "front.json"
 FRONT_FORMAT = 1  # of front.json
 
 
-def record_text(content: Mapping[str, Any]) -> str:
+def record_text(content: Mapping[str, object]) -> str:
     """Return the text of a front.json."""
     return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
 
 
-def changed(content: Mapping[str, Any]) -> str:
+def changed(content: Mapping[str, object]) -> str:
     """Fault of the checksum of a front.json; empty where it fits the content."""
     if "digest" not in content:
         return "front.json has no checksum; it was not written by this version"
@@ -31,7 +31,7 @@ def changed(content: Mapping[str, Any]) -> str:
     return "" if unchanged else "front.json was changed after it was saved: its checksum does not fit"
 
 
-def fits(content: Any, digest: str) -> bool:
+def fits(content: Mapping[str, object], digest: str) -> bool:
     """True if a file beside front.json is the one with this checksum."""
     return bool(digest == content["digest"]) and intact(content)
 
@@ -78,5 +78,5 @@ def design_record(design: Design) -> dict[str, Any]:
     }
 
 
-def _clean(mapping: Mapping[str, Any]) -> dict[str, Any]:
+def _clean(mapping: Mapping[str, float]) -> dict[str, Any]:
     return {k: finite(float(v)) for k, v in mapping.items()}

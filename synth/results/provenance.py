@@ -44,7 +44,7 @@ class Fingerprint:
         return hash_of([self.question, self.computation])
 
 
-def hash_of(content: Any) -> str:
+def hash_of(content: object) -> str:
     """Return the SHA-256 of what JSON can hold, without regard to the order of keys."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
@@ -104,7 +104,7 @@ def processor() -> str:
     return " ".join([platform.system(), platform.machine(), *extensions["baseline"], *extensions["found"]])
 
 
-def _add_sources(total: Any, place: Path, without: Container[str] = ()) -> None:
+def _add_sources(total: hashlib._Hash, place: Path, without: Container[str] = ()) -> None:
     """Add names and contents of the sources in a folder, but those in some of its folders."""
     for path in [place] if place.is_file() else sorted(p for p in place.rglob("*") if p.suffix in SOURCES):
         name = path.name if place.is_file() else path.relative_to(place).as_posix()

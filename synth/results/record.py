@@ -24,7 +24,7 @@ class FileRecord(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """
 
     @classmethod
-    def from_json(cls, content: Any) -> Self:
+    def from_json(cls, content: object) -> Self:
         """Record from its entry of a file; keys of other versions are left out.
 
         Raises
@@ -66,7 +66,7 @@ class FileRecord(msgspec.Struct, frozen=True, kw_only=True, eq=False):
 
     __hash__ = None  # type: ignore[assignment]  # it may hold mappings
 
-    def get(self, key: str, default: Any = None) -> Any:
+    def get(self, key: str, default: object = None) -> Any:
         """Value of a key, or the default where it is not set."""
         return self._entries.get(key, default)
 

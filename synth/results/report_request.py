@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 from synth.errors import InputError
 from synth.folders.files import read_bytes
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from synth.results import Design, ParetoFront, PartRow
     from synth.results.batch_record import BatchRecord
     from synth.results.calculation import Calculation
+
+AboutSource: TypeAlias = "About | Mapping[str, object] | None"  # its entries by name
 
 MOST_LETTERS = 500  # of one entry
 MOST_LOGO = 1_000_000  # bytes
@@ -62,7 +64,7 @@ class About:
         return tuple((label, getattr(self, name)) for name, label in LABELS.items() if getattr(self, name))
 
     @staticmethod
-    def of(about: Any, folder: Path | None = None) -> About:
+    def of(about: AboutSource, folder: Path | None = None) -> About:
         """About block from a mapping; empty for None.
 
         Parameters
@@ -134,7 +136,7 @@ class ReportOptions:
     def read(
         cls,
         formats: str | Sequence[str] = ("html",),
-        about: Any = None,
+        about: AboutSource = None,
         length: str = "normal",
         fonts: Sequence[str | Path] = (),
         about_folder: Path | None = None,

@@ -22,6 +22,8 @@ from synth.bounds.shapes import FLAT, Shape
 from synth.bounds.structure import classified
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.model.problem import DesignProblem
+from synth.question.arguments import Limits, Scatter
+from synth.question.ranges import declared_ranges
 from synth.question.uncertainty import RATE, Uncertainty, read_remaining
 from synth.question.user_limits import check_number_of_limits, read_limits
 from synth.robust.uncertainty import LEAST, MOST, SLIDING, Member, Scattered, scattered
@@ -39,7 +41,7 @@ MOST_OPEN = 3  # quantities of unknown direction that all corners are posed of
 Position = tuple[float | None, ...]
 
 
-def robust_counterpart(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None) -> DesignProblem:
+def robust_counterpart(problem: DesignProblem, robust: Scatter | None, limits: Limits | None) -> DesignProblem:
     """Problem whose limits hold over a range; the problem itself where designs are only rated.
 
     Parameters
@@ -71,7 +73,7 @@ class RobustProblem(DesignProblem):
         The user's own limits.
     """
 
-    def __init__(self, base: DesignProblem, uncertainty: Uncertainty, limits: Mapping[str, Any]) -> None:
+    def __init__(self, base: DesignProblem, uncertainty: Uncertainty, limits: Limits) -> None:
         self.name, self.title, self.sources = base.name, base.title, base.sources
         super().__init__(**base.options)
         self.base, self.uncertainty, self.user_limits = base, uncertainty, limits
@@ -106,19 +108,19 @@ class RobustProblem(DesignProblem):
         """The class whose sources decide what is declared: that of the family."""
         return self.base.declared_by
 
-    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> Mapping[str, pd.DataFrame] | None:
+    def curves(self, spec: Mapping[str, object], design: Design | None = None) -> Mapping[str, pd.DataFrame] | None:
         """Return the curves of the family."""
         return self.base.curves(spec, design)
 
-    def simulate(self, spec: Mapping[str, Any], design: Design) -> Mapping[str, pd.DataFrame] | None:
+    def simulate(self, spec: Mapping[str, object], design: Design) -> Mapping[str, pd.DataFrame] | None:
         """Return the simulations of the family."""
         return self.base.simulate(spec, design)
 
-    def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing | None:
+    def drawing(self, spec: Mapping[str, object], design: Design) -> Drawing | None:
         """Return the drawing of the family."""
         return self.base.drawing(spec, design)
 
-    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame | None:
+    def state(self, spec: Mapping[str, object], design: Design, point: Mapping[str, float]) -> pd.DataFrame | None:
         """Return the state of the family at an operating point."""
         return self.base.state(spec, design, point)
 
@@ -142,7 +144,7 @@ class _Corners:
         self.marked = [self.model.program.dependence(k) for k in self.inputs]
         self.user_limits = self._of_the_user(problem.user_limits)
 
-    def _of_the_user(self, limits: Mapping[str, Any]) -> list[Constraint]:
+    def _of_the_user(self, limits: Limits) -> list[Constraint]:
         check_number_of_limits(limits)
         constraints: list[Constraint] = []
         for word, texts in limits.items():
@@ -206,7 +208,7 @@ class _Shifted(Declaration):
         self._around = around
         self._moves = {m.key: (x, p) for x, p in zip(quantities, position, strict=True) for m in x.members}
 
-    def _moved(self, member: Member, symbol: Any) -> Any:
+    def _moved(self, member: Member, symbol: ca.SX) -> Any:
         quantity, position = self._moves.get(member.key, (None, None))
         if quantity is None or position is None:
             return symbol

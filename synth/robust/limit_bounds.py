@@ -209,11 +209,11 @@ class _Leaf:
         slopes = {self.moving.quantity: (self.slope, self.slope)} if low < high else {}
         return Enclosed(pair, (middle, middle), self.log, slopes, sign, pair, pair, least)
 
-    def middle(self, low: Any, high: Any) -> Any:
+    def middle(self, low: Expr, high: Expr) -> Any:
         """Middle of a range, in the measure in which distances count."""
         return np.sqrt(low * high) if self.log else 0.5 * (low + high)
 
-    def half(self, low: Any, high: Any) -> Any:
+    def half(self, low: Expr, high: Expr) -> Any:
         """Half of the width of a range in that measure."""
         return 0.5 * (np.log(high / low) if self.log else high - low)
 

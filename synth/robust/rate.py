@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text
+from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import RATING, save_result
 from synth.model.registry import load
+from synth.question.arguments import Family, Scatter, UserTables
 from synth.question.catalogs import catalogs_for
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -46,10 +47,7 @@ class Ratings:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers."""
-        import pandas as pd  # costly to import; most runs write CSV only
-
-        columns, rows = self._table()
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*self._table())
 
     def files(self) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text."""
@@ -83,7 +81,9 @@ class Ratings:
         return columns, [[d.rank, *rating_row(d), *design_row(d.frame, d)] for d in self.designs]
 
 
-def rater_for(frame: Frame, uncertainty: Uncertainty, problem: Any = None, catalogs: Any = None) -> Rater:
+def rater_for(
+    frame: Frame, uncertainty: Uncertainty, problem: Family | None = None, catalogs: UserTables = None
+) -> Rater:
     """Rating function for the designs of a frame.
 
     Parameters
@@ -107,10 +107,10 @@ def rater_for(frame: Frame, uncertainty: Uncertainty, problem: Any = None, catal
 
 def rate(
     source: ParetoFront | Design | Sequence[Design],
-    robust: Any = None,
+    robust: Scatter | None = None,
     *,
-    problem: Any = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
     progress: Progress | None = None,
     time_limit: float | None = None,
 ) -> Ratings:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
@@ -25,6 +25,7 @@ from synth.order.feasibility import residual as limit_residual
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.question.request import Request
+from synth.question.settings import Progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import Design
 from synth.results.ratings import SAMPLED, DesignRating, LimitRating
@@ -79,7 +80,7 @@ class Rater:
     def rate(
         self,
         designs: Sequence[Design],
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        progress: Progress | None = None,
         deadline: float = math.inf,
     ) -> tuple[list[DesignRating], str]:
         """Return the rating of each design, and what stopped the work before the last one.
@@ -191,7 +192,7 @@ class Rater:
             if self.matters[limit][j]
         }
 
-    def _moved(self, design: Design, j: int, member: Member, position: Any) -> Any:
+    def _moved(self, design: Design, j: int, member: Member, position: float | np.ndarray) -> Any:
         return self.quantities[j].moved(
             member, lambda m: self._nominal(design, m), position, lambda s, c: self._cell(design, s, c)
         )

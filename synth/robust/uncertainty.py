@@ -19,6 +19,7 @@ from synth.declaration import Declaration
 from synth.errors import InputError, at
 from synth.order.margins import MARGINS, within
 from synth.question.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_of_ranges, words_of
+from synth.special import Numeric
 from synth.text.numbers import typed_number
 from synth.units import as_decimal, parse_quantity, parse_unit, to_si, typed_quantity
 
@@ -46,7 +47,7 @@ class Range:
     low: float = 0.0
     high: float = 0.0
 
-    def value(self, nominal: Any, position: Any, ends: tuple[Any, Any] | None = None) -> Any:
+    def value(self, nominal: Numeric, position: Numeric, ends: tuple[Any, Any] | None = None) -> Any:
         """Return the value at a position; ``nominal``, ``position`` and ``ends`` are numbers, arrays or symbols."""
         if self.kind == "columns":
             assert ends is not None
@@ -57,7 +58,7 @@ class Range:
         return nominal + moved if self.kind == "offset" else nominal * (1.0 + moved)
 
 
-def _between(low: Any, high: Any, position: Any) -> Any:
+def _between(low: Numeric, high: Numeric, position: Numeric) -> Any:
     """Interval between two ends; the ends themselves are exact."""
     if isinstance(position, float):
         if position in (0.0, 1.0):
@@ -96,7 +97,7 @@ class Scattered:
         slot = self.members[0].name
         return (column(slot, LEAST), column(slot, MOST)) if self.range.kind == "columns" else None
 
-    def moved(self, member: Member, nominal: Callable[[Member], Any], position: Any, column: Any) -> Any:
+    def moved(self, member: Member, nominal: Callable[[Member], Any], position: Numeric, column: Numeric) -> Any:
         """Return a member at a position of the range."""
         first = self.members[0]
         lead = nominal(first)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,7 +23,7 @@ def complete_designs(
     frames: Sequence[Frame],
     candidates: Sequence[Candidate],
     result: Evaluation,
-    more: Sequence[Mapping[str, Any]],
+    more: Sequence[Mapping[str, object]],
 ) -> list[Design]:
     """Return the designs that a search has found, with what it knows of them.
 

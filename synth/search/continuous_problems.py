@@ -13,7 +13,7 @@ from synth.bounds.question_bounds import QuestionBounds
 from synth.kernels.loading import native_enabled
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
 from synth.model.program import InputValue
-from synth.nlp.batch import BatchNlp, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.nlp.rows import Rows
 from synth.search.counters import SearchCounters
@@ -160,12 +160,11 @@ class ContinuousProblems:
         high = np.broadcast_to(self.instance.ranges.upper, (count, self.n)) if high is None else high
         void = void_limits(self.constraints, data, count)
         void = void if skipped is None else void | skipped
-        start, bounds = np.clip(start, low, high), self.question.right_sides
-
+        inputs, start = ProblemInputs(data, low, high, self.question.right_sides, void), np.clip(start, low, high)
         nlp = self.batch_nlp()
         if isinstance(nlp, KinkedNlp):
-            return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers, rough)
-        return nlp.solve(tasks, data, start, low, high, bounds, void, self.workers)
+            return nlp.solve(tasks, inputs, start, self.workers, rough)
+        return nlp.solve(tasks, inputs, start, self.workers)
 
     def learn(self, tasks: Tasks, solutions: Solutions, importance: np.ndarray) -> None:
         """Update the branching weights by the multipliers of solved problems; ``importance`` per problem."""

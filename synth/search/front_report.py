@@ -74,7 +74,7 @@ def _scale(state: FrontState) -> Scale | None:
 
 
 def _records(
-    state: FrontState, frame: Frame, candidates: Sequence[Candidate], more: Sequence[Mapping[str, Any]]
+    state: FrontState, frame: Frame, candidates: Sequence[Candidate], more: Sequence[Mapping[str, object]]
 ) -> list[Design]:
     """Return candidates as designs, with what else is known of each."""
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), state.form.n)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from synth.analysis.restate import problem_of
 from synth.errors import InputError
 from synth.order.margins import MARGINS
+from synth.question.arguments import Family, UserTables
 from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 def improve(
     front: ParetoFront,
-    problem: Any = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
     *,
     time_limit: float | None = None,
     workers: int = 1,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
 ) -> ParetoFront:
     """Go on with the search of a front from its designs.
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from synth.question.settings import ProgressState
 from synth.search.formulation import Formulation
 from synth.search.settings import ProgressLimits
 from synth.units import from_si, header
@@ -27,7 +27,7 @@ class ShownDesigns:
         self._objectives, self._limits = list(objectives), limits
         self._last: np.ndarray | None = None  # phi of the archive that was told last
 
-    def of(self, form: Formulation) -> dict[str, Any]:
+    def of(self, form: Formulation) -> ProgressState:
         """Return ``columns``, names with units, and ``points``, a row of numbers in these units for each design.
 
         At most so many as the limits say, spread evenly along the first objective, its ends among them; nothing where

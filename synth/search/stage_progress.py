@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
-from synth.question.settings import Progress
+from synth.question.settings import Progress, ProgressState
 from synth.search.settings import TUNING, ProgressLimits
 
 
@@ -36,7 +35,7 @@ class StageProgress:
         report: Progress | None,
         combinations: int,
         incumbents: Callable[[], int],
-        shown: Callable[[], Mapping[str, Any]] = dict,
+        shown: Callable[[], ProgressState] = ProgressState,
         limits: ProgressLimits = TUNING.progress,
     ) -> None:
         self.started = time.monotonic()
@@ -85,7 +84,7 @@ class StageProgress:
                 }
             )
 
-    def _designs(self) -> Mapping[str, Any]:
+    def _designs(self) -> ProgressState:
         """Progress report on the known designs, where one is due."""
         now = time.monotonic()
         if now - self._reported_at < self._limits.pause:

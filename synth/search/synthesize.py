@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
-from synth.model.problem import DesignProblem
+from synth.question.arguments import Family, Limits, Objectives, PartRules, Pins, Requirements, Scatter, UserTables
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
@@ -17,23 +16,23 @@ from synth.search.settings import TUNING, Tuning
 
 
 def synthesize(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    objectives: Any = None,
+    p: Family,
+    requirements: Requirements,
+    objectives: Objectives = None,
     points: int = 30,
     *,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    parts: PartRules | None = None,
+    limits: Limits | None = None,
+    fix: Pins | None = None,
     weights: Mapping[str, float] | None = None,
     gap: float = 1e-3,
     grid: bool = True,
     workers: int = 1,
     seed: int = 0,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
-    robust: Mapping[str, Any] | None = None,
+    robust: Scatter | None = None,
 ) -> ParetoFront:
     """Find the ranked Pareto designs for a requirement.
 

@@ -57,7 +57,7 @@ class CodeFacts:
         """Facts that are looked for since the start."""
         return len(self._wanted)
 
-    async def get(self, asker: Asker, task: str, payload: Mapping[str, Any] = NOTHING) -> Any:
+    async def get(self, asker: Asker, task: str, payload: Mapping[str, object] = NOTHING) -> Any:
         """Fact that a task tells.
 
         Raises
@@ -115,5 +115,5 @@ class CodeFacts:
                 self._wanted = frozenset(_key(*one) for one in wanted)
 
 
-def _key(task: str, payload: Mapping[str, Any]) -> str:
+def _key(task: str, payload: Mapping[str, object]) -> str:
     return json.dumps([task, payload], default=dict)

@@ -130,7 +130,7 @@ class ServiceError(Exception):
         status: int,
         message: str,
         code: str = "",
-        problems: Sequence[Mapping[str, Any]] = (),
+        problems: Sequence[Mapping[str, object]] = (),
         headers: Mapping[str, str] = NO_HEADERS,
     ) -> None:
         super().__init__(message)
@@ -156,7 +156,7 @@ def refusal_of(error: InputError) -> ServiceError:
     return ServiceError(422, str(error), problems=[fault.told() for fault in error.every()])
 
 
-def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, Any]] = ()) -> bytes:
+def error_body(code: str, message: str, request_id: str, problems: Sequence[Mapping[str, object]] = ()) -> bytes:
     """Return the body of a refusal."""
     told = {"code": code, "message": message, "problems": list(problems), "request_id": request_id}
     return json.dumps({"error": told}, ensure_ascii=True, allow_nan=False).encode("ascii")
@@ -195,7 +195,7 @@ def register_errors(
         Returns what a browser is shown at an address where nothing stands; None where it is no browser that asks.
     """
 
-    def told(kind: type[Exception], make: Any) -> None:
+    def told(kind: type[Exception], make: Callable[[Any], ServiceError]) -> None:
         async def handle(request: Request, error: Exception) -> Response:
             refusal: ServiceError = make(error)
             if refusal.status >= 500:

@@ -101,10 +101,14 @@ class ServiceMetrics:
     def _watch(self, engine: sa.Engine) -> None:
         """Time every statement."""
 
-        def begin(connection: Any, cursor: Any, statement: str, parameters: Any, context: Any, many: bool) -> None:
+        def begin(
+            connection: sa.Connection, cursor: object, statement: str, parameters: object, context: object, many: bool
+        ) -> None:
             connection.info["begun"] = time.perf_counter()
 
-        def end(connection: Any, cursor: Any, statement: str, parameters: Any, context: Any, many: bool) -> None:
+        def end(
+            connection: sa.Connection, cursor: object, statement: str, parameters: object, context: object, many: bool
+        ) -> None:
             word = statement.lstrip()[:6].upper()
             operation = word if word in OPERATIONS else OTHER
             self._database.labels(operation.lower()).observe(time.perf_counter() - connection.info["begun"])

@@ -400,7 +400,7 @@ class _Odd:
 def _hooks(odd: list[_Odd]) -> dict[str, Any]:
     """Reader of JSON that notes each oddity and keeps its place."""
 
-    def noted(value: Any, right: str) -> _Odd:
+    def noted(value: object, right: str) -> _Odd:
         odd.append(_Odd(value, right))
         return odd[-1]
 
@@ -426,7 +426,7 @@ def _hooks(odd: list[_Odd]) -> dict[str, Any]:
     }
 
 
-def _told(read: Any, within: str) -> ServiceError:
+def _told(read: object, within: str) -> ServiceError:
     """Return the refusal of what is odd in JSON: all that is still in its place."""
     waiting: list[tuple[tuple[str | int, ...], Any]] = [((), read)]
     faults: list[InputError] = []

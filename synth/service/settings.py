@@ -34,7 +34,7 @@ def _own_folder() -> Path:
     return data_home() / "clutchsynth"
 
 
-def _within(default: Any, least: float, most: float) -> Any:
+def _within(default: object, least: float, most: float) -> Any:
     """Return a field that is a number between two others."""
     return field(default=default, metadata={"least": least, "most": most})
 
@@ -325,7 +325,7 @@ def is_loopback(host: str) -> bool:
 def read_settings(
     file: Path | None = None,
     environment: Mapping[str, str] = types.MappingProxyType({}),
-    stated: Mapping[str, Any] = types.MappingProxyType({}),
+    stated: Mapping[str, object] = types.MappingProxyType({}),
 ) -> ServiceSettings:
     """Return the settings that a file, variables and flags state together.
 
@@ -379,7 +379,7 @@ def _check_range(where: str, key: str, value: Any) -> None:
         raise InputError(where, value, f"{typed_number(limits['least'])} to {typed_number(limits['most'])}", (key,))
 
 
-def _read(where: str, key: str, value: Any, spoken: bool = False) -> Any:
+def _read(where: str, key: str, value: object, spoken: bool = False) -> Any:
     """Return a value as its field has it; ``spoken`` values are texts, whatever they stand for."""
     if key not in FIELDS:
         raise InputError(where, value, f"one of the keys {', '.join(FIELDS)}", (key,))
@@ -388,13 +388,13 @@ def _read(where: str, key: str, value: Any, spoken: bool = False) -> Any:
     return found
 
 
-def _one(where: str, key: str, value: Any, spoken: bool) -> Any:
+def _one(where: str, key: str, value: object, spoken: bool) -> Any:
     kind = KINDS[key]
     right = InputError(where, value, WORDS[kind], (key,))
     if spoken and kind is bool:
-        if value.lower() not in (*TRUE, *FALSE):
+        if str(value).lower() not in (*TRUE, *FALSE):
             raise right
-        return value.lower() in TRUE
+        return str(value).lower() in TRUE
     if (isinstance(value, bool) is not (kind is bool)) or (kind in (str, Path) and not isinstance(value, (str, Path))):
         raise right
     if kind is int and not spoken and not isinstance(value, int):
@@ -407,7 +407,7 @@ def _one(where: str, key: str, value: Any, spoken: bool) -> Any:
         raise right from None
 
 
-def _several(where: str, value: Any, spoken: bool) -> tuple[str, ...]:
+def _several(where: str, value: object, spoken: bool) -> tuple[str, ...]:
     if spoken:
         return tuple(part.strip() for part in str(value).split(",") if part.strip())
     if not isinstance(value, (list, tuple)) or not all(isinstance(part, str) for part in value):

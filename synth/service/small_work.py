@@ -31,7 +31,7 @@ KEPT_FOR = 60.0  # s, that an answer waits for whoever asks again
 class EngineCalls(Protocol):
     """What the service needs of engine processes; see :class:`synth.workers.engine_process.Engines`."""
 
-    def call(self, task: str, payload: Any, limit: float) -> Any:
+    def call(self, task: str, payload: object, limit: float) -> Any:
         """Have a task done within a time of a processor."""
 
 
@@ -96,7 +96,7 @@ class SmallWork:
         """Whether every process is late with a question."""
         return self.late >= self._shares.places
 
-    async def ask(self, asker: Asker, task: str, payload: Any) -> Any:
+    async def ask(self, asker: Asker, task: str, payload: object) -> Any:
         """Answer of a task.
 
         Raises
@@ -128,7 +128,7 @@ class SmallWork:
         loop = asyncio.get_running_loop()
         work.add_done_callback(lambda _: loop.call_later(KEPT_FOR, self._late.pop, key, None))
 
-    async def _begun(self, asker: Asker, task: str, payload: Any) -> asyncio.Task[Any]:
+    async def _begun(self, asker: Asker, task: str, payload: object) -> asyncio.Task[Any]:
         """Work on a question, once a process is free."""
         asked = time.monotonic()
         try:
@@ -142,7 +142,7 @@ class SmallWork:
         work.add_done_callback(self._forget)
         return work
 
-    async def _done(self, asker: Asker, task: str, payload: Any) -> Any:
+    async def _done(self, asker: Asker, task: str, payload: object) -> Any:
         self._threads = self._threads or CapacityLimiter(self._shares.places)
         begun, outcome = time.monotonic(), "failed"
         try:
@@ -171,7 +171,7 @@ class SmallWork:
             work.exception()  # of one that nobody asks for again, nobody hears
 
 
-def _digest(asker: Asker, task: str, payload: Any) -> str:
+def _digest(asker: Asker, task: str, payload: object) -> str:
     """Digest of a question; of another tenant it is another one, and so is the answer."""
     return hashlib.sha256(json.dumps([asker.tenant, task, payload], default=_plain).encode()).hexdigest()
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from pydantic_core import ErrorDetails
+
 from synth.errors import Described, InputError, Key
 from synth.queue.accounts import NAME_PATTERN
 from synth.text.plain_text import UNSAFE_IN_LINE
@@ -59,7 +61,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def fault_of(told: Mapping[str, Any]) -> InputError:
+def fault_of(told: ErrorDetails) -> InputError:
     """Fault that a schema has found in one place, in our words."""
     place = tuple(told["loc"])
     path = place[1:] if place[:1] in (("body",), ("query",), ("path",), ("header",)) else place
@@ -83,11 +85,11 @@ def place_in_words(path: Sequence[Key]) -> str:
     return ": ".join(f"entry {key + 1}" if isinstance(key, int) else key for key in path) or "body"
 
 
-def _plain(fact: Any) -> Any:
+def _plain(fact: object) -> Any:
     return int(fact) if isinstance(fact, float) and fact.is_integer() else fact
 
 
-def _short(value: Any) -> Any:
+def _short(value: object) -> Any:
     """Return a value to be repeated: of a whole object or list only that it is one."""
     if isinstance(value, Mapping):
         return Described("an object" if value else "an empty object")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,11 +22,12 @@ from synth.analysis.written_digits import written_digits
 from synth.bounds.boxes import Boxes
 from synth.errors import InputError, at, whole_number
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text
+from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import NEAR_EQUALS, save_result
 from synth.nlp.batch import Tasks
 from synth.order.feasibility import Status
 from synth.order.margins import MARGINS
+from synth.question.arguments import Family, UserTables, Value
 from synth.question.instance import Instance
 from synth.question.selection import part_row
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -89,10 +90,7 @@ class NearEquals:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, the chosen one first, with units in the headers."""
-        import pandas as pd  # costly to import; most runs write CSV only
-
-        columns, rows = self._table()
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*self._table())
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text; ``folder``: where they will stand."""
@@ -144,13 +142,13 @@ class NearEquals:
 def near_equals(
     front: ParetoFront,
     design: int | Design,
-    within: Any = NearEqualsRequest.within,
+    within: Value = NearEqualsRequest.within,
     *,
     count: int = NearEqualsRequest.count,
-    problem: Any = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
     seed: int = NearEqualsRequest.seed,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = NearEqualsRequest.time_limit,
 ) -> NearEquals:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one.
@@ -194,7 +192,7 @@ def near_equals(
     return search.run(int(count))
 
 
-def chosen_design(front: ParetoFront, design: Any) -> Design:
+def chosen_design(front: ParetoFront, design: object) -> Design:
     """Return the design of a front that is asked for: by its rank, or as it stands.
 
     Raises
@@ -214,7 +212,7 @@ def chosen_design(front: ParetoFront, design: Any) -> Design:
     return ranks[design]
 
 
-def read_share(within: Any) -> float:
+def read_share(within: object) -> float:
     """Return by which share objectives may be worse.
 
     Raises

@@ -73,7 +73,7 @@ class StudyStore:
             return None
         return front if front.record is not None and front.record["digest"] == entry.get("digest") else None
 
-    def put(self, number: int, fingerprint: str, record: Mapping[str, Any]) -> None:
+    def put(self, number: int, fingerprint: str, record: Mapping[str, object]) -> None:
         """Keep the front of a step, by the content of its front.json."""
         if self.folder is None:
             return
@@ -86,7 +86,7 @@ class StudyStore:
         entry = self.record.get(key)
         return entry.get("value") if isinstance(entry, dict) and entry.get("fingerprint") == fingerprint else None
 
-    def keep(self, key: str, fingerprint: str, value: Any) -> None:
+    def keep(self, key: str, fingerprint: str, value: object) -> None:
         """Keep something else, which JSON can hold."""
         if self.folder is not None:
             self._enter(key, {"fingerprint": fingerprint, "value": value})

@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from synth.errors import InputError, at
 from synth.plugins import installed
@@ -27,7 +27,16 @@ from synth.tables.table import Table, perhaps_meant
 from synth.tables.table_file import read_as
 from synth.tables.table_text import TableText
 from synth.tables.workbook import is_workbook, split_sheet
+from synth.text.row_cells import Cell
 from synth.units import typed_quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TableSource: TypeAlias = "str | Path | TableText | pd.DataFrame"  # of the rows of a table
+
+# By table: rows as a record has kept them, cells in SI with their designation, hash and units.
+KeptRows: TypeAlias = Mapping[str, Sequence[Mapping[str, Any]]]
 
 ENTRY_POINTS = "clutchsynth.catalogs"
 OPEN = "~$"  # what a file begins with that Excel keeps beside a workbook while that is open
@@ -93,7 +102,7 @@ def _user_files(folder: Path) -> dict[str, Path]:
     return files
 
 
-def with_reading_options(spec: Any, base: Path, encoding: str | None, visible: bool) -> Any:
+def with_reading_options(spec: object, base: Path, encoding: str | None, visible: bool) -> Any:
     """User tables as a spec names them, with encoding and visibility for files that do not name theirs.
 
     Parameters
@@ -111,7 +120,7 @@ def with_reading_options(spec: Any, base: Path, encoding: str | None, visible: b
     if not isinstance(spec, Mapping):
         return spec
 
-    def named(source: Any) -> Any:
+    def named(source: object) -> Any:
         if isinstance(source, (list, tuple)):
             return [named(one) for one in source]
         return read_as(source, encoding, visible) if isinstance(source, str) and source != "+" else source
@@ -119,7 +128,7 @@ def with_reading_options(spec: Any, base: Path, encoding: str | None, visible: b
     return {name: named(source) for name, source in spec.items()}
 
 
-def _changes(table: Table, index: int, kept: Mapping[str, Any]) -> Iterator[str]:
+def _changes(table: Table, index: int, kept: Mapping[str, Cell]) -> Iterator[str]:
     """Yield which cells of a row are not as a record has kept them: what they were, and what they are."""
     now = table.row(index)
     for name in dict.fromkeys([*now, *kept]):
@@ -129,7 +138,7 @@ def _changes(table: Table, index: int, kept: Mapping[str, Any]) -> Iterator[str]
             yield f"{name} {was}, now {is_now}"
 
 
-def _cell_text(cell: float | str | None, unit: str | None) -> str:
+def _cell_text(cell: Cell, unit: str | None) -> str:
     """Return a cell in words, with all its digits."""
     if cell is None:
         return "empty"
@@ -175,7 +184,7 @@ class Catalogs:
         folders: Sequence[str | Path] | None = None,
         *,
         base: str | Path | None = None,
-        kept: Mapping[str, Sequence[Mapping[str, Any]]] | None = None,
+        kept: KeptRows | None = None,
     ) -> None:
         self._kept = dict(kept or {})
         self._base = Path() if base is None else Path(base)
@@ -193,7 +202,7 @@ class Catalogs:
     def _path(self, path: str | Path) -> Path:
         return self._base / path
 
-    def _read_spec(self, spec: object) -> dict[str, tuple[bool, list[Any]]]:
+    def _read_spec(self, spec: object) -> dict[str, tuple[bool, list[TableSource]]]:
         """Table name to (extend the shipped rows?, sources)."""
         if spec is None:
             return {}
@@ -214,7 +223,7 @@ class Catalogs:
             return {name: (False, [path]) for name, path in files.items()}
         if not isinstance(spec, Mapping):
             raise InputError("catalogs", spec, right, ("catalogs",))
-        sources: dict[str, tuple[bool, list[Any]]] = {}
+        sources: dict[str, tuple[bool, list[TableSource]]] = {}
         for name, value in spec.items():
             if not isinstance(name, str):
                 raise InputError("catalogs", name, "the name of a table", ("catalogs", str(name)))
@@ -371,7 +380,7 @@ class Catalogs:
         path = self._shipped[name]
         return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
 
-    def _user_table(self, name: str, source: Any) -> Table:
+    def _user_table(self, name: str, source: TableSource) -> Table:
         schema = self.schema(name)
         if isinstance(source, (str, Path)) and self._is_away(name, source):
             shipped = set(self._shipped_table(name).designations) if self._spec[name][0] else set()

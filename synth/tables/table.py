@@ -97,7 +97,7 @@ class Table:
     def __repr__(self) -> str:
         return f"<Table {self.name}: {len(self)} rows, {len(self.columns)} columns, {self.origin}>"
 
-    def once(self, key: Any, make: Callable[[], BoolArray]) -> BoolArray:
+    def once(self, key: object, make: Callable[[], BoolArray]) -> BoolArray:
         """Return a mask of the rows that is made once per table.
 
         Parameters

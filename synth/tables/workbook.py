@@ -52,7 +52,7 @@ def is_workbook(path: Path) -> bool:
     return table_file(path).is_workbook
 
 
-def cell_text(value: Any) -> str:
+def cell_text(value: object) -> str:
     """Return the value of a cell as the text that somebody would have typed.
 
     Examples

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -29,10 +29,11 @@ from synth.verbs.requests import BatchRequest
 
 if TYPE_CHECKING:
     from synth.batches.batch import BatchJob
+    from synth.batches.entries import BatchProgress, BatchState
     from synth.batches.store import Store
+    from synth.question.arguments import UserTables
     from synth.queue.models import Job
 
-Progress = Callable[[Mapping[str, Any]], None]
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
 
 RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx (FILE.xlsx#SHEET).", metavar="ROWS.csv")]
@@ -93,7 +94,7 @@ def batch_job(
     rows: Path,
     folder: Path,
     mapping: Path | None,
-    tables: Any,
+    tables: UserTables,
     database: str | None,
     csv: CsvStyle,
 ) -> BatchJob:
@@ -177,10 +178,10 @@ def _code(counts: dict[str, int], stopped: str) -> int:
     return 0 if counts.get("optimal", 0) + counts.get("feasible", 0) else INFEASIBLE
 
 
-def _checked(progress: Progress | None, check: Callable[[], None]) -> Progress:
+def _checked(progress: BatchProgress | None, check: Callable[[], None]) -> BatchProgress:
     """Progress callback that also stops where a signal has been lost."""
 
-    def show(state: Mapping[str, Any]) -> None:
+    def show(state: BatchState) -> None:
         check()
         if progress is not None:
             progress(state)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from synth.batches.entries import BatchProgress, BatchState
 from synth.batches.outputs import RowOutcome, row_outcomes
 from synth.errors import shortened
 from synth.results.batch_record import IN_WORDS, STATES, WITH_DESIGNS
@@ -61,7 +62,7 @@ def _more_lines(lines: Sequence[int], count: int) -> str:
 
 
 @contextmanager
-def batch_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None] | None]:
+def batch_display(quiet: bool) -> Iterator[BatchProgress | None]:
     """Give a callable that shows how far a batch is: a bar on a terminal, a line now and then elsewhere."""
     if quiet:
         yield None
@@ -73,16 +74,16 @@ def batch_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None] |
         with Progress(*columns, text, console=console_on(sys.stderr), transient=True) as bar:
             task = bar.add_task("rows", total=1.0, figures="")
 
-            def show(state: Mapping[str, Any]) -> None:
+            def show(state: BatchState) -> None:
                 bar.update(task, total=max(state["rows"], 1), completed=state["done"], figures=figures(state))
 
             yield show
 
 
-def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
+def _occasional_lines() -> BatchProgress:
     shown_at = time.monotonic()
 
-    def show(state: Mapping[str, Any]) -> None:
+    def show(state: BatchState) -> None:
         nonlocal shown_at
         # What is done is said by what comes next.
         if state["done"] < state["rows"] and time.monotonic() - shown_at >= EVERY:
@@ -92,7 +93,7 @@ def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
     return show
 
 
-def figures(state: Mapping[str, Any]) -> str:
+def figures(state: BatchState) -> str:
     """Return progress in words.
 
     Examples

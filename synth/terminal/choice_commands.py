@@ -51,15 +51,7 @@ def near_equals(
 
     front = load_front(source)
     with progress_display(quiet) as progress:
-        found = find(
-            front,
-            asked.design,
-            asked.within,
-            count=asked.count,
-            seed=asked.seed,
-            progress=progress,
-            time_limit=asked.time_limit,
-        )
+        found = find(front, progress=progress, **vars(asked))
     target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_near_equals(found, output())

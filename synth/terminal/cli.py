@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -534,7 +534,7 @@ def _listed(files: Mapping[str, str]) -> list[str]:
     return shown
 
 
-def _plain_table(front: ParetoFront, console: Any, every: bool, calculation: Any) -> None:
+def _plain_table(front: ParetoFront, console: object, every: bool, calculation: object) -> None:
     """Print objectives alone, and what is to be said of the first design, where reports are not installed."""
     names = list(front.frame.objectives)
     table = front.to_frame() if every else front.to_frame().head(10)

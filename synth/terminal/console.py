@@ -8,14 +8,15 @@ import os
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from rich import box
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as ProgressDisplay
 from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
@@ -23,6 +24,7 @@ from rich.text import Text
 from synth.folders.files import csv_text
 from synth.order.feasibility import most_used
 from synth.order.margins import MARGINS
+from synth.question.settings import Progress, ProgressState
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.text.numbers import FULL_DIGITS, number_text, percent, thousands, used_share
@@ -62,7 +64,7 @@ def output() -> Console:
     return console_on(sys.stdout)
 
 
-def console_on(stream: Any, width: int | None = None) -> Console:
+def console_on(stream: IO[str] | PlainStream, width: int | None = None) -> Console:
     """Return a console that shows text as it is; where no terminal is, lines end at a fixed width."""
     if width is None and not stream.isatty():
         width = _asked_width()
@@ -561,7 +563,7 @@ def print_verification(verification: Verification, console: Console) -> None:
     print_wrapped(console, verification.sentence())
 
 
-def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:
+def statistics_lines(statistics: Mapping[str, object]) -> list[str]:
     """Return the statistics of a search as lines: plain numbers on one, everything else on its own.
 
     Examples
@@ -596,7 +598,7 @@ def _left_out(name: str, entries: Sequence[Any]) -> list[str]:
     return lines
 
 
-def _brief(value: Any) -> str:
+def _brief(value: object) -> str:
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "-"}[value]
     if isinstance(value, int):
@@ -605,7 +607,7 @@ def _brief(value: Any) -> str:
 
 
 @contextmanager
-def progress_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None] | None]:
+def progress_display(quiet: bool) -> Iterator[Progress | None]:
     """Give a callable that shows the progress of a search on standard error.
 
     A bar on a terminal, a line now and then elsewhere, nothing where ``quiet``.
@@ -617,21 +619,21 @@ def progress_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None
     else:
         console = console_on(sys.stderr)
         columns = (TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn())
-        with Progress(*columns, TextColumn("{task.fields[figures]}"), console=console, transient=True) as bar:
+        with ProgressDisplay(*columns, TextColumn("{task.fields[figures]}"), console=console, transient=True) as bar:
             task = bar.add_task("starting", total=1.0, figures="")
 
-            def show(state: Mapping[str, Any]) -> None:
+            def show(state: ProgressState) -> None:
                 done = float(state.get("done") or 0.0)
                 bar.update(task, completed=done, description=str(state.get("stage", "")), figures=_figures(state))
 
             yield show
 
 
-def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
+def _occasional_lines() -> Progress:
     """Write a line when a stage begins and now and then within it, but none for what is over in a moment."""
     shown_at, shown_stage = time.monotonic(), ""
 
-    def show(state: Mapping[str, Any]) -> None:
+    def show(state: ProgressState) -> None:
         nonlocal shown_at, shown_stage
         stage = str(state.get("stage", ""))
         if time.monotonic() - shown_at < (SOON if stage != shown_stage else LATER):
@@ -643,14 +645,12 @@ def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
     return show
 
 
-def _figures(state: Mapping[str, Any]) -> str:
+def _figures(state: ProgressState) -> str:
     parts = []
     if state.get("combinations") is not None:
         parts.append(f"{_brief(state['combinations'])} combinations")
     if state.get("incumbents") is not None:
         parts.append(f"{_brief(state['incumbents'])} designs")
-    if state.get("bound") is not None:
-        parts.append(f"bound {_brief(state['bound'])}")
     if state.get("message"):
         parts.append(str(state["message"]))
     return ", ".join(parts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -67,7 +67,7 @@ def new(
         print(f"to be filled in: {', '.join(left)}")
 
 
-def _answer(row: Mapping[str, Any]) -> str:
+def _answer(row: Mapping[str, object]) -> str:
     """Ask for a value until it is one; nothing leaves it to be filled in."""
     from synth.analysis.spec_template import checked_value
 

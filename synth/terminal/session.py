@@ -21,6 +21,7 @@ from synth.text.plain_text import wrapped
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.question.arguments import UserTables
     from synth.tables.catalogs import Catalogs
 
 FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD, NOT_PROVEN = 0, 1, 2, 3, 4, 5, 6
@@ -72,7 +73,7 @@ def tell_readings(tables: Catalogs) -> None:
         tell(f"read as {how}: {name}")
 
 
-def own_tables(catalogs: Any, base: Path, encoding: str | None, visible: bool) -> Any:
+def own_tables(catalogs: UserTables, base: Path, encoding: str | None, visible: bool) -> Any:
     """Return own tables, as flags or a spec name them, with how other flags say that their files are read."""
     if catalogs is None or not (encoding or visible):
         return catalogs

@@ -61,17 +61,7 @@ def size_range(
         source = place
     target = source if folder is None else folder
     claim_output(target)
-    found = choose(
-        source,
-        asked.variants,
-        asked.objective,
-        per_row=asked.per_row,
-        candidates=asked.candidates,
-        gap=asked.gap,
-        time_limit=asked.time_limit,
-        database=database,
-        job=job_id,
-    )
+    found = choose(source, database=database, job=job_id, **vars(asked))
     files = found.files()
     draw = report("figure")
     if draw is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from synth.terminal.console import output, plain_table
 from synth.text.numbers import gap_text, number_text
@@ -33,11 +33,11 @@ def print_size_range(found: SizeRange) -> None:
         print(f"{counted(len(found.unserved), 'row')} not served; unserved.csv says why")
 
 
-def _figure(value: Any) -> str:
+def _figure(value: object) -> str:
     return number_text(value) if isinstance(value, float) else str(value)
 
 
-def _short(heading: str, value: Any) -> str:
+def _short(heading: str, value: object) -> str:
     name, _, unit = heading.partition(" [")
     unit = unit.removesuffix("]")
     return f"{name} {_figure(value)}{'' if unit in ('', '-') else f' {unit}'}"

@@ -8,7 +8,7 @@ import sys
 import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import IO, Any
 
 from synth.text.numbers import thousands
 
@@ -155,7 +155,7 @@ def as_meant(cell: str) -> str:
     return cell[1:] if cell.startswith("'") and FORMULA.match(cell) else cell
 
 
-def csv_cell(value: Any) -> Any:
+def csv_cell(value: object) -> Any:
     """Cell of a table: numbers in full precision, text that does nothing."""
     if isinstance(value, float):
         return repr(value)
@@ -172,7 +172,7 @@ def file_text(name: str, text: str) -> str:
 class PlainStream:
     """A stream of text that writes out what acts on a terminal; all else is that of ``stream``."""
 
-    def __init__(self, stream: Any) -> None:
+    def __init__(self, stream: IO[str]) -> None:
         self.stream = stream
 
     def write(self, text: str) -> int:

@@ -6,7 +6,9 @@ import hashlib
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from typing import TypeAlias
+
+Cell: TypeAlias = "float | str | None"  # a number in SI, a text, or nothing
 
 CODE_OF = "code of "  # before the name of a column of text: the column of numbers that stand for its texts
 ELSE = " else "  # between the name of a column of numbers and what counts where there is none
@@ -28,7 +30,7 @@ def named_column(column: str) -> str:
     return column.removeprefix(CODE_OF).partition(ELSE)[0]
 
 
-def cell_value(row: Mapping[str, Any], column: str) -> float:
+def cell_value(row: Mapping[str, Cell], column: str) -> float:
     """Return a cell of a row as results hold it, as models use it: not-a-number where it is empty.
 
     Parameters

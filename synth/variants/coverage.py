@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.batches.entries import RowQuestion
 from synth.model.model import DataInput, Evaluation, Model
 from synth.model.problem import DesignProblem
 from synth.model.program import InputValue
@@ -46,7 +46,7 @@ class ServedQuestion:
     """A question that variants are to serve: how often it is asked, and its own best value of the objective."""
 
     key: str
-    question: Mapping[str, Any]
+    question: RowQuestion
     weight: int
     best: float
 
@@ -104,7 +104,7 @@ def objective_of_pairs(
     return result, reasons
 
 
-def _instance(structure: SharedModel, question: Mapping[str, Any], objective: str) -> Instance:
+def _instance(structure: SharedModel, question: RowQuestion, objective: str) -> Instance:
     request = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
     # Its sense is of no account here.
     return Instance(
@@ -249,7 +249,7 @@ def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantCol
     return f"the nearest design misses {', '.join(missed_by)}"
 
 
-def pinned_by_all(questions: Iterable[Mapping[str, Any]], model: Model) -> frozenset[str]:
+def pinned_by_all(questions: Iterable[RowQuestion], model: Model) -> frozenset[str]:
     """Variables that every question pins: they belong to the use, not to the variant."""
     variables, names = {v.name for v in model.variables}, model.declaration.names()
     common: set[str] | None = None

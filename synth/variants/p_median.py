@@ -18,12 +18,16 @@ import time
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.variants.variant_settings import VARIANTS, MedianSettings
+
+if TYPE_CHECKING:
+    import cvxpy
 
 FloatArray = NDArray[np.float64]
 
@@ -354,7 +358,7 @@ class _Cuts:
         return sparse.vstack(self._saved, format="csr"), of_rows, np.array(self._level)
 
 
-def _solve(cp: Any, problem: Any, gap: float | None, deadline: float) -> float:
+def _solve(cp: ModuleType, problem: cvxpy.Problem, gap: float | None, deadline: float) -> float:
     """Solve a program with HiGHS; return a bound below its optimum (minus infinity where there is none)."""
     remaining = max(deadline - time.monotonic(), 0.1)
     options: dict[str, Any] = {"time_limit": remaining}

@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 from synth.batches.batch import BatchResult
 from synth.batches.batch_folder import job_of_folder, opened_batch
 from synth.batches.outputs import SHORT, explanation_of, status_of
-from synth.batches.store import Store
+from synth.batches.store import Answered, Store
 from synth.errors import InputError
 from synth.folders.csv_style import ENGLISH, CsvStyle
 from synth.folders.files import csv_text, frame_csv
 from synth.folders.output_folder import SIZE_RANGE, save_result
 from synth.model.model import Model
+from synth.model.problem import DesignProblem
 from synth.model.registry import load
+from synth.question.arguments import UserTables
 from synth.question.catalogs import as_catalogs
 from synth.results import cell_value
 from synth.units import header
@@ -105,7 +107,7 @@ class SizeRange:
         return save_result(folder, csv.files(self.files()), SIZE_RANGE, False)
 
 
-def _csv(rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> str:
+def _csv(rows: Sequence[Mapping[str, object]], columns: Sequence[str] = ()) -> str:
     names = list(columns) or list(dict.fromkeys(name for row in rows for name in row))
     return csv_text(names, [[row.get(name) for name in names] for row in rows])
 
@@ -156,6 +158,7 @@ def size_range(
     started = time.monotonic()
     if isinstance(source, BatchResult):
         database, job, catalogs, user_problem = source.database, source.job, source.catalogs, source.user_family
+        source = source.folder
     else:
         catalogs = user_problem = None
     with opened_batch(source, database) as store:
@@ -190,11 +193,29 @@ def size_range(
     return batch.result(choice, chosen_from, costs, values, points, (fewest, bound), statistics)
 
 
+def _row_record(row: Answered) -> dict[str, Any]:
+    """Row of a batch with what became of it, and its designs."""
+    return {
+        "line": row.line,
+        "key": row.key,
+        "family": row.family,
+        "status": status_of(row),
+        "explanation": explanation_of(row),
+        "designs": [] if row.content is None else row.content.get("designs", []),
+    }
+
+
 class _Batch:
     """Questions and designs of a job, with the structures and variants made of them."""
 
     def __init__(
-        self, store: Store, job: Job, objective: str | None, catalogs: Any, user_problem: Any, settings: VariantSettings
+        self,
+        store: Store,
+        job: Job,
+        objective: str | None,
+        catalogs: UserTables,
+        user_problem: type[DesignProblem] | None,
+        settings: VariantSettings,
     ) -> None:
         self.job, self.settings = job, settings
         content = job.content
@@ -204,17 +225,7 @@ class _Batch:
         if content["catalogs"] == "memory" and catalogs is None:
             raise InputError("DIR", job.source, "the BatchResult itself: its tables were in memory")
         self.catalogs = as_catalogs(content["catalogs"] if catalogs is None else catalogs)
-        self.rows = [
-            {
-                "line": row.line,
-                "key": row.key,
-                "family": row.family,
-                "status": status_of(row),
-                "explanation": explanation_of(row),
-                "designs": [] if row.content is None else row.content.get("designs", []),
-            }
-            for row in store.rows(job.id, canonical=False)
-        ]
+        self.rows = [_row_record(row) for row in store.rows(job.id, canonical=False)]
         self.layouts = list(store.layouts(job.id).values())
         questions = {key: content for key, _, content in store.questions(job.id)}
         self.objective, self.sense = self._objective(objective)
@@ -256,8 +267,9 @@ class _Batch:
             question = served.question
             label = json.dumps([question["family"], question["options"]])
             if label not in problems:
-                is_users = self.problem is not None and self.problem.name == question["family"]
-                problems[label] = load(self.problem if is_users else question["family"], **question["options"])
+                users, family = self.problem, question["family"]
+                chosen = users if users is not None and users.name == family else family
+                problems[label] = load(chosen, **question["options"])
             name = json.dumps([label, sorted(question["requirements"])])
             if name not in self.structures:
                 self.structures[name] = SharedModel(problems[label], self.catalogs)
@@ -352,7 +364,7 @@ class _Batch:
         values: NDArray[Any],
         points: list[Medians],
         fewest: tuple[list[int], int],
-        statistics: Mapping[str, Any],
+        statistics: Mapping[str, object],
     ) -> SizeRange:
         """Say everything in terms of rows and designs."""
         unit = next(iter(self.models.values())).units[self.objective]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from synth.errors import InputError
 from synth.results.record import FileRecord
@@ -82,7 +82,7 @@ def _of_design(design: Design, label: str) -> Iterator[str]:
         yield from _without_units({name: limit}, frame.limit_units, "limit_units")
 
 
-def _without_units(names: Mapping[str, Any], units: Mapping[str, str], place: str) -> Iterator[str]:
+def _without_units(names: Mapping[str, object], units: Mapping[str, str], place: str) -> Iterator[str]:
     for name in names:
         if name not in units:
             yield f"{place}: {name} is missing"

@@ -32,13 +32,13 @@ from synth.analysis.restate import problem_of, rebuilt_question, table_differenc
 from synth.errors import InputError
 from synth.folders.csv_style import STYLES
 from synth.folders.files import read_bytes
-from synth.model.problem import DesignProblem
 from synth.model.program import Node, Program
 from synth.order.feasibility import TOLERANCE, Status, holds, residual, utilisation
 from synth.proof.levels import prove_regions
 from synth.proof.questions import Point, ProofOutcome
 from synth.proof.settings import PROOF, ProofLimits
 from synth.proof.tree import ProofTree, moved_limits, void_without
+from synth.question.arguments import Family, UserTables
 from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
 from synth.results.calculation import load_calculation
@@ -62,8 +62,8 @@ LOADERS: Mapping[str, Callable[[Path, str], object]] = {"calculation": load_calc
 
 def verify(
     front: ParetoFront,
-    problem: str | type[DesignProblem] | DesignProblem | None = None,
-    catalogs: Any = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
     time_limit: float = 120.0,
 ) -> Verification:
     """Check a front without help of the search that made it.
@@ -104,7 +104,7 @@ def verify(
 
 
 def checked(
-    front: ParetoFront, problem: Any, catalogs: Any, deadline: float, limits: ProofLimits = PROOF
+    front: ParetoFront, problem: Family | None, catalogs: UserTables, deadline: float, limits: ProofLimits = PROOF
 ) -> VerificationRun:
     """Return the check of a front, done; see ``verify``."""
     check = VerificationRun(front, deadline, limits)

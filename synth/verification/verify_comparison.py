@@ -21,6 +21,7 @@ from synth.folders.files import read_json
 from synth.folders.output_folder import settle
 from synth.model.registry import load
 from synth.proof.settings import PROOF
+from synth.question.arguments import UserTables
 from synth.question.spec import read_spec
 from synth.results import ParetoFront
 from synth.results.loading import COMPARISON, unchecked_front
@@ -52,7 +53,7 @@ class _ComparisonRecord:
     resolution: Mapping[str, float]
 
 
-def _read_record(content: Any) -> _ComparisonRecord:
+def _read_record(content: Mapping[str, Any]) -> _ComparisonRecord:
     """Read the record of a comparison.
 
     Raises
@@ -76,7 +77,7 @@ def is_comparison(folder: str | Path) -> bool:
     return (Path(folder) / COMPARISON).is_file()
 
 
-def verify_comparison(folder: str | Path, time_limit: float = 120.0, catalogs: Any = None) -> Verification:
+def verify_comparison(folder: str | Path, time_limit: float = 120.0, catalogs: UserTables = None) -> Verification:
     """Check a saved comparison without help of the search that made it.
 
     Parameters
@@ -140,7 +141,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0, catalogs: A
     )
 
 
-def _values(path: Path, record: _ComparisonRecord, findings: list[str], catalogs: Any) -> dict[str, np.ndarray]:
+def _values(path: Path, record: _ComparisonRecord, findings: list[str], catalogs: UserTables) -> dict[str, np.ndarray]:
     """Objectives of the listed designs, evaluated again from their files."""
     rows: dict[str, list[float]] = {name: [] for name in record.senses}
     width = max(2, len(str(len(record.designs))))

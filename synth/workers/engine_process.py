@@ -117,7 +117,7 @@ class EngineProcess:
                 self.code = str(message.content)
         return bool(self.code)
 
-    def ask(self, task: str, payload: Any) -> None:
+    def ask(self, task: str, payload: object) -> None:
         """Give work to a process that has none.
 
         Raises
@@ -153,7 +153,7 @@ class EngineProcess:
                 return None
         return message
 
-    def call(self, task: str, payload: Any, limit: float) -> Any:
+    def call(self, task: str, payload: object, limit: float) -> Any:
         """Ask, and wait for the answer.
 
         Parameters
@@ -331,7 +331,7 @@ class Engines:
             self._later -= 1
         self.pool.add()
 
-    def call(self, task: str, payload: Any, limit: float) -> Any:
+    def call(self, task: str, payload: object, limit: float) -> Any:
         """Have a task done; as :meth:`EngineProcess.call`.
 
         Raises
@@ -404,13 +404,13 @@ class _Speaker:
     def __init__(self, pipe: Connection, pause: float) -> None:
         self._pipe, self._pause, self._last_report = pipe, pause, 0.0
 
-    def __call__(self, kind: str, content: Any) -> None:
+    def __call__(self, kind: str, content: object) -> None:
         try:
             self._pipe.send((kind, content))
         except OSError:
             os._exit(1)
 
-    def report(self, state: Mapping[str, Any]) -> None:
+    def report(self, state: Mapping[str, object]) -> None:
         now = time.monotonic()
         if now - self._last_report >= self._pause:
             self._last_report = now

@@ -228,7 +228,7 @@ class Worker:
                 self._report_progress(task.job, message.content)
         return None
 
-    def _report_progress(self, job: Job, state: Mapping[str, Any]) -> None:
+    def _report_progress(self, job: Job, state: Mapping[str, object]) -> None:
         self._quietly(lambda: self.store.progress(job.id, state))
 
     # -- what came out -------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import numpy as np
 import synth
 from synth.kernels.loading import VARIABLE
 from synth.model.constraint import Goal, NodeConstraint
-from synth.nlp.batch import BatchNlp, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Solutions, Tasks
 from synth.nlp.rows import Rows
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
@@ -77,7 +77,8 @@ class Workload:
         solver = BatchNlp(self.model.program, self.n, self.rows)
         if native and not solver.compiled:
             return None
-        return lambda: solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void)
+        inputs = ProblemInputs(self.data, self.low, self.high, self.bounds, self.void)
+        return lambda: solver.solve(self.tasks, inputs, self.start)
 
     def one_by_one(self, count: int) -> Callable[[], None]:
         """Return a call that solves the first problems with IPOPT."""

@@ -18,7 +18,7 @@ import numpy as np
 import synth
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.model import Evaluation
-from synth.nlp.batch import BatchNlp, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Tasks
 from synth.nlp.rows import Rows
 from synth.question.instance import Instance
 from synth.tables.catalogs import Catalogs
@@ -112,7 +112,7 @@ class Enumeration:
             for k in held:
                 low[:, k] = high[:, k] = begin[:, k]
             void = np.stack([x.void(data, (len(some),)) for x in self.model.constraints], axis=1)
-            answer = self.solver.solve(tasks, data, begin, low, high, self.bounds, void)
+            answer = self.solver.solve(tasks, ProblemInputs(data, low, high, self.bounds, void), begin)
             self.solves += len(some)
             ends[part] = answer.variables
             # Only what the model itself says of the point counts.

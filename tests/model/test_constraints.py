@@ -9,7 +9,7 @@ import pytest
 import synth
 from synth.declaration import Origin
 from synth.model.constraint import SYMBOLS, Constraint, NodeConstraint, void_limits
-from synth.nlp.batch import BatchNlp, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Tasks
 from synth.nlp.rows import GUARD_MARGIN
 from synth.order.feasibility import SMALLEST, holds, size_of_miss
 from synth.proof.questions import Point
@@ -239,7 +239,11 @@ def test_rows_of_the_solver_are_logarithms_or_shares_of_the_size_of_a_miss(asked
     nothing = np.zeros((len(rows), goals))
     tasks = Tasks(nothing, nothing, np.full((len(rows), goals), np.inf), form.objectives.scales, 0.0)
     points, data = asked.variables[rows], asked.instance.data(asked.combinations[rows])
-    found = nlp.solve(tasks, data, points, points, points, form.bounds, void_limits(form.constraints, data, len(rows)))
+    found = nlp.solve(
+        tasks,
+        ProblemInputs(data, points, points, form.bounds, void_limits(form.constraints, data, len(rows))),
+        points,
+    )
     np.testing.assert_allclose(found.violation, expected, rtol=1e-6, atol=1e-8)
 
 

@@ -16,7 +16,7 @@ from synth.kernels.loading import LEVELS, best_variant, processor_level, variant
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp import kernel_solver
-from synth.nlp.batch import BatchNlp, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Solutions, Tasks
 from synth.nlp.rows import GUARD_MARGIN, Rows
 from synth.nlp.settings import InteriorPointSettings, NlpSettings
 from synth.question.catalogs import as_catalogs
@@ -108,9 +108,9 @@ class Small:
             np.ones(m),
             **{"t_weight": 0.0, **more},
         )
-        points = [np.broadcast_to(np.asarray(x, dtype=float), (count, n)) for x in (start, low, high)]
+        first, *ends = (np.broadcast_to(np.asarray(x, dtype=float), (count, n)) for x in (start, low, high))
         gone = np.zeros((count, len(self.rows.constraints)), dtype=bool) if void is None else np.asarray(void)
-        return self.solver.solve(tasks, data, *points, self.bounds, gone)
+        return self.solver.solve(tasks, ProblemInputs(data, *ends, self.bounds, gone), first)
 
 
 EVERY = pytest.mark.parametrize("code", ["arrays", pytest.param("kernel", marks=BUILT)])
@@ -350,7 +350,8 @@ def test_objectives_with_a_sense_and_a_scale(code):
     assert solver.compiled == (code != "arrays")
     tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), np.array([4.0]), 0.0)
     low, high = np.array([[0.5, 0.5]]), np.array([[9.0, 9.0]])
-    solution = solver.solve(tasks, [3.0], np.array([[1.0, 1.0]]), low, high, [0.0], np.zeros((1, 1), dtype=bool))
+    inputs = ProblemInputs([3.0], low, high, [0.0], np.zeros((1, 1), dtype=bool))
+    solution = solver.solve(tasks, inputs, np.array([[1.0, 1.0]]))
     np.testing.assert_allclose(solution.variables[0], [6.0, 0.5], atol=1e-6)
     assert solution.phi[0, 0] == pytest.approx(-5.5 / 4, abs=1e-8)
 
@@ -366,12 +367,12 @@ def test_without_variables_the_rows_are_evaluated(code):
     data = [np.array([2.0, 3.0, 4.0]), np.array([1.0, 2.0, 3.0])]
     tasks = Tasks(np.ones((3, 2)), np.zeros((3, 2)), np.full((3, 2), np.inf), np.array([1.0, 2.0]), 0.0)
     void = np.array([[False], [False], [True]])
-    solution = solver.solve(tasks, data, nothing, nothing, nothing, [4.0], void)
+    solution = solver.solve(tasks, ProblemInputs(data, nothing, nothing, [4.0], void), nothing)
     np.testing.assert_allclose(solution.phi, np.stack([np.log([3.0, 5.0, 7.0]), [1.0, 1.5, 2.0]], axis=1))
     np.testing.assert_allclose(solution.violation, [0.0, np.log(6 / 4), 0.0])
     assert solution.variables.shape == (3, 0)
     moving = Tasks(np.zeros((3, 2)), np.full((3, 2), 0.5), np.zeros((3, 2)), np.array([1.0, 2.0]))
-    solution = solver.solve(moving, data, nothing, nothing, nothing, [4.0], void)
+    solution = solver.solve(moving, ProblemInputs(data, nothing, nothing, [4.0], void), nothing)
     np.testing.assert_allclose(solution.t, 2 * np.maximum(np.log([3.0, 5.0, 7.0]), [1.0, 1.5, 2.0]))
 
 
@@ -476,7 +477,8 @@ class Clutch:
 
     def solve(self, code: Code, workers: int = 1) -> Solutions:
         solver = BatchNlp(self.model.program, self.n, self.rows, code)
-        return solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void, workers)
+        inputs = ProblemInputs(self.data, self.low, self.high, self.bounds, self.void)
+        return solver.solve(self.tasks, inputs, self.start, workers)
 
     def cost(self, phi: np.ndarray, t: np.ndarray) -> np.ndarray:
         return (self.tasks.weights * phi).sum(axis=1) + self.tasks.t_weight * t

@@ -15,7 +15,7 @@ import synth
 from synth.kernels.loading import best_variant
 from synth.model.constraint import Goal, NodeConstraint, void_limits
 from synth.model.program import Program
-from synth.nlp.batch import BatchNlp, Solutions, Tasks
+from synth.nlp.batch import BatchNlp, ProblemInputs, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
 from synth.order.feasibility import residual
@@ -69,7 +69,8 @@ class Kinked:
         if tasks is None:
             tasks = Tasks(np.ones((count, 1)), np.zeros((count, 1)), np.full((count, 1), np.inf), np.ones(1), 0.0)
         ends = (np.tile(x, (count, 1)) for x in (self.low, self.high))
-        return self.solver.solve(tasks, [], start, *ends, self.bounds, np.tile(self.void, (count, 1)))
+        inputs = ProblemInputs([], *ends, self.bounds, np.tile(self.void, (count, 1)))
+        return self.solver.solve(tasks, inputs, start)
 
     def judged(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return cost and largest violation at points, by the formulas as they were written."""

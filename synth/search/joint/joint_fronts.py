@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from synth.order.pareto import spread_subset
+from synth.question.settings import Progress
 from synth.results import ParetoFront
 from synth.search.archive import Candidate, distinct
 from synth.search.budget import Clock
@@ -44,7 +45,7 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
 
 def joint_answers(
     questions: Sequence[Question],
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
 ) -> list[ParetoFront | None]:
     """Return the front of each question of a group; None where a question is better asked alone.
@@ -76,7 +77,7 @@ class JointFrontSearch:
     def __init__(
         self,
         questions: Sequence[Question],
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        progress: Progress | None = None,
         time_limit: float | None = None,
     ) -> None:
         self.questions, self.progress = list(questions), progress

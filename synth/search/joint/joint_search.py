@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
+from synth.question.settings import Progress
 from synth.results import Design, ParetoFront
 from synth.results.least_infeasible import LeastInfeasible
 from synth.search.budget import Clock
@@ -36,7 +36,7 @@ class JointSearch:
     def __init__(
         self,
         questions: Sequence[Question],
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        progress: Progress | None = None,
         time_limit: float | None = None,
         starts: Sequence[Design] = (),
         shared: SharedBounds | None = None,
@@ -132,7 +132,7 @@ class JointSearch:
         return inside
 
 
-def report_progress(progress: Callable[[Mapping[str, Any]], None] | None, search: JointOptima, open_boxes: int) -> None:
+def report_progress(progress: Progress | None, search: JointOptima, open_boxes: int) -> None:
     """Report the progress of a search to the callback, if there is one."""
     if progress is not None:
         progress(

@@ -153,7 +153,7 @@ def place_of(cursor: str | None, scope: Sequence[Any], kinds: Sequence[type]) ->
     return place
 
 
-def _is_place(value: Any) -> bool:
+def _is_place(value: str | int) -> bool:
     return bool(ID.fullmatch(value)) if isinstance(value, str) else 0 <= value <= LARGEST
 
 
@@ -182,7 +182,7 @@ def tagged(
     return Response(content, media_type=media, headers=more)
 
 
-def tagged_json(request: Request, told: Any, version: str) -> Response:
+def tagged_json(request: Request, told: object, version: str) -> Response:
     """Answer that depends on the code or the tables of this server alone, with their digest as the tag."""
     content = json.dumps(told, ensure_ascii=False, allow_nan=False).encode()
     return tagged(request, content, JSON, f'"{version}"')

@@ -210,7 +210,7 @@ def _split(heading: str) -> ColumnAnswer:
     return ColumnAnswer(name=name, unit=unit.removesuffix("]") if bracket else None)
 
 
-def _value(cell: Any, column: ColumnAnswer) -> Any:
+def _value(cell: object, column: ColumnAnswer) -> Any:
     """Return a cell as designs have it: numbers stand as text where rows are kept."""
     if column.unit is None or not isinstance(cell, str):
         return cell

@@ -7,6 +7,7 @@ from importlib.resources import files
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
 
 from synth.kinds import KINDS
 from synth.service.api.asking import LONGEST
@@ -21,7 +22,7 @@ Line = Annotated[str, Field(max_length=LONGEST, pattern=LINE)]
 Title = Annotated[str, Field(min_length=1, max_length=LONGEST, pattern=TITLE)]
 
 
-def _example(body: Any) -> ConfigDict:
+def _example(body: JsonDict) -> ConfigDict:
     return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [body]})
 
 

@@ -99,7 +99,7 @@ def seconds_limit(asked: float | None, most: float | None) -> float | None:
     return most if asked is None else asked
 
 
-def in_time(chosen: Kind, read: Mapping[str, Any], stated: Mapping[str, Any], limit: float | None) -> dict[str, Any]:
+def in_time(chosen: Kind, read: Mapping[str, Any], stated: Mapping[str, object], limit: float | None) -> dict[str, Any]:
     """Return a request that ends by itself in the time that its job has: what was found is kept then.
 
     Raises

@@ -17,7 +17,8 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.order.feasibility import Status
-from synth.question.settings import LEAST_SECONDS, Progress, SearchSettings, check_progress
+from synth.question.arguments import Families, Limits, Objectives, PartRules, Pins, Requirements, Scatter, UserTables
+from synth.question.settings import LEAST_SECONDS, Progress, ProgressState, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import Certificate, ParetoFront
 from synth.results.assembly import ranked
@@ -49,25 +50,25 @@ PASSES = 2  # over the families: a first one, and one to the end
 
 
 def compare(
-    families: Any,
-    requirements: Mapping[str, Any],
-    objectives: Any = None,
+    families: Families,
+    requirements: Requirements,
+    objectives: Objectives = None,
     points: int = 30,
     *,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    parts: PartRules | None = None,
+    limits: Limits | None = None,
+    fix: Pins | None = None,
     weights: Mapping[str, float] | None = None,
     gap: float = 1e-3,
     grid: bool = True,
     workers: int = 1,
     seed: int = 0,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
     options: Mapping[str, str] | None = None,
     finished: Callable[[str, ParetoFront], object] | None = None,
-    robust: Mapping[str, Any] | None = None,
+    robust: Scatter | None = None,
     serving: Callable[[Sequence[str]], object] | None = None,
 ) -> Comparison:
     """Search all families that can serve one requirement sheet, and rank their designs on one front.
@@ -225,7 +226,7 @@ class _Comparing:
         if progress is None:
             return None
 
-        def show(state: Mapping[str, Any]) -> None:
+        def show(state: ProgressState) -> None:
             fraction = float(state.get("done") or 0.0)
             progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done + share * fraction})
 
@@ -333,7 +334,7 @@ def _done(member: Competitor | None) -> bool:
     return member is not None and not member.front.interrupted
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text
+from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import FRONT, save_result
 from synth.order.feasibility import Status
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
@@ -104,17 +104,11 @@ class Comparison:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers; what a family does not have is empty."""
-        import pandas as pd  # costly to import; most runs write CSV only
-
-        columns, rows = self._table()
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*self._table())
 
     def families_frame(self) -> pd.DataFrame:
         """Return one row per family."""
-        import pandas as pd
-
-        columns, rows = self._family_table()
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*self._family_table())
 
     def files(self, folder: Path | None = None) -> dict[str, str]:
         """Files that ``save`` writes into its folder: file name -> text; ``folder``: where they will stand."""

@@ -18,6 +18,7 @@ from synth.errors import InputError, at
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_declaration, every_family, load, skipping_faulty_families
 from synth.question import request, uncertainty
+from synth.question.arguments import Objectives
 from synth.question.catalogs import as_catalogs
 from synth.question.names import as_mapping, refuse_power
 from synth.question.request import Request
@@ -86,7 +87,7 @@ def understood() -> dict[str, tuple[str, list[str]]]:
     return dict(sorted(result.items(), key=lambda item: (-len(item[1][1]), item[0])))
 
 
-def applicants(families: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
+def applicants(families: object, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
     """Requested families, each with the reasons for which it cannot serve.
 
     Parameters
@@ -102,7 +103,7 @@ def applicants(families: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applican
         When a name means nothing to any family, or none can serve.
     """
     every = isinstance(families, str) and families == ANY
-    entries: Sequence[Any] = [*every_family().values()] if every else families
+    entries: object = [*every_family().values()] if every else families
     if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence) or not entries:
         raise InputError("family", families, f"'{ANY}', or a list of families", ("family",))
     if len(entries) > INPUT_LIMITS.families:
@@ -130,9 +131,10 @@ def refuse_all(candidates: Sequence[Applicant], sheet: Sheet) -> None:
         raise InputError("requirements", shown, expected, ("requirements",))
 
 
-def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
+def _applicant(entry: object, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     """Read one entry of the list of families."""
-    family, family_sheet = entry, sheet_of()
+    family: Any = entry  # read where it is loaded
+    family_sheet = sheet_of()
     if isinstance(entry, Mapping):
         family = entry.get("family")
         for key in entry:
@@ -252,7 +254,7 @@ def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
 # ---- what they are compared by --------------------------------------------------------------------------------------
 
 
-def common_objectives(candidates: Sequence[Applicant], objectives: Any) -> dict[str, str]:
+def common_objectives(candidates: Sequence[Applicant], objectives: Objectives) -> dict[str, str]:
     """Return the objectives that all families that can serve have, and note which family lacks a requested one.
 
     None requested: what all offer; those that are defaults in most families come first, two at least if there are.
@@ -287,7 +289,7 @@ def _units(one: Applicant) -> dict[str, str]:
     return {name: unit for name, unit, _ in one.declaration.quantities()}
 
 
-def _sense(serving: Sequence[Applicant], name: str, sense: Any) -> str:
+def _sense(serving: Sequence[Applicant], name: str, sense: object) -> str:
     has = [one for one in serving if name in _units(one)]
     if not has:
         known = {n for one in serving for n in _units(one)}

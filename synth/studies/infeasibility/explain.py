@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
 
 from synth.analysis.fired_guards import fired_guards
 from synth.analysis.settings import WAYS_OUT
-from synth.model.problem import DesignProblem
+from synth.question.arguments import Family, Limits, PartRules, Pins, Requirements, Scatter, UserTables
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.studies.infeasibility.conflict import irreducible_subset
@@ -24,18 +22,18 @@ from synth.system.deadline import Stopped, until
 
 
 def explain(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
+    p: Family,
+    requirements: Requirements,
     *,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    parts: PartRules | None = None,
+    limits: Limits | None = None,
+    fix: Pins | None = None,
     grid: bool = True,
     seed: int = 0,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
-    robust: Mapping[str, Any] | None = None,
+    robust: Scatter | None = None,
     physics: bool = False,
 ) -> Explanation:
     """Tell why nothing is feasible, over all combinations of parts and counts, and what would make it so.

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from synth.analysis.fired_guards import fired_guards
 from synth.model.constraint import SYMBOLS, Constraint
+from synth.question.arguments import Pins
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.robust.counterpart import robust_counterpart
@@ -103,7 +104,7 @@ class ExplainedQuestion:
             # What is refused only because several refusals leave out all rows between them.
             Instance(robust_request)
 
-    def _pins(self, fix: Mapping[str, Any]) -> dict[str, Pin]:
+    def _pins(self, fix: Pins) -> dict[str, Pin]:
         """Quantities pinned to a number, and counts of which comparisons leave some values."""
         model, pins = self.instance.model, dict[str, Pin]()
         for k, variable in enumerate(model.variables):

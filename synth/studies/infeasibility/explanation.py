@@ -52,7 +52,7 @@ class Relaxation:
         """Return the needed value as text with its unit, rounded so that it still does."""
         return rounded(self.needed, self.unit, self.sense)
 
-    def applied(self, spec: Mapping[str, Any]) -> dict[str, Any]:
+    def applied(self, spec: Mapping[str, object]) -> dict[str, Any]:
         """Return a spec (``requirements``, ``limits``, ``fix``, ``parts`` ...) with this change.
 
         Raises

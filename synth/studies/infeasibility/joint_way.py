@@ -140,7 +140,7 @@ class JointWay:
         return changes
 
     def _needed(
-        self, changes: Sequence[_Change], choices: Mapping[str, Any], design: Design
+        self, changes: Sequence[_Change], choices: Mapping[str, object], design: Design
     ) -> tuple[dict[str, Any], list[str]] | None:
         """Return the patch of as few changes as the design needs, and their words."""
         for k in range(self.search.ways.further):
@@ -154,7 +154,7 @@ class JointWay:
             return self._together(kept, k, choices), [x.words(k) for x in kept]
         return None
 
-    def _together(self, changes: Sequence[_Change], k: int, choices: Mapping[str, Any]) -> dict[str, Any]:
+    def _together(self, changes: Sequence[_Change], k: int, choices: Mapping[str, object]) -> dict[str, Any]:
         """Return several changes as one patch."""
         patch = dict(choices)
         for x in changes:

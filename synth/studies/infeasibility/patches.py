@@ -85,7 +85,7 @@ class Patches:
 
     # -- what they do --------------------------------------------------------------------------
 
-    def works(self, patch: Mapping[str, Any], relaxed: Design) -> bool:
+    def works(self, patch: Mapping[str, object], relaxed: Design) -> bool:
         """True if a design is one of the question with a patch."""
         request = self._with(patch)
         try:
@@ -103,7 +103,7 @@ class Patches:
         return inside and not design.violated
 
     def first_that_works(
-        self, patch: Callable[[str], Mapping[str, Any]], needed: float, unit: str, up: bool, design: Design
+        self, patch: Callable[[str], Mapping[str, object]], needed: float, unit: str, up: bool, design: Design
     ) -> tuple[Mapping[str, Any] | None, str]:
         """Return the patch with the value nearest to what is needed that surely does, and that value.
 
@@ -125,7 +125,7 @@ class Patches:
                 return patch(text), text
         return None, texts[0]
 
-    def original(self, relaxed: Design, patch: Mapping[str, Any] | None = None) -> Design:
+    def original(self, relaxed: Design, patch: Mapping[str, object] | None = None) -> Design:
         """Return a design of the relaxed question as one of the question itself, or of that with a patch."""
         kinds = {name: kind for name, kind in relaxed.frame.kinds.items() if name != AMOUNT}
         without_amount = replace(relaxed, frame=replace(relaxed.frame, kinds=kinds))
@@ -143,7 +143,7 @@ class Patches:
         rows = {slot: part_row(table, row) for slot, (table, row) in instance.combinations.describe(number)[0].items()}
         return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, relaxed.choices)
 
-    def _with(self, patch: Mapping[str, Any]) -> Request:
+    def _with(self, patch: Mapping[str, object]) -> Request:
         """Return the request with a patch."""
         entries = {key: getattr(self.request, key) for key in ("requirements", "limits", "fix", "parts")}
         return replace(self.request, **patched(entries, patch))

@@ -42,7 +42,7 @@ class _Substitution:
     def __init__(self, before: list[Any], after: list[Any]) -> None:
         self.before, self.after = before, after
 
-    def __call__(self, expression: Any) -> Any:
+    def __call__(self, expression: ca.SX | float) -> Any:
         """Return an expression in which they are replaced."""
         return ca.substitute([ca.SX(expression)], self.before, self.after)[0] if self.before else expression
 
@@ -113,7 +113,7 @@ class Relaxed(DesignProblem):
         calls = [replace(c, arguments=tuple(moved(a) for a in c.arguments)) for c in original.calls]
         return Model(self.name, target, calls)
 
-    def _loosened(self, limit: Limit, amount: Any) -> Limit:
+    def _loosened(self, limit: Limit, amount: ca.SX) -> Limit:
         """Return a limit that gives way, if it is one that does."""
         sign = self._give.get((LIMIT, limit.name))
         if sign is None:
@@ -145,7 +145,7 @@ class Relaxed(DesignProblem):
         rules = zip(self._instance.compared, source[declared_count:], strict=True)
         return [*stay, *(refusal for rule, refusal in rules if rule.slot not in self._free)], limits
 
-    def _moved_inputs(self, amount: Any) -> tuple[list[Any], list[Any]]:
+    def _moved_inputs(self, amount: ca.SX) -> tuple[list[Any], list[Any]]:
         """Return the symbols of requirements and columns that move, and what stands in their place.
 
         A requirement at its default follows those that the default is made of.

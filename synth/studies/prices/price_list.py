@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text, read_json, write_atomically
+from synth.folders.files import csv_text, read_json, table_frame, write_atomically
 from synth.folders.output_folder import PRICES, loses_nothing, save_files, save_result, settle
 from synth.results import Frame
 from synth.studies.settings import PRICES as LIMITS
@@ -101,9 +101,7 @@ class Prices:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per price."""
-        import pandas as pd  # costly to import
-
-        return pd.DataFrame([[getattr(row, c) for c in COLUMNS] for row in self.rows], columns=list(COLUMNS))
+        return table_frame(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
 
     def files(self) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text."""

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from synth.errors import InputError, at
 from synth.folders.output_folder import claimed
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
+from synth.question.arguments import Family, UserTables, Value
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront
@@ -53,11 +53,11 @@ LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
 def prices(
     front: ParetoFront,
     design: int | Sequence[int] | None = None,
-    step: Any = PricesRequest.step,
+    step: Value = PricesRequest.step,
     *,
-    problem: Any = None,
-    catalogs: Any = None,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    problem: Family | None = None,
+    catalogs: UserTables = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
     folder: str | Path | None = None,
 ) -> Prices:
@@ -102,7 +102,7 @@ def prices(
         return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
-def read_step(step: Any) -> float:
+def read_step(step: object) -> float:
     """Return by which share each requirement and limit is moved.
 
     Raises
@@ -117,7 +117,7 @@ def read_step(step: Any) -> float:
     return share
 
 
-def chosen_designs(front: ParetoFront, design: Any) -> list[Design]:
+def chosen_designs(front: ParetoFront, design: object) -> list[Design]:
     """Requested designs of a front by rank; all where none is named.
 
     Raises

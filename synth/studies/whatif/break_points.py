@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import Any, Protocol
 
 from synth.errors import InputError
+from synth.question.settings import Progress
 from synth.results import Design, ParetoFront
 from synth.search.joint.joint_groups import groups_of, joint_key
 from synth.search.joint.joint_optima import SharedBounds
@@ -32,7 +33,6 @@ NOT_ROBUST = "the design on one side is not shown to keep all limits over the wh
 INTERRUPTED = "interrupted"
 
 Remaining = Callable[[], float | None]
-Shown = Callable[[Mapping[str, Any]], None] | None
 
 
 class Kept(Protocol):
@@ -41,7 +41,7 @@ class Kept(Protocol):
     def value(self, key: str, fingerprint: str) -> Any:
         """Stored result under a key for a question, or None."""
 
-    def keep(self, key: str, fingerprint: str, value: Any) -> None:
+    def keep(self, key: str, fingerprint: str, value: object) -> None:
         """Keep something for a question."""
 
 
@@ -52,7 +52,7 @@ def find_breaks(
     collected: list[Break],
     kept: Kept,
     remaining: Remaining,
-    shown: Shown,
+    shown: Progress | None,
     limits: BreakLimits = BREAKS,
 ) -> None:
     """Find the break points of every objective between neighbouring steps.

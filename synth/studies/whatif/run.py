@@ -5,18 +5,27 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from msgspec import structs
 
 from synth.folders.output_folder import claimed
-from synth.model.problem import DesignProblem
+from synth.question.arguments import (
+    Family,
+    Limits,
+    Objectives,
+    PartRules,
+    Pins,
+    Requirements,
+    Scatter,
+    UserTables,
+    Variations,
+)
 from synth.question.request import Request
-from synth.question.settings import Progress, SearchSettings, check_progress
+from synth.question.settings import Progress, ProgressState, SearchSettings, check_progress
 from synth.question.uncertainty import read_block
 from synth.results import ParetoFront
 from synth.results.assembly import ranked
@@ -41,26 +50,26 @@ POINTS = 3  # of every step: the best in each objective and, of two, one between
 
 
 def whatif(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    vary: Mapping[str, Any],
-    objectives: Any = None,
+    p: Family,
+    requirements: Requirements,
+    vary: Variations,
+    objectives: Objectives = None,
     points: int = POINTS,
     *,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
+    catalogs: UserTables = None,
+    parts: PartRules | None = None,
+    limits: Limits | None = None,
+    fix: Pins | None = None,
     weights: Mapping[str, float] | None = None,
     gap: float = 1e-3,
     grid: bool = True,
     workers: int = 1,
     seed: int = 0,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    progress: Progress | None = None,
     time_limit: float | None = None,
     breaks: bool = True,
     folder: str | Path | None = None,
-    robust: Mapping[str, Any] | None = None,
+    robust: Scatter | None = None,
 ) -> Study:
     """Answer a question at many values of a requirement, a limit, a weight, a part, an option or a scatter.
 
@@ -117,7 +126,7 @@ def whatif(
 def study_of(
     request: Request,
     settings: SearchSettings,
-    vary: Any,
+    vary: Variations,
     progress: Progress | None = None,
     breaks: bool = True,
     folder: Path | None = None,
@@ -287,7 +296,7 @@ class _Run:
         if report is None:
             return None
 
-        def show(state: Mapping[str, Any]) -> None:
+        def show(state: ProgressState) -> None:
             done = begin + share * float(state.get("done") or 0.0)
             report({**state, "stage": f"{stage}: {state.get('stage', '')}", "done": min(done, 1.0)})
 

@@ -12,6 +12,7 @@ from typing import Any
 from synth.declaration import Declaration
 from synth.errors import InputError
 from synth.model.problem import DesignProblem
+from synth.question.arguments import Pins, Variations
 from synth.question.count_domain import entries
 from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
@@ -69,7 +70,7 @@ def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
     """Scatter of a problem, with one entry over another range or, for "none", without it."""
     names = _declared(request).names()
 
-    def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
+    def others(ranges: Mapping[str, object]) -> dict[str, Any]:
         return {key: value for key, value in ranges.items() if name_in_block(key, names) != name}
 
     block = {} if request.robust is None else others(request.robust.block())
@@ -78,7 +79,7 @@ def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
     return read_remaining({**block, name: text})
 
 
-def _without(request: Request, entries: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _without(request: Request, entries: Mapping[str, object], name: str) -> dict[str, Any]:
     """Values given by name or symbol, without one name."""
     spellings = _declared(request).names()
     return {word: value for word, value in entries.items() if spellings.get(str(word)) != name}
@@ -102,7 +103,7 @@ def _other_limits(request: Request, varied: Varied) -> list[str]:
     return kept
 
 
-def check_steps(request: Request, settings: SearchSettings, vary: Any, most: int) -> tuple[list[str], int]:
+def check_steps(request: Request, settings: SearchSettings, vary: Variations, most: int) -> tuple[list[str], int]:
     """Refuse what a study would refuse before it is searched, as far as some of its steps tell.
 
     Parameters
@@ -159,7 +160,7 @@ class Steps:
         self,
         request: Request,
         settings: SearchSettings,
-        vary: Any,
+        vary: Variations,
         tuning: Tuning = TUNING,
         most: int | None = None,
     ) -> None:
@@ -187,7 +188,7 @@ class Steps:
         objective: Mapping[str, str],
         gap: float,
         slots: Mapping[str, list[str]],
-        pins: Mapping[str, Any],
+        pins: Pins,
     ) -> Question:
         """Return the question for the best design in one objective at some values, among some parts.
 

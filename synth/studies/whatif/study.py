@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text
+from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
 from synth.results.drawings import report
 from synth.results.notebook import notebook_html
@@ -44,17 +44,11 @@ class Study(StudyAnswers):
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per step and design, with units in the headers; a step without designs has one row."""
-        import pandas as pd  # costly to import
-
-        columns, rows = steps_table(self)
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*steps_table(self))
 
     def breaks_frame(self) -> pd.DataFrame:
         """Return one row per break point."""
-        import pandas as pd
-
-        columns, rows = breaks_table(self)
-        return pd.DataFrame(rows, columns=columns)
+        return table_frame(*breaks_table(self))
 
     def curves(self) -> dict[str, pd.DataFrame]:
         """Drawings by file name, as the hooks of families make them: objectives over the varied quantity, fronts."""

@@ -11,6 +11,7 @@ from typing import Any
 from synth.errors import InputError, at, shortened
 from synth.model.model import Model
 from synth.order.margins import MARGINS
+from synth.question.arguments import Variations
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
 from synth.text.input_limits import INPUT_LIMITS
@@ -109,7 +110,7 @@ def split_text(text: str) -> tuple[str, str]:
     return (name if sign == "=" else f"{name} {sign}"), values
 
 
-def read_vary(vary: Any, model: Model, chosen: Sequence[str]) -> list[Varied]:
+def read_vary(vary: Variations, model: Model, chosen: Sequence[str]) -> list[Varied]:
     """Read what a study varies.
 
     Parameters
@@ -147,7 +148,7 @@ def _check_number(field: str, steps: float) -> None:
         raise InputError(field, f"{steps} steps", f"at most {INPUT_LIMITS.steps} steps")
 
 
-def _read_one(key: str, values: Any, model: Model, chosen: Sequence[str]) -> Varied:
+def _read_one(key: str, values: object, model: Model, chosen: Sequence[str]) -> Varied:
     """Return one thing that is varied, with its values."""
     match = KEY.match(key)
     if match is None:
@@ -173,7 +174,7 @@ def _read_one(key: str, values: Any, model: Model, chosen: Sequence[str]) -> Var
     return _requirement(word, key, values, model)
 
 
-def _in_place(place: str, word: str, key: str, values: Any, model: Model) -> Varied:
+def _in_place(place: str, word: str, key: str, values: object, model: Model) -> Varied:
     """Varied parts, options or scatter, with their values."""
     d = model.declaration
     if place == "parts":
@@ -191,7 +192,7 @@ def _in_place(place: str, word: str, key: str, values: Any, model: Model) -> Var
     return Varied("scatter", name_in_block(word, d.names()), "", "", _ranges(key, values))
 
 
-def _requirement(word: str, key: str, values: Any, model: Model) -> Varied:
+def _requirement(word: str, key: str, values: object, model: Model) -> Varied:
     """Return a requirement that is varied, with its values."""
     d = model.declaration
     spelled = d.names().get(word)
@@ -208,7 +209,7 @@ def _requirement(word: str, key: str, values: Any, model: Model) -> Varied:
 # ---- values ---------------------------------------------------------------------------------------------------------
 
 
-def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ...], str]:
+def _numbers(key: str, values: object, declared: str) -> tuple[str, tuple[Value, ...], str]:
     """Return the unit in which a range or list is given, the numbers that it stands for, and a remark on them."""
     field, seen, remark = f"vary {key}", list[str](), ""
     if isinstance(values, str):
@@ -223,7 +224,7 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
             _check_number(field, values.count(",") + 1)
             _refuse_decimal_comma(field, values)
             numbers = [_number(field, x, declared, seen, values) for x in values.split(",")]
-    elif isinstance(values, tuple) and len(values) == 3 and _is_integer(values[2]):
+    elif isinstance(values, tuple) and len(values) == 3 and type(values[2]) is int:
         first, last, count = values
         if not isinstance(first, str) and not isinstance(last, str):
             raise InputError(field, values, f"a list, {list(values)}, or ends with a unit: {RANGE}")
@@ -248,11 +249,7 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
     return (seen[0] if seen else declared), tuple(numbers), remark
 
 
-def _is_integer(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
-
-
-def _number(field: str, value: Any, declared: str, seen: list[str], source: Any) -> float:
+def _number(field: str, value: str | float, declared: str, seen: list[str], source: object) -> float:
     """Return one number; its unit, if it has one, is that of all."""
     if not isinstance(value, str):
         parse_quantity(value, declared, field)
@@ -321,7 +318,7 @@ def _written(number: float, unit: str) -> str:
     return text if unit == "-" else f"{text} {unit}"
 
 
-def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
+def _words(key: str, values: object, several: bool) -> tuple[Value, ...]:
     """Return designations, conditions or labels; of parts an entry may be a list of several designations."""
     field = f"vary {key}"
     entries = listed(values) if isinstance(values, str) else values
@@ -341,7 +338,7 @@ def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
     return tuple(words)
 
 
-def _ranges(key: str, values: Any) -> tuple[Value, ...]:
+def _ranges(key: str, values: object) -> tuple[Value, ...]:
     """Return ranges as a ``robust`` block takes them, or "none"; ``+-5:20:5 %`` stands for four of them.
 
     As of numbers, a unit counts for those before it that have none.
