@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from synth.service.context import API
 from synth.service.errors import JSON
+from synth.verbs.requests import VERBS, Subject
 from tests.service.calling import Service
 
 ANSWERS = Path(__file__).parents[2] / "synth" / "service" / "pages" / "static" / "answers.d.ts"
@@ -18,6 +19,7 @@ HEAD = "// What the service answers, made of its description: `make answers`. Re
 REF = "#/components/schemas/"
 # What the description leaves open, by the name of its type in records.d.ts.
 OPEN = {
+    "family": "string",  # one of those that are installed
     "JobAnswer.progress": "Progress | null",
     "JobAnswer.summary": "Summary | null",
     "DeclarationAnswer.rows": "DeclarationRow[]",
@@ -28,6 +30,7 @@ OPEN = {
     "RowRecord.designs": "FlatDesign[]",
     "get /jobs/${string}/request": "Spec",
 }
+OF_RESULTS = (Subject.FRONT, Subject.BATCH)
 PLAIN = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
 VALUES = {"string": str, "number": (int, float), "boolean": bool, "null": type(None)}
 
@@ -48,6 +51,8 @@ def type_of(schema: Mapping[str, Any]) -> str:
     kind = schema.get("type")
     if "enum" in schema:
         return " | ".join(f'"{word}"' for word in schema["enum"])
+    if isinstance(kind, list):
+        return " | ".join(type_of({"type": one}) for one in kind)
     if kind == "array":
         entry = type_of(schema["items"])
         return f"({entry})[]" if " " in entry and "<" not in entry else f"{entry}[]"
@@ -57,10 +62,10 @@ def type_of(schema: Mapping[str, Any]) -> str:
     return PLAIN[kind] if isinstance(kind, str) else "unknown"
 
 
-def interface(name: str, schema: Mapping[str, Any]) -> str:
-    """Interface of an object; every key of an answer is there."""
-    kinds = {key: OPEN.get(f"{name}.{key}", type_of(one)) for key, one in schema["properties"].items()}
-    keys = (f"  {key}: {kind};\n" for key, kind in kinds.items())
+def interface(name: str, schema: Mapping[str, Any], needed: Collection[str] | None = None) -> str:
+    """Interface of an object; every key of an answer is there, of a request those that it needs."""
+    kinds = {key: OPEN.get(f"{name}.{key}", OPEN.get(key, type_of(one))) for key, one in schema["properties"].items()}
+    keys = (f"  {key}{'' if needed is None or key in needed else '?'}: {kind};\n" for key, kind in kinds.items())
     return f"export interface {name} {{\n{''.join(keys)}}}\n"
 
 
@@ -99,6 +104,12 @@ def answers_text() -> str:
             f"/** Answer to {method.upper()} of an address. */\n"
             f"export type {method.capitalize()}Answer<P extends string> =\n{cases}  unknown;\n"
         )
+    asked = {
+        name: f"{name.title().replace('_', '')}Question" for name, verb in VERBS.items() if verb.about in OF_RESULTS
+    }
+    texts += [interface(kind, schemas[kind], schemas[kind]["required"]) for kind in asked.values()]
+    kinds = "".join(f"  {name}: {kind};\n" for name, kind in asked.items())
+    texts.append(f"/** Requests about the result of a job, by kind. */\nexport interface Requests {{\n{kinds}}}\n")
     return "\n".join(texts)
 
 

@@ -406,3 +406,56 @@ export type PostAnswer<P extends string> =
   P extends `/tokens` | `/tokens?${string}` ? MadeToken :
   P extends `/uploads` | `/uploads?${string}` ? UploadAnswer :
   unknown;
+
+export interface PricesQuestion {
+  of: string;
+  family?: string;
+  design?: number | number[];
+  step?: number | string;
+  time_limit?: number | string;
+}
+
+export interface NearEqualsQuestion {
+  of: string;
+  family?: string;
+  design?: number;
+  within?: number | string;
+  count?: number;
+  seed?: number;
+  time_limit?: number | string;
+}
+
+export interface VerifyQuestion {
+  of: string;
+  family?: string;
+  time_limit?: number | string;
+}
+
+export interface ReportQuestion {
+  of: string;
+  family?: string;
+  design?: string | number | (string | number)[];
+  full?: number;
+  formats?: "html" | "explorer" | "pdf" | "xlsx" | "json" | "svg" | "dxf" | ("html" | "explorer" | "pdf" | "xlsx" | "json" | "svg" | "dxf")[];
+  length?: "summary" | "normal" | "full";
+  about?: Record<string, string>;
+}
+
+export interface SizeRangeQuestion {
+  of: string;
+  variants?: number;
+  objective?: string;
+  per_row?: string[];
+  candidates?: number;
+  gap?: number;
+  time_limit?: number | string;
+}
+
+/** Requests about the result of a job, by kind. */
+export interface Requests {
+  prices: PricesQuestion;
+  near_equals: NearEqualsQuestion;
+  verify: VerifyQuestion;
+  report: ReportQuestion;
+  size_range: SizeRangeQuestion;
+}

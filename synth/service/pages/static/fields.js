@@ -31,10 +31,12 @@ export function typed(value, unit) {
   return unit && unit !== "-" && text.endsWith(` ${unit}`) ? text.slice(0, -unit.length - 1) : text;
 }
 
+/** @typedef {Pick<DeclarationRow, "name" | "text" | "unit" | "symbol" | "source" | "section" | "lower" | "upper">} FieldRow what a field shows */
+
 /** A row with a name, what it means, a place to type, and what may be typed. */
 export class Field {
   /**
-   * @param {DeclarationRow} row
+   * @param {FieldRow} row
    * @param {{path: string[], hint: string, value: string, changed: () => void}} how
    */
   constructor(row, { path, hint, value, changed }) {
@@ -98,7 +100,7 @@ function nice(read) {
   return `${Number.isFinite(Number(number)) ? figure(Number(number), FULL_DIGITS) : number} ${unitText(unit)}`.trim();
 }
 
-/** @param {DeclarationRow} row */
+/** @param {FieldRow} row */
 function range(row) {
   if (row.section === "part") return "rows of the catalogue";
   if (row.lower === null || row.lower === undefined) return "";

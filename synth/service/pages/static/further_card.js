@@ -7,7 +7,9 @@ import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 /**
  * @typedef {import("./answers.js").JobAnswer} Job
  * @typedef {import("./records.js").Spec} Spec
- * @typedef {{kind: string, text: (rank: number, single: boolean) => string, note: string, request: (job: Job, rank: number) => object, of: (job: Job, request: Spec) => boolean}} Ask
+ * @typedef {import("./answers.js").Requests & {rate: {of: string}}} Requests
+ * @typedef {{text: (rank: number, single: boolean) => string, note: string, of: (job: Job, request: Spec) => boolean}} Offer
+ * @typedef {{[K in keyof Requests]: Offer & {kind: K, request: (job: Job, rank: number) => Omit<Requests[K], "of">}}[keyof Requests]} Ask
  */
 
 const SHOWN = 5; // jobs before the rest is unfolded

@@ -1,10 +1,12 @@
 // Standard sizes for the rows of a batch: asked beside it, and shown as a page of their own.
 
-import { get, listen, maySubmit, messageOf, post } from "./api.js";
+import { get, listen, maySubmit, messageOf, post, problemsOf } from "./api.js";
 import { cellsOf, headingOf, sheet, short } from "./csv.js";
 import { curveOf } from "./curve.js";
 import { asWords, figure, h, unitText, words } from "./dom.js";
+import { stated } from "./fields.js";
 import { percent } from "./numbers.js";
+import { requestField } from "./request_field.js";
 import { LIVE, badge, count, outcomeText, rowBadge } from "./words.js";
 
 /** @typedef {import("./answers.js").JobAnswer} Job */
@@ -26,25 +28,27 @@ export function sizesCard(job) {
  * @param {Job} job
  */
 async function offer(element, job) {
-  const { jobs } = await get(`/jobs?kind=size_range&parent=${job.id}&limit=${MOST_LISTED}`);
-  if (!jobs.length && !maySubmit()) return;
+  const [{ jobs }, many] = await Promise.all([get(`/jobs?kind=size_range&parent=${job.id}&limit=${MOST_LISTED}`),
+    maySubmit() ? requestField("size_range", "variants", { hint: "the fewest", changed: () => {} }) : null]);
+  if (!jobs.length && !many) return;
   const slot = h("div");
-  const many = h("input", { id: "variants", inputmode: "numeric", autocomplete: "off", placeholder: "the fewest", "aria-describedby": "variants-fault" });
-  const fault = h("p", { class: "fault", role: "alert", id: "variants-fault" });
+  const fault = h("p", { class: "fault", role: "alert" });
   const ask = h("button", { type: "submit" }, "Choose sizes");
-  const form = maySubmit() ? h("form", { class: "row", novalidate: true, onsubmit: async (event) => {
+  const form = many && h("form", { class: "stack", novalidate: true, onsubmit: async (event) => {
     event.preventDefault();
     fault.textContent = "";
     ask.disabled = true;
-    const number = many.value.trim();
+    const variants = stated(many.value, "");
     try {
-      const made = await post("/jobs", { kind: "size_range", request: { of: job.id, ...(number ? { variants: /^\d+$/.test(number) ? Number(number) : number } : {}) }, parent: job.id });
+      const made = await post("/jobs", { kind: "size_range", request: { of: job.id, ...(variants === "" ? {} : { variants }) }, parent: job.id });
       location.assign(`/jobs/${made.id}`);
     } catch (error) {
-      fault.textContent = messageOf(error);
+      const problem = problemsOf(error).find(({ path }) => path.at(-1) === "variants");
+      many.show(problem ?? null, "");
+      fault.textContent = problem ? "" : messageOf(error);
       ask.disabled = false;
     }
-  } }, h("label", { for: "variants" }, "Number of sizes"), many, ask) : null;
+  } }, many.element, h("p", {}, ask));
   element.hidden = false;
   const asked = jobs.length ? h("ul", { class: "stack" }, jobs.map((one) => h("li", { class: "row" }, badge(one), h("a", { href: `/jobs/${one.id}` }, sizesText(one))))) : null;
   element.replaceChildren(...[h("h2", {}, "Standard sizes"), h("p", { class: "note" }, "A batch gives every row its own best design. Which few designs would serve all rows, and what would that cost?"), form, fault, asked, slot].filter((one) => one !== null));
