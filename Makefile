@@ -1,4 +1,4 @@
-# make demo, make check, make test, make thorough, make lint, make javascript, make kernels, make mechanics, make schema, make picture, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make javascript, make kernels, make mechanics, make schema, make answers, make picture, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/system/operating_system.py
 
-.PHONY: demo check test thorough lint javascript kernels mechanics schema picture gallery lists lock clean
+.PHONY: demo check test thorough lint javascript kernels mechanics schema answers picture gallery lists lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -51,9 +51,7 @@ javascript:
 		if grep -q EUSAGE $(NPM_TOLD); then head -5 $(NPM_TOLD) >&2; exit 1; fi; \
 		echo "JavaScript was not checked: npm ci could not install the packages ($(NPM_TOLD) tells why)"; \
 	else \
-		set -e; for types in tsconfig.json tsconfig.pages.json tsconfig.scripts.json; do node_modules/.bin/tsc -p $$types; done; \
-		node_modules/.bin/eslint .; \
-		node --test --test-reporter=dot tests/ui/*.test.mjs; \
+		node_modules/.bin/tsc && node_modules/.bin/eslint . && node --test --test-reporter=dot tests/ui/*.test.mjs; \
 	fi
 
 $(NODE_MODULES): package.json package-lock.json
@@ -72,6 +70,10 @@ mechanics: $(DEV)
 # The JSON schema of front.json; a test compares it.
 schema: $(DEV)
 	$(BIN)/python -m tests.results.front_schema
+
+# Types of the service's answers, for the JavaScript of its pages; a test compares them.
+answers: $(DEV)
+	$(BIN)/python -m tests.service.answers
 
 # The picture on the first screen of the README, as the program draws it; a test compares it.
 picture: $(RUNTIME)

@@ -42,6 +42,28 @@ class ValueKind:
 
 
 @dataclass(frozen=True)
+class TypedForm:
+    """Option of the command line for a value that is typed in another form than requests state it.
+
+    Parameters
+    ----------
+    flag : str
+    metavar : str, optional
+    help : str
+        One sentence.
+    option : type
+    read : callable
+        Value as typed -> value as requests state it; the first argument names the option in messages.
+    """
+
+    flag: str
+    metavar: str | None
+    help: str
+    option: Any
+    read: Reader
+
+
+@dataclass(frozen=True)
 class RequestField:
     """A field of requests; command line, JSON schema and documentation take it from here.
 
@@ -63,6 +85,8 @@ class RequestField:
         Placeholder for its value on the command line.
     needed : str
         What is expected where it is missing; empty where it may be.
+    typed : TypedForm, optional
+        Its option on the command line, where that is not ``value.option``.
     """
 
     name: str
@@ -75,6 +99,12 @@ class RequestField:
     flag: str = ""
     metavar: str | None = None
     needed: str = ""
+    typed: TypedForm | None = None
+
+    @property
+    def option(self) -> Any:
+        """Type of its option on the command line; None where it has none."""
+        return self.value.option if self.typed is None else self.typed.option
 
     def read(self, where: str, value: object) -> Any:
         """Value as it is used; ``where`` names the field in messages.
@@ -131,6 +161,20 @@ def text(right: str = "a name") -> Reader:
         return value
 
     return read
+
+
+def pair(where: str, text: str) -> tuple[str, str]:
+    """Name and value in ``name=value``.
+
+    Raises
+    ------
+    InputError
+        One of them is missing.
+    """
+    name, sign, value = text.partition("=")
+    if not sign or not name.strip() or not value.strip():
+        raise InputError(where, text, "name=value")
+    return name.strip(), value.strip()
 
 
 _name = text()
@@ -244,6 +288,17 @@ def _objectives(where: str, value: object) -> Any:
     if not isinstance(value, (list, tuple)) or not all(isinstance(x, str) for x in value):
         raise InputError(where, shown_kind(value), example)
     return tuple(value)
+
+
+def _typed_objectives(where: str, texts: list[str]) -> list[str] | dict[str, str]:
+    """Objectives from repeated options: names, or names with min or max."""
+    if not any("=" in text for text in texts):
+        return texts
+    pairs = [pair(where, text) if "=" in text else (text, "") for text in texts]
+    unsaid = next((name for name, sense in pairs if not sense), None)
+    if unsaid is not None:
+        raise InputError(where, unsaid, f"{unsaid}=min or {unsaid}=max: all objectives with a sense, or none")
+    return dict(pairs)
 
 
 def _catalogs(where: str, value: object) -> Any:
@@ -422,6 +477,13 @@ FIELDS: Mapping[str, RequestField] = _by_name(
         ValueKind(some(TEXT, listed({"type": "string"}), by_name(one_of(("min", "max")))), _objectives),
         "What is minimised or maximised; by default what the family names.",
         examples=(["mass", "actuation_force"], {"mass": "min"}, "mass"),
+        typed=TypedForm(
+            "--objective",
+            "NAME[=SENSE]",
+            "An objective, name or name=min or name=max; repeat it.",
+            list[str],
+            _typed_objectives,
+        ),
     ),
     RequestField(
         "limits",

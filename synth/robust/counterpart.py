@@ -23,7 +23,6 @@ from synth.bounds.structure import classified
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.model.problem import DesignProblem
 from synth.question.arguments import Limits, Scatter
-from synth.question.ranges import declared_ranges
 from synth.question.uncertainty import RATE, Uncertainty, read_remaining
 from synth.question.user_limits import check_number_of_limits, read_limits
 from synth.robust.uncertainty import LEAST, MOST, SLIDING, Member, Scattered, scattered

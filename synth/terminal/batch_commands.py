@@ -13,7 +13,7 @@ from synth.folders.csv_style import CsvStyle, csv_style
 from synth.folders.output_folder import BATCH
 from synth.system.interrupts import heard_again
 from synth.tables.table_file import read_as
-from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowsFolder, RowsOptions, VisibleRows, takes
+from synth.terminal.options import Csv, Encoding, Headings, Quiet, RowsFolder, VisibleRows, takes
 from synth.terminal.session import (
     INFEASIBLE,
     INTERNAL,
@@ -61,9 +61,9 @@ def register(app: typer.Typer) -> None:
     app.add_typer(jobs_app, name="jobs")
 
 
-@takes(RowsOptions)
+@takes(BatchRequest)
 def batch(
-    asked: RowsOptions,
+    asked: BatchRequest,
     *,
     rows: RowsFile,
     folder: RowsFolder = None,

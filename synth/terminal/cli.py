@@ -17,6 +17,7 @@ from synth.errors import DeclarationError, InputError, RefusedError, derived
 from synth.folders.csv_style import csv_style
 from synth.folders.files import frame_csv
 from synth.folders.output_folder import EXPLANATION, EXPLANATION_TEXT, FRONT, save_files, save_result
+from synth.question.request_fields import pair
 from synth.question.spec_keys import A_DESIGN, A_QUESTION, ONE_FAMILY
 from synth.results.drawings import PLOT, report
 from synth.system.interrupts import sigterm_as_interrupt
@@ -64,7 +65,6 @@ from synth.terminal.session import (
     frame_files,
     one_command,
     own_tables,
-    pair,
     say,
     tell,
     tell_readings,

@@ -11,8 +11,9 @@ import typer
 
 from synth.errors import InputError
 from synth.folders.files import write_atomically
+from synth.question.request_fields import pair
 from synth.terminal.options import Family
-from synth.terminal.session import pair, tell
+from synth.terminal.session import tell
 
 Stated = Annotated[
     list[str] | None, typer.Argument(help="Values that are known, by name or symbol.", metavar="[NAME=VALUE]...")

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar
 
 import typer
 
-from synth.errors import InputError
-from synth.question.request_fields import FIELDS, RequestField, ValueKind
-from synth.terminal.session import pair
+from synth.question.request_fields import FIELDS, RequestField
 from synth.text.notices import ignore_notices
 from synth.text.numbers import typed_number
 from synth.verbs.request import VerbRequest, as_flag, shared
@@ -27,7 +25,14 @@ def option(record: RequestField, **other: Any) -> Any:
     words = {"metavar": record.metavar, "help": _help(record), **other}
     if record.unit == "s" and record.usual is not None:
         words["show_default"] = f"{typed_number(record.usual)} s"
-    return typer.Option(record.flag or as_flag(record.name), **words)
+    if record.typed is not None:
+        words |= {"metavar": record.typed.metavar, "help": record.typed.help}
+    return typer.Option(record.flag or flag_of(record), **words)
+
+
+def flag_of(record: RequestField) -> str:
+    """Option of a field in messages."""
+    return as_flag(record.name) if record.typed is None else record.typed.flag
 
 
 def _help(record: RequestField) -> str:
@@ -39,34 +44,38 @@ def _help(record: RequestField) -> str:
 def takes(request: type[Asked]) -> Callable[[Callable[Concatenate[Asked, P], None]], Callable[..., None]]:
     """Command whose options are the fields of a request; its first argument is the request that they state.
 
-    They come behind what the command is about and where its results go.
+    Those that it needs come behind what the command is about, the others behind where its results go.
     """
 
     def decorated(command: Callable[Concatenate[Asked, P], None]) -> Callable[..., None]:
-        fields = {name: record for name, record in request.fields().items() if record.value.option is not None}
+        fields = {name: record for name, record in request.fields().items() if record.option is not None}
 
         def run(*args: P.args, **values: P.kwargs) -> None:
             stated = {name: value for name in fields if (value := values.pop(name)) != []}
-            command(request.read(stated, as_flag), *args, **values)
+            command(request.read(stated, lambda name: flag_of(fields[name]), typed=True), *args, **values)
 
         own = list(inspect.signature(command, eval_str=True).parameters.values())[1:]
-        behind = 1 + max(k for k, one in enumerate(own) if one.name in ABOUT)
-        every = [*own[:behind], *map(_parameter, fields.values()), *own[behind:]]
-        run.__signature__ = inspect.Signature(every)  # type: ignore[attr-defined]
-        run.__annotations__ = {one.name: one.annotation for one in every}
+        for place, needed in ((FOLDER, False), (ABOUT, True)):
+            behind = 1 + max((k for k, one in enumerate(own) if one.name in place), default=-1)
+            own[behind:behind] = [_parameter(one) for one in fields.values() if bool(one.needed) is needed]
+        run.__signature__ = inspect.Signature(own)  # type: ignore[attr-defined]
+        run.__annotations__ = {one.name: one.annotation for one in own}
         run.__name__, run.__doc__, run.__module__ = command.__name__, command.__doc__, command.__module__
         return run
 
     return decorated
 
 
-ABOUT = ("source", "spec", "rows", "vary", "folder")
+ABOUT = ("source", "spec", "rows")
+FOLDER = (*ABOUT, "folder")
 
 
 def _parameter(record: RequestField) -> inspect.Parameter:
-    typed = record.value.option if record.usual is not None else record.value.option | None
+    required = bool(record.needed)
+    typed = record.option if required or record.usual is not None else record.option | None
     annotation = Annotated.__class_getitem__((typed, option(record)))  # type: ignore[attr-defined]
-    return inspect.Parameter(record.name, inspect.Parameter.KEYWORD_ONLY, default=record.usual, annotation=annotation)
+    default = inspect.Parameter.empty if required else record.usual
+    return inspect.Parameter(record.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
 def _families(begun: str) -> list[str]:
@@ -88,26 +97,6 @@ SpecFile = Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar=
 FrontFolder = Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")]
 
 
-def _objectives(where: str, texts: list[str]) -> list[str] | dict[str, str]:
-    """Objectives from repeated options: names, or names with min or max."""
-    if not any("=" in text for text in texts):
-        return texts
-    pairs = [pair(where, text) if "=" in text else (text, "") for text in texts]
-    unsaid = next((name for name, sense in pairs if not sense), None)
-    if unsaid is not None:
-        raise InputError(where, unsaid, f"{unsaid}=min or {unsaid}=max: all objectives with a sense, or none")
-    return dict(pairs)
-
-
-OBJECTIVE = replace(
-    FIELDS["objectives"],
-    value=ValueKind({}, _objectives, list[str]),
-    help="An objective, name or name=min or name=max; repeat it.",
-    flag="--objective",
-    metavar="NAME[=SENSE]",
-)
-
-
 @dataclass(frozen=True, kw_only=True)
 class SearchOptions(VerbRequest):
     """Options of a search, each in place of the key of the spec."""
@@ -118,7 +107,7 @@ class SearchOptions(VerbRequest):
     seed: int | None = shared(FIELDS["seed"], usual=None)
     time_limit: float | None = shared(FIELDS["time_limit"])
     workers: int | None = shared(FIELDS["workers"], usual=None)
-    objectives: Any = shared(OBJECTIVE)
+    objectives: Any = shared(FIELDS["objectives"])
 
     def of_spec(self) -> dict[str, Any]:
         """Entries of a spec that are stated."""
@@ -135,14 +124,8 @@ class WhatIfOptions(SearchOptions):
     time_limit: float | None = shared(
         FIELDS["time_limit"], help="Stop after this time for all steps, in seconds or such as '2 min'."
     )
+    vary: Mapping[str, Any] = shared(WhatIfRequest.fields()["vary"])
     breaks: bool = shared(WhatIfRequest.fields()["breaks"])
-
-
-@dataclass(frozen=True, kw_only=True)
-class RowsOptions(BatchRequest):
-    """Options of a batch."""
-
-    objectives: Any = shared(OBJECTIVE)
 
 
 # Without -o a result is shown and nothing is written; of a table that is worked off the result is files, see session.

@@ -12,6 +12,7 @@ from synth.errors import InputError
 from synth.terminal.batch_commands import Database
 from synth.terminal.options import Quiet, option
 from synth.terminal.session import BAD_INPUT, INFEASIBLE, check_output, tell, tell_readings, tell_written
+from synth.verbs.request import as_flag
 from synth.verbs.requests import FrontReportRequest
 
 if TYPE_CHECKING:
@@ -38,9 +39,7 @@ def report(
         Path | None,
         typer.Option("--output", "-o", help="Folder for the files, by default that of the source.", metavar="DIR"),
     ] = None,
-    design: Annotated[
-        str | None, option(FIELDS["design"], help="Designs that get sheets, such as 1,3,knee; by default the first.")
-    ] = None,
+    design: Annotated[str | None, option(FIELDS["design"])] = None,
     full: Annotated[
         int | None, option(FIELDS["full"], help="Designs that report.html tells in full, 5 by default.", min=0)
     ] = None,
@@ -113,7 +112,8 @@ def report(
         written = _of_design(source, target, how, quiet)
     else:
         target = folder or (source if source.is_dir() else source.parent)
-        written = _of_front(source, target, design or "1", FrontReportRequest.full if full is None else full, how)
+        typed_fields = {"design": design or None, "full": full}
+        written = _of_front(source, target, FrontReportRequest.read(typed_fields, as_flag, typed=True), how)
     if not quiet:
         tell_written(written.folder, target, written.files)
     for note in (*written.notes, *map(str, written.lacking)):
@@ -159,16 +159,15 @@ def _of_batch(source: Path, target: Path, row: str | None, how: ReportOptions, d
     return report_batch(source, target, BatchOptions((row or "").strip(), how), database)
 
 
-def _of_front(source: Path, target: Path, design: str, full: int, how: ReportOptions) -> WrittenReport:
+def _of_front(source: Path, target: Path, request: FrontReportRequest, how: ReportOptions) -> WrittenReport:
     """Write the report of a front, or of several families."""
     from synth.analysis.reporting import report as write
     from synth.analysis.reporting import report_comparison
     from synth.results.loading import COMPARISON, load_front
 
-    chosen = [word.strip() for word in design.split(",")]
     if (source / COMPARISON).is_file():
-        return report_comparison(source, target, how, design=chosen, full=full)
-    return write(load_front(source), target, how, design=chosen, full=full)
+        return report_comparison(source, target, how, design=request.design, full=request.full)
+    return write(load_front(source), target, how, design=request.design, full=request.full)
 
 
 def _of_design(source: Path, target: Path, how: ReportOptions, quiet: bool) -> WrittenReport:

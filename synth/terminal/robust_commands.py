@@ -16,7 +16,6 @@ from synth.terminal.session import (
     STOPPED,
     blamed_on,
     claim_output,
-    pair,
     tell_readings,
     tell_written,
 )
@@ -39,14 +38,6 @@ def rate(
     *,
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
     folder: Folder = None,
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="What scatters: 'friction=catalogue range', 'load_torque=+-10 %', 'ambient_temperature=0 .. 60 degC', "
-            "'ring_outer_diameter=+-0.1 mm'; repeat it. By default what the question says under robust.",
-            metavar="NAME=RANGE",
-        ),
-    ] = None,
     samples: Annotated[int | None, typer.Option(help="Points of the range, a power of 2.")] = None,
     confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
@@ -55,10 +46,6 @@ def rate(
 ) -> None:
     """Tell the worst limit and the yield of designs whose friction, duty or sizes scatter."""
     style = csv_style(csv, "--csv")
-    pairs = [pair("--over", text) for text in over or []]
-    for name, _ in pairs:
-        if [other for other, _ in pairs].count(name) > 1:
-            raise InputError("--over", name, "each thing once")
     claim_output(folder, RATING, source=source)
     from synth.robust.rate import rate as rate_designs
     from synth.terminal.console import output, progress_display
@@ -67,7 +54,7 @@ def rate(
     flags = {"samples": samples, "confidence": confidence, "seed": seed}
     told = {name: value for name, value in flags.items() if value is not None}
     designs, problem, catalogs, known = _designs(source, quiet)
-    block = dict(pairs) if pairs else {**known}
+    block = dict(asked.robust or known)
     if not block:
         right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
         raise InputError("--over", None, right)

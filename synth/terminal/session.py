@@ -82,14 +82,6 @@ def own_tables(catalogs: UserTables, base: Path, encoding: str | None, visible: 
     return with_reading_options(catalogs, base, encoding, visible)
 
 
-def pair(flag: str, text: str) -> tuple[str, str]:
-    """Split name=value."""
-    name, sign, value = text.partition("=")
-    if not sign or not name.strip() or not value.strip():
-        raise InputError(flag, text, "name=value")
-    return name.strip(), value.strip()
-
-
 def frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
     """Files for frames: file name -> text, a table and a drawing of each."""
     draw = report("figure")

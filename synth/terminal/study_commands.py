@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING
 
 import typer
 
 from synth.analysis.design_spec import must_be_a_question, must_be_one_family
-from synth.errors import InputError
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import STUDY
 from synth.terminal.options import Csv, Folder, Quiet, SpecFile, WhatIfOptions, takes
@@ -38,14 +37,6 @@ def whatif(
     options: WhatIfOptions,
     *,
     spec: SpecFile,
-    vary: Annotated[
-        list[str],
-        typer.Option(
-            help="What to vary: 'load_torque=500:700:50 N*m', 'mass <= 40,50,60 kg', 'weights.mass=1:4:1', "
-            "'parts.SLOT=a,b', 'options.NAME=a,b' or 'robust.friction=+-5 %, +-10 %'; give it once or twice.",
-            metavar="TEXT",
-        ),
-    ],
     folder: Folder = None,
     csv: Csv = "en",
     quiet: Quiet = False,
@@ -59,7 +50,7 @@ def whatif(
     must_be_one_family(asked)
     claim_output(folder, STUDY)
     tell_not_kept(folder, quiet)
-    study = _study(asked, vary, folder, options.breaks, quiet)
+    study = _study(asked, options, folder, quiet)
     target = None if folder is None else study.save(folder, style)
     if not quiet:
         from synth.studies.study_store import STEPS
@@ -77,24 +68,17 @@ def whatif(
         raise typer.Exit(INFEASIBLE)
 
 
-def _study(asked: Spec, vary: list[str], folder: Path | None, breaks: bool, quiet: bool) -> Study:
+def _study(asked: Spec, options: WhatIfOptions, folder: Path | None, quiet: bool) -> Study:
     from synth.studies.whatif.run import POINTS, study_of
-    from synth.studies.whatif.vary import split_text
     from synth.terminal.console import progress_display
 
-    wanted: dict[str, Any] = {}
-    for text in vary:
-        name, values = split_text(text)
-        if name in wanted:
-            raise InputError("--vary", text, "each thing once")
-        wanted[name] = values
     with blamed_on(asked.file):
         request, settings = asked.request(), asked.settings(points=POINTS)
         if not quiet:
             tell_readings(request.catalogs)
         with progress_display(quiet) as progress:
             try:
-                return study_of(request, settings, wanted, progress, breaks, folder)
+                return study_of(request, settings, options.vary, progress, options.breaks, folder)
             except KeyboardInterrupt:
                 tell("stopped before the first step was begun; nothing is written")
                 raise typer.Exit(STOPPED) from None

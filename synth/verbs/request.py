@@ -37,8 +37,10 @@ class VerbRequest:
         return {one.name: dataclasses.replace(one.metadata[FIELD], name=one.name) for one in dataclasses.fields(cls)}
 
     @classmethod
-    def read(cls, stated: Mapping[str, object], named: Callable[[str], str] = "{}".format) -> Self:
-        """Request with some values as they are typed.
+    def read(
+        cls, stated: Mapping[str, object], named: Callable[[str], str] = "{}".format, *, typed: bool = False
+    ) -> Self:
+        """Request with some values as they are stated.
 
         Parameters
         ----------
@@ -46,6 +48,8 @@ class VerbRequest:
             By name of the field; None counts as not stated.
         named : callable
             Name of a field -> how messages call it.
+        typed : bool
+            Whether they are as the command line has them.
 
         Raises
         ------
@@ -57,7 +61,10 @@ class VerbRequest:
         for name, record in cls.fields().items():
             with gathered(faults):
                 if stated.get(name) is not None:
-                    read[name] = record.read(named(name), stated[name])
+                    value = stated[name]
+                    if typed and record.typed is not None:
+                        value = record.typed.read(named(name), value)
+                    read[name] = record.read(named(name), value)
                 elif record.needed:
                     raise InputError(named(name), None, record.needed, (name,))
         refuse_gathered(faults)

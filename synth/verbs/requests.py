@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -22,11 +23,13 @@ from synth.question.request_fields import (
     TEXT,
     RequestField,
     Schema,
+    TypedForm,
     ValueKind,
     by_name,
     family_schema,
     listed,
     one_of,
+    pair,
     shown_kind,
     some,
     text,
@@ -78,6 +81,50 @@ def _vary(where: str, value: object) -> Mapping[str, Any]:
             right = "a text or list of values, or {'from': '200 mm', 'to': '300 mm', 'count': 11}"
             raise InputError(where, ", ".join(map(str, values)), right, (str(name),))
     return value
+
+
+VARIED_TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
+
+
+def typed_vary(where: str, texts: list[str]) -> dict[str, str]:
+    """Varied quantities in ``mass <= 40:60:5 kg`` and ``load_torque=500,600 N*m``.
+
+    Examples
+    --------
+    >>> typed_vary("--vary", ["mass <= 40:60:5 kg", "outer_diameter_limit=200:300:10 mm"])
+    {'mass <=': '40:60:5 kg', 'outer_diameter_limit': '200:300:10 mm'}
+    """
+    values_of: dict[str, str] = {}
+    for one in texts:
+        match = VARIED_TEXT.match(one)
+        if match is None:
+            right = "NAME=VALUES or QUANTITY <= VALUES, for example 'load_torque=500:700:50 N*m'"
+            raise InputError(where, one, right)
+        name, sign, values = match.groups()
+        label = name if sign == "=" else f"{name} {sign}"
+        if label in values_of:
+            raise InputError(where, one, "each thing once")
+        values_of[label] = values
+    return values_of
+
+
+def _typed_spread(where: str, texts: list[str]) -> dict[str, str]:
+    """What scatters, in ``load_torque=+-10 %``."""
+    pairs = [pair(where, text) for text in texts]
+    for name, _ in pairs:
+        if [other for other, _ in pairs].count(name) > 1:
+            raise InputError(where, name, "each thing once")
+    return dict(pairs)
+
+
+def _typed_sheets(where: str, words: str) -> list[str]:
+    return [word.strip() for word in words.split(",")]
+
+
+def python_vary(varied: Mapping[str, Any]) -> dict[str, Any]:
+    """Varied quantities as Python states them: ends and a count as a tuple."""
+    ends = {name: tuple(v[end] for end in VARIED_ENDS) for name, v in varied.items() if isinstance(v, Mapping)}
+    return {**varied, **ends}
 
 
 def _sheets(where: str, value: object) -> tuple[str, ...]:
@@ -219,6 +266,14 @@ class WhatIfRequest(VerbRequest):
         unit="that of what varies",
         examples=({"load_torque": "500:700:50 N*m"}, {"mass <=": {"from": "40 kg", "to": "60 kg", "count": 3}}),
         needed=VARIES,
+        typed=TypedForm(
+            "--vary",
+            "TEXT",
+            "What to vary: 'load_torque=500:700:50 N*m', 'mass <= 40,50,60 kg', 'weights.mass=1:4:1', "
+            "'parts.SLOT=a,b', 'options.NAME=a,b' or 'robust.friction=+-5 %, +-10 %'; give it once or twice.",
+            list[str],
+            typed_vary,
+        ),
     )
     breaks: bool = field(
         FLAG, "Find where the best parts or counts change.", usual=True, examples=(False,), flag="--breaks/--no-breaks"
@@ -261,7 +316,17 @@ class RateRequest(VerbRequest):
     design: tuple[int, ...] | None = field(
         ValueKind(RANKS_SCHEMA, as_stated), "Ranks of designs, all by default.", examples=(1, [1, 2])
     )
-    robust: Mapping[str, Any] | None = shared(FIELDS["robust"])
+    robust: Mapping[str, Any] | None = shared(
+        FIELDS["robust"],
+        typed=TypedForm(
+            "--over",
+            "NAME=RANGE",
+            "What scatters: 'friction=catalogue range', 'load_torque=+-10 %', 'ambient_temperature=0 .. 60 degC', "
+            "'ring_outer_diameter=+-0.1 mm'; repeat it. By default what the question says under robust.",
+            list[str],
+            _typed_spread,
+        ),
+    )
     time_limit: float | None = shared(FIELDS["time_limit"])
 
 
@@ -283,7 +348,17 @@ class FrontReportRequest(VerbRequest):
     """What is written, of which designs, for whom."""
 
     design: tuple[str, ...] = field(
-        SHEETS, "Designs that get sheets: ranks, or `knee`.", usual=("1",), examples=([1, 3, "knee"], 2)
+        SHEETS,
+        "Designs that get sheets: ranks, or `knee`.",
+        usual=("1",),
+        examples=([1, 3, "knee"], 2),
+        typed=TypedForm(
+            "--design",
+            None,
+            "Designs that get sheets, such as 1,3,knee; by default the first.",
+            str,
+            _typed_sheets,
+        ),
     )
     full: int = field(
         whole(0, INPUT_LIMITS.points), "Designs that report.html tells in full.", usual=5, examples=(0, 10)

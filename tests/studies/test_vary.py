@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 import synth
 from synth.errors import InputError
 from synth.studies.whatif.steps import Steps
-from synth.studies.whatif.vary import Varied, split_text
+from synth.studies.whatif.vary import Varied
+from synth.verbs.requests import typed_vary
 from tests.asking import steps_of
 from tests.sample_problems.ropes import Ropes, ropes
 
@@ -47,13 +48,13 @@ def one(name: str, values: Any) -> Varied:
     ],
 )
 def test_a_text_is_split(text: str, name: str, values: str) -> None:
-    assert split_text(text) == (name, values)
+    assert typed_vary("--vary", [text]) == {name: values}
 
 
 @pytest.mark.parametrize("text", ["", "load", "=5 kN", "load=", "load= ", "<= 5"])
 def test_a_text_that_says_nothing_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="--vary"):
-        split_text(text)
+        typed_vary("--vary", [text])
 
 
 # ---- numbers --------------------------------------------------------------------------------------------------------

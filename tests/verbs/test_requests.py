@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -17,9 +19,11 @@ from synth.errors import InputError
 from synth.question.request_fields import FIELDS, RequestField
 from synth.question.settings import SearchSettings
 from synth.terminal.cli import app
+from synth.terminal.options import flag_of
 from synth.verbs.requests import VERBS, NearEqualsRequest, PricesRequest, Verb
 from tests.waiting import PATIENCE
 
+ROOT = Path(__file__).parents[2]
 COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 CALLED = {"synthesis": "synthesize"}  # in Python, where it is not the name of the verb
 COMMAND = {"synthesis": "run", "compare": "run"}
@@ -56,23 +60,23 @@ OTHERWISE = {"rate": {"robust", "design"}, "batch": {"upload", "rows", "family"}
 
 def options(verb: Verb) -> dict[str, RequestField]:
     """Fields that are options of the command of a verb."""
-    searched = {name: FIELDS[name] for name in ("points", "gap", "grid", "seed", "time_limit", "workers")}
+    searched = {name: FIELDS[name] for name in ("points", "gap", "grid", "seed", "time_limit", "workers", "objectives")}
     fields = {**(searched if verb.name in ("synthesis", "compare", "whatif") else {}), **verb.request.fields()}
-    return {name: one for name, one in fields.items() if one.value.option is not None}
+    return {name: one for name, one in fields.items() if one.option is not None}
 
 
-SEARCHED = "points gap grid seed time_limit workers"
+SEARCHED = "points gap grid seed time_limit workers objectives"
 OPTIONS = {
     "synthesis": SEARCHED,
     "compare": SEARCHED,
-    "whatif": f"{SEARCHED} breaks",
+    "whatif": f"{SEARCHED} vary breaks",
     "explain": "physics",
     "prices": "design step time_limit",
     "near_equals": "design within count seed time_limit",
-    "rate": "time_limit",
+    "rate": "robust time_limit",
     "verify": "time_limit",
-    "report": "full length",
-    "batch": "family points gap grid seed time_limit",
+    "report": "design full length",
+    "batch": "family objectives points gap grid seed time_limit",
     "size_range": "variants objective per_row candidates gap time_limit",
 }
 
@@ -85,9 +89,60 @@ def test_no_option_is_lost() -> None:
 def test_the_command_line_takes_what_the_record_says(verb: Verb) -> None:
     params = {one.name: one for one in COMMANDS[COMMAND.get(verb.name, verb.name.replace("_", "-"))].params}
     for name, record in options(verb).items():
-        assert (record.flag or f"--{name.replace('_', '-')}").split("/")[0] in params[name].opts, name
+        assert (record.flag or flag_of(record)).split("/")[0] in params[name].opts, name
+        if record.typed is not None:
+            assert (params[name].help, params[name].metavar) == (record.typed.help, record.typed.metavar), name
         if params[name].default is not None:
             assert record.read(name, params[name].default) == record.usual, name
+
+
+# Of the command line: files, screens and machines, which no request names.
+OF_COMMANDS = (
+    "--output --csv --quiet --all --more --plot --encoding --visible-rows --verbose --mapping --catalogs --workers"
+)
+OF_COMMANDS += " --scheduler --database --row --explorer --pdf --xlsx --drawing --dxf --step --json --about --font-path"
+# Entries of a spec that a command takes alone.
+OF_SPECS = {"rate": {"samples", "confidence", "seed"}, "explain": {"time_limit"}, "size_range": {"family", "points"}}
+
+
+@pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
+def test_the_command_line_has_no_words_of_its_own_for_a_request(verb: Verb) -> None:
+    for one in COMMANDS[COMMAND.get(verb.name, verb.name.replace("_", "-"))].params:
+        if one.param_type_name == "option" and not set(one.opts) & set(OF_COMMANDS.split()):
+            assert one.name in {*options(verb), *OF_SPECS.get(verb.name, ())}, one.opts
+
+
+def test_pages_write_no_field_of_a_verb_by_hand() -> None:
+    written = {
+        name
+        for path in (ROOT / "synth" / "service" / "pages" / "static").glob("*.js")
+        for name in re.findall(r"""h\("(?:input|select)", {[^}]*\bid: "(\w+)\"""", path.read_text(encoding="utf-8"))
+    }
+    assert {"points", "family", "title"} <= written
+    own = {name for verb in VERBS.values() for name in verb.request.fields() if name not in FIELDS}
+    assert not written & own
+
+
+TYPED = {
+    "vary": (
+        ["load_torque=500:700:50 N*m", "mass <= 40,50 kg"],
+        {"load_torque": "500:700:50 N*m", "mass <=": "40,50 kg"},
+    ),
+    "robust": (["friction=catalogue range"], {"friction": "catalogue range"}),
+    "design": ("1, 3,knee", ["1", "3", "knee"]),
+    "objectives": (["mass=min", "length=max"], {"mass": "min", "length": "max"}),
+}
+
+
+def test_what_is_typed_in_another_form_is_a_value_of_its_field() -> None:
+    typed = [(verb.name, one) for verb in VERBS.values() for one in options(verb).values() if one.typed is not None]
+    assert {one.name for _, one in typed} == set(TYPED)
+    for where, one in typed:
+        stated, value = TYPED[one.name]
+        assert one.typed is not None
+        assert one.typed.read(where, stated) == value
+        jsonschema.validate(value, one.schema())
+        one.read(where, value)
 
 
 @pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))

@@ -21,7 +21,6 @@ from synth.units import as_decimal, parse_quantity, parse_unit
 
 DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options|robust)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
-TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
 NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one comma, without a blank, in digits alone
 TIGHT = re.compile(r"(\d+),(?=(\d+))")
@@ -93,21 +92,6 @@ class Varied:
     def text(self, value: Value) -> str:
         """Return name and value for people: ``mass <= 40 kg``."""
         return f"{self.label} {'' if self.sign else '= '}{self.shown(value)}"
-
-
-def split_text(text: str) -> tuple[str, str]:
-    """Split what the command line takes, ``mass <= 40:60:5 kg`` or ``load_torque=500,600 N*m``, into name and values.
-
-    Examples
-    --------
-    >>> split_text("mass <= 40:60:5 kg"), split_text("outer_diameter_limit=200:300:10 mm")
-    (('mass <=', '40:60:5 kg'), ('outer_diameter_limit', '200:300:10 mm'))
-    """
-    match = TEXT.match(text)
-    if match is None:
-        raise InputError("--vary", text, "NAME=VALUES or QUANTITY <= VALUES, for example 'load_torque=500:700:50 N*m'")
-    name, sign, values = match.groups()
-    return (name if sign == "=" else f"{name} {sign}"), values
 
 
 def read_vary(vary: Variations, model: Model, chosen: Sequence[str]) -> list[Varied]:

@@ -12,6 +12,7 @@ import yaml
 from synth.queue.models import Job, Tenant
 from synth.workers.engine_process import Engines
 from tests.kinds.jobs import DISC
+from tests.service.answers import holds
 from tests.service.calling import Service, code_of
 from tests.service.working import BATCH, DUTY, FAMILY, FRONT, LONG, QUICK, Client, working
 
@@ -45,7 +46,10 @@ def test_a_question_becomes_a_job_and_a_front(database: str, engines: Engines, t
         assert client.get(f"jobs?family={FAMILY}&state=done").json()["jobs"][0]["id"] == job["id"]
         assert client.get("jobs?family=disc_clutch").json()["jobs"] == []
         table = client.post("batches", BATCH, headers={"Idempotency-Key": "two"}).json()["id"]
-        assert client.ended(table)["summary"]["status"] == {"bad_input": 1, "optimal": 2}
+        answered = client.ended(table)
+        assert holds("Summary", answered["summary"]) >= {"rows", "status"}
+        assert holds("Progress", answered["progress"]) >= {"bad", "done", "rows", "status"}
+        assert answered["summary"]["status"] == {"bad_input": 1, "optimal": 2}
         for key in ({"Idempotency-Key": "two"}, {}):
             same = client.post("batches", BATCH, headers=key)
             assert (same.status_code, same.json()["id"]) == (200, table)
@@ -57,7 +61,10 @@ def test_a_question_becomes_a_job_and_a_front(database: str, engines: Engines, t
         ]
         assert client.get(f"jobs/{table}/rows?status=bad_input&limit=1").json()["rows"][0]["line"] == 4
         few = client.submit("size_range", {"of": table})
-        assert client.ended(few)["state"] == "done"
+        sizes = client.ended(few)
+        assert sizes["state"] == "done"
+        assert holds("Summary", sizes["summary"]) >= {"objective", "total_excess", "unit", "variants"}
+        assert holds("SizeRange", client.get(f"jobs/{few}/result").json())
         assert client("DELETE", f"jobs/{table}").status_code == 204
 
 

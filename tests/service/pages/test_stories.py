@@ -511,3 +511,21 @@ def test_what_is_told_aloud_is_told_once(site: Site, shelf: dict[str, str], visi
         found.sees("[role=status]", "1 faulty")
         said = found.page.locator("[role=status], [role=alert], [aria-live]").all_inner_texts()
         assert [text for text in said if text.strip()] == ["3 rows: 1 faulty, the others can be asked."]
+
+
+def test_standard_sizes_are_asked_with_a_field_of_the_verb(site: Site, visited: Visit) -> None:
+    who = site.tenant("sizes")
+    job = who.submit("batch", {**BATCH, "rows": BATCH["rows"][:1]})
+    who.ended(job)
+    with visited(who) as found:
+        found.goes(f"/jobs/{job}")
+        field = found.sees("#f-request-variants")
+        assert "How many variants" in found.sees(".field:has(#f-request-variants) .note").inner_text()
+        field.fill("0")
+        found.page.get_by_role("button", name="Choose sizes").click()
+        found.sees("#f-request-variants-fault", "expected a whole number")
+        found.expects(422)
+        assert field.get_attribute("aria-invalid") == "true"
+        field.fill("1")
+        found.page.get_by_role("button", name="Choose sizes").click()
+        found.page.wait_for_url(lambda url: not url.endswith(job))

@@ -9,7 +9,7 @@ const TRIES = 8, PAUSE = 1500; // of what only looks; ms between
 export class Refusal extends Error {
   /**
    * @param {number} status
-   * @param {{code?: string, message?: string, problems?: object[], request_id?: string}} error
+   * @param {Partial<import("./answers.js").RequestRefusal>} error
    */
   constructor(status, error) {
     super(error.message ?? `the service answers ${status}`);
@@ -21,12 +21,19 @@ export class Refusal extends Error {
 }
 
 /**
+ * @typedef {import("./answers.js").Problem} Problem
+ * @typedef {import("./answers.js").JobAnswer} Job
+ * @typedef {import("./records.js").Happening} Happening
+ * @typedef {(kind: string, told: Happening) => void} Hears
+ */
+
+/**
  * Ask something; JSON comes back, or nothing.
  * @param {string} method
  * @param {string} path below the interface
  * @param {object | FormData} [body]
  * @param {Record<string, string>} [headers]
- * @returns {Promise<any>}
+ * @returns {Promise<unknown>}
  * @throws {Refusal}
  */
 export async function ask(method, path, body, headers = {}) {
@@ -35,14 +42,21 @@ export async function ask(method, path, body, headers = {}) {
     try {
       return await asked(method, path, body, headers);
     } catch (error) {
-      if (error.status !== 503 || k >= again) throw error; // a server that has just begun needs a moment
+      if (statusOf(error) !== 503 || k >= again) throw error; // a server that has just begun needs a moment
       await new Promise((go) => setTimeout(go, PAUSE));
     }
   }
 }
 
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {object | FormData | undefined} body
+ * @param {Record<string, string>} headers
+ */
 async function asked(method, path, body, headers) {
   const form = body instanceof FormData;
+  /** @type {Record<string, string>} */
   const own = body === undefined || form ? {} : { "Content-Type": "application/json" };
   let answer;
   try {
@@ -57,8 +71,19 @@ async function asked(method, path, body, headers) {
   throw new Refusal(answer.status, told.error ?? {});
 }
 
-export const get = (path) => ask("GET", path);
-export const post = (path, body, headers) => ask("POST", path, body, headers);
+/**
+ * @template {string} P
+ * @param {P} path
+ */
+export const get = (path) => /** @type {Promise<import("./answers.js").GetAnswer<P>>} */ (ask("GET", path));
+
+/**
+ * @template {string} P
+ * @param {P} path
+ * @param {object | FormData} [body]
+ * @param {Record<string, string>} [headers]
+ */
+export const post = (path, body, headers) => /** @type {Promise<import("./answers.js").PostAnswer<P>>} */ (ask("POST", path, body, headers));
 
 function toSignIn() {
   location.assign(`/sign-in?next=${encodeURIComponent(location.pathname + location.search)}`);
@@ -70,43 +95,72 @@ export const maySubmit = () => document.body.dataset.maySubmit === "yes";
 /**
  * Listen to jobs until all have ended; a stream that is refused or breaks is opened again.
  * @param {string[]} jobs
- * @param {(kind: string, told: object) => void} heard of the kinds snapshot, progress, started, end and the others
+ * @param {Hears} heard of the kinds progress, started, end and the others
+ * @param {(job: Job) => void} [seen] is told the job as it stands, when a stream begins
  * @returns {() => void} ends it
  */
-export function listen(jobs, heard) {
+export function listen(jobs, heard, seen) {
   const open = new Set(jobs);
-  let stream, again, over = false;
+  /** @type {EventSource | undefined} */
+  let stream;
+  let again = 0, over = false;
   const begin = () => {
-    stream = new EventSource(`${API}/events?jobs=${[...open].join(",")}`);
-    for (const kind of ["snapshot", "created", "started", "resumed", "cancelling", "progress", "remark", "end"]) {
-      stream.addEventListener(kind, (event) => {
+    const own = (stream = new EventSource(`${API}/events?jobs=${[...open].join(",")}`));
+    own.addEventListener("snapshot", (event) => seen?.(JSON.parse(event.data)));
+    for (const kind of ["created", "started", "resumed", "cancelling", "progress", "remark", "end"]) {
+      own.addEventListener(kind, (/** @type {MessageEvent<string>} */ event) => {
         const told = JSON.parse(event.data);
         heard(kind, told);
         if (kind === "end" && open.delete(told.job) && !open.size) stop();
       });
     }
-    stream.onerror = () => {
-      if (stream.readyState === EventSource.CLOSED && !over) again = setTimeout(begin, 3000);
+    own.onerror = () => {
+      if (own.readyState === EventSource.CLOSED && !over) again = window.setTimeout(begin, 3000);
     };
   };
   const stop = () => {
     over = true;
     clearTimeout(again);
-    stream.close();
+    stream?.close();
   };
   begin();
   addEventListener("pagehide", stop, { once: true });
   return stop;
 }
 
-/** Return a refusal as it is shown. */
+/**
+ * Return the status of a refusal; of any other fault 0.
+ * @param {unknown} error
+ */
+export const statusOf = (error) => (error instanceof Refusal ? error.status : 0);
+
+/**
+ * Return what is wrong in the input, as far as a fault says it.
+ * @param {unknown} error
+ */
+export const problemsOf = (error) => (error instanceof Refusal ? error.problems : []);
+
+/**
+ * Return the message of a fault as a sentence.
+ * @param {unknown} error
+ */
+export const messageOf = (error) => sentence(error instanceof Error ? error.message : String(error));
+
+/**
+ * Return a refusal as it is shown.
+ * @param {unknown} error
+ * @param {() => void} [retry]
+ */
 export function faultCard(error, retry) {
-  const number = error.number ? h("p", { class: "note" }, `Number of the request: ${error.number}`) : null;
-  return h("section", { class: "card", role: "alert" }, h("p", { class: "fault" }, sentence(error.message)), number,
+  const number = error instanceof Refusal && error.number ? h("p", { class: "note" }, `Number of the request: ${error.number}`) : null;
+  return h("section", { class: "card", role: "alert" }, h("p", { class: "fault" }, messageOf(error)), number,
     retry ? h("p", { class: "row" }, h("button", { type: "button", onclick: retry }, "Try again")) : null);
 }
 
-/** Return a message of the service as a sentence. */
+/**
+ * Return a message of the service as a sentence.
+ * @param {string | null | undefined} text
+ */
 export const sentence = (text) => (text ? text[0].toUpperCase() + text.slice(1) + (/[.!?:]$/.test(text) ? "" : ".") : "");
 
 document.getElementById("sign-out")?.addEventListener("click", async () => {

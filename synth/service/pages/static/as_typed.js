@@ -4,12 +4,13 @@ import { figure, unitText, words } from "./dom.js";
 import { FULL_DIGITS } from "./numbers.js";
 import { quantity } from "./what_if_knobs.js";
 
+/** @param {string | null} unit */
 const bare = (unit) => unitText(unit).replaceAll(/[\s·]/g, "");
 
 /**
  * Return a record of the explorer that tells requirements as they were typed.
- * @param {object} record
- * @param {Record<string, string | number>} typed requirements as a spec states them
+ * @param {import("../../../../reports/explorer/record.js").FrontRecord} record
+ * @param {Record<string, string | number> | undefined} typed requirements as a spec states them
  */
 export function asTyped(record, typed) {
   const stated = new Map(Object.entries(typed ?? {}).map(([name, value]) => [words(name), value]));

@@ -1,6 +1,6 @@
 // A table of duties: brought, understood column by column, checked line by line, and asked.
 
-import { Refusal, ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
+import { Refusal, ask, faultCard, get, maySubmit, messageOf, post, sentence } from "./api.js";
 import { columnsCard } from "./columns_card.js";
 import { byId, figure, h, say, unitText, words } from "./dom.js";
 import { count } from "./words.js";
@@ -9,16 +9,17 @@ const place = byId("batch");
 const MOST_FAULTS = 100, PATIENCE = 300, LONG = 40; // letters of a cell that needs room
 
 /**
- * @typedef {{id: string, name: string, size: number, header: string[], rows: {line: number, cells: string[]}[]}} Upload
- * @typedef {{line: number, column: string | null, value: unknown, expected: string, message: string}} Fault
+ * @typedef {import("./answers.js").BatchCheck} BatchCheck
+ * @typedef {import("./answers.js").TableFault} Fault
+ * @typedef {import("./answers.js").UploadAnswer} Upload
  */
 
-/** @type {{brought: Upload | null, families: {name: string, title: string}[], faults: Fault[]}} */
+/** @type {{brought: Upload | null, families: import("./answers.js").FamilyAnswer[], faults: Fault[]}} */
 const table = { brought: null, families: [], faults: [] };
 
 const file = h("input", { type: "file", id: "file", class: "unseen", accept: ".csv,.xlsx,text/csv", "aria-describedby": "file-kinds", onchange: () => file.files?.[0] && bring(file.files[0]) });
 const choose = h("label", { class: "button", for: "file" }, "choose a file");
-const dropped = h("div", { class: "drop", ondragover: (event) => { event.preventDefault(); dropped.classList.add("over"); }, ondragleave: () => dropped.classList.remove("over"), ondrop: (/** @type {DragEvent} */ event) => {
+const dropped = h("div", { class: "drop", ondragover: (/** @type {Event} */ event) => { event.preventDefault(); dropped.classList.add("over"); }, ondragleave: () => dropped.classList.remove("over"), ondrop: (/** @type {DragEvent} */ event) => {
   event.preventDefault();
   dropped.classList.remove("over");
   const [brought] = event.dataTransfer?.files ?? [];
@@ -45,12 +46,17 @@ async function offerObjectives() {
   const name = asks.family.field.value;
   objectives.replaceChildren(h("p", { class: "note" }, name ? "…" : "Each family has its own; choose one for all rows to choose among them."));
   if (!name) return;
-  const rows = (await get(`/families/${name}`).catch(() => ({ rows: [] }))).rows.filter((row) => row.section === "objective");
+  const rows = (await get(`/families/${name}`).then(({ rows }) => rows, () => [])).filter((row) => row.section === "objective");
   if (name !== asks.family.field.value) return;
   objectives.replaceChildren(...rows.map((row) => h("label", {}, h("input", { type: "checkbox", value: row.name, checked: row.default === "yes", "data-usual": row.default, onchange: later }), words(row.name), h("span", { class: "note" }, [row.sense === "max" ? "large" : "", unitText(row.unit)].filter(Boolean).join(" · ")))));
 }
 
-/** Return a field with its label and a place for what is wrong with it. */
+/**
+ * Return a field with its label and a place for what is wrong with it.
+ * @template {HTMLInputElement | HTMLSelectElement} F
+ * @param {string} text
+ * @param {F} field
+ */
 function asked(text, field) {
   const wrong = h("span", { class: "fault", id: `${field.id}-fault` });
   field.setAttribute("aria-describedby", wrong.id);
@@ -64,7 +70,7 @@ async function begin() {
     const { field } = asks.family;
     field.replaceChildren(h("option", { value: "" }, "as a column of the table says"), ...families.map((one) => h("option", { value: one.name }, one.title)));
     const wanted = new URLSearchParams(location.search).get("family");
-    field.value = families.some((one) => one.name === wanted) ? wanted : "";
+    field.value = families.find((one) => one.name === wanted)?.name ?? "";
     await offerObjectives();
     place.replaceChildren(maySubmit() ? h("div", {}, h("section", { class: "card stack" }, h("h2", {}, "The table"), dropped, fault), first,
       h("section", { class: "card" }, h("h2", {}, "What is asked of all rows"), h("div", { class: "asks" }, Object.values(asks).map((one) => one.element)), h("h3", {}, "What to make small or large"), objectives),
@@ -75,13 +81,13 @@ async function begin() {
   place.setAttribute("aria-busy", "false");
 }
 
+/** @param {File} chosen */
 async function bring(chosen) {
   fault.textContent = "";
   const form = new FormData();
   form.append("file", chosen);
   place.setAttribute("aria-busy", "true");
   try {
-    /** @type {Upload} */
     const brought = await post("/uploads", form);
     table.brought = brought;
     choose.textContent = "choose another file";
@@ -92,7 +98,7 @@ async function bring(chosen) {
   } catch (error) {
     table.brought = null;
     first.hidden = told.hidden = columns.element.hidden = true;
-    fault.textContent = sentence(error.message);
+    fault.textContent = messageOf(error);
   } finally {
     file.value = "";
     place.setAttribute("aria-busy", "false");
@@ -104,6 +110,7 @@ function preview() {
   if (!table.brought) return;
   const { name, size, header, rows } = table.brought;
   const wrong = new Map(table.faults.map((one) => [`${one.line} ${one.column}`, one]));
+  /** @type {(row: {line: number, cells: string[]}, k: number) => HTMLElement} */
   const cell = (row, k) => {
     const found = wrong.get(`${row.line} ${header[k]}`);
     return h("td", { class: found ? "wrong" : (row.cells[k] ?? "").length > LONG ? "long" : "", title: found ? found.message : null }, found ? h("span", { class: "unseen" }, "faulty: ") : null, row.cells[k] ?? "");
@@ -115,11 +122,11 @@ function preview() {
     h("tbody", {}, rows.map((row) => h("tr", {}, h("th", { scope: "row", class: "number" }, row.line), header.map((_, k) => cell(row, k))))))));
 }
 
-let waiting, number = 0;
+let waiting = 0, number = 0;
 function later() {
   clearTimeout(waiting);
   go.disabled = true;
-  if (table.brought) waiting = setTimeout(check, PATIENCE);
+  if (table.brought) waiting = window.setTimeout(check, PATIENCE);
 }
 
 function request() {
@@ -157,7 +164,10 @@ function clear() {
   }
 }
 
-/** Show what is wrong with the table as a whole at its place: a heading, a field, or the table. */
+/**
+ * Show what is wrong with the table as a whole at its place: a heading, a field, or the table.
+ * @param {Refusal} error
+ */
 async function refused(error) {
   clear();
   table.faults = [];
@@ -166,7 +176,7 @@ async function refused(error) {
   await columns.told(null, family ? [family] : []);
   const problem = error.problems[0];
   const at = Object.entries(asks).find(([name]) => problem?.path[0] === name)?.[1] ?? (problem && problem.value === null && /, column family$/.test(problem.message.split(":")[0]) ? asks.family : null);
-  let text = sentence(error.message);
+  let text = messageOf(error);
   if (at) {
     at.wrong.textContent = at === asks.family && problem.value === null ? "No column of the table names the family; choose it here." : sentence(problem.message);
     at.field.setAttribute("aria-invalid", "true");
@@ -178,6 +188,7 @@ async function refused(error) {
   state.className = "fault";
 }
 
+/** @param {BatchCheck} answer */
 function show(answer) {
   const all = answer.checked >= answer.rows, good = answer.rows - answer.bad;
   state.className = "";
@@ -195,17 +206,21 @@ function show(answer) {
     ...Object.entries(answer.unused).map(([name, unused]) => h("p", { class: "note" }, `Not used by ${words(name)}: ${unused.join(", ")}.`)));
 }
 
-/** Return faults; what is missing in many lines is one of them. */
+/**
+ * Return faults; what is missing in many lines is one of them.
+ * @param {Fault[]} faults
+ */
 function gathered(faults) {
+  /** @type {Map<Fault | string, Fault & {lines: number[]}>} */
   const found = new Map();
   for (const one of faults) {
     const key = one.value === null ? `${one.column}\n${one.expected}` : one;
-    if (found.has(key)) found.get(key).lines.push(one.line);
-    else found.set(key, { ...one, lines: [one.line] });
+    found.set(key, { ...one, lines: [...(found.get(key)?.lines ?? []), one.line] });
   }
   return [...found.values()];
 }
 
+/** @param {number[]} lines */
 const linesText = (lines) => lines.slice(0, 3).join(", ") + (lines.length > 3 ? ` and ${figure(lines.length - 3)} more` : "");
 
 async function start() {
@@ -218,7 +233,7 @@ async function start() {
   } catch (error) {
     go.disabled = false;
     state.className = "fault";
-    state.textContent = sentence(error.message);
+    state.textContent = messageOf(error);
     say(state.textContent);
   }
 }

@@ -5,20 +5,37 @@ import { asWords, duration, figure, firstOf, h, unitText, withFigures, words } f
 import { sizesCard } from "./sizes_card.js";
 import { LIVE, ROWS, rowBadge } from "./words.js";
 
+/**
+ * @typedef {import("./answers.js").JobAnswer} Job
+ * @typedef {import("./answers.js").RowAnswer} Row
+ * @typedef {import("./answers.js").RowPage} RowPage
+ */
+
 const PERIOD = 3000; // ms between two looks at the rows while they are answered
 const SHOWN_CELLS = 4;
 const WAITING = "waiting"; // rows that nobody has answered yet: no status of a row
 
-/** Return what a row has found as people read it: names in words, units as they are written. */
+/**
+ * Return what a row has found as people read it: names in words, units as they are written.
+ * @param {string} text
+ */
 export const designText = (text) => withFigures(words(text).replaceAll(/(\d) ([A-Za-z%°][A-Za-z0-9*/()%°]*)(?=,|$)/g, (_, digit, unit) => `${digit} ${unitText(unit)}`));
 
-/** Return a design in words; the first of them lead to it. */
+/**
+ * Return a design in words; the first of them lead to it.
+ * @param {string} href
+ * @param {string} text
+ */
 function designLink(href, text) {
   const [first, ...rest] = text.split(", ");
   return [h("a", { href }, first), rest.length ? `, ${rest.join(", ")}` : ""];
 }
 
-/** Show a batch, while it is worked at and after. */
+/**
+ * Show a batch, while it is worked at and after.
+ * @param {HTMLElement} element
+ * @param {Job} job
+ */
 export function batchView(element, job) {
   const address = new URLSearchParams(location.search);
   let shown = job, status = address.get("status") ?? "", cursors = [""], looked = 0, asked = 0;
@@ -31,7 +48,9 @@ export function batchView(element, job) {
   const later = h("button", { type: "button", class: "small", hidden: true }, "Later rows");
   const earlier = h("button", { type: "button", class: "small", hidden: true, onclick: () => { cursors.pop(); rows().then(() => chosen.focus()); } }, "Earlier rows");
   const all = h("button", { type: "button", class: "small", hidden: true, onclick: () => choose("") }, "Show all rows");
+  /** @type {Map<number, {line: HTMLElement, text: string}>} */
   const lines = new Map(); // of the table, by the line of the row
+  /** @type {Map<string, {part: HTMLElement, said: HTMLElement, line: HTMLElement}>} */
   const marks = new Map(); // how rows stand -> its share in the bar, and its button
 
   async function rows() {
@@ -49,6 +68,7 @@ export function batchView(element, job) {
     }
   }
 
+  /** @param {string} name */
   function choose(name) {
     status = name;
     cursors = [""];
@@ -57,6 +77,7 @@ export function batchView(element, job) {
     rows();
   }
 
+  /** @param {RowPage} page */
   function draw(page) {
     const heads = page.header.slice(0, SHOWN_CELLS), more = page.header.length - heads.length;
     chosen.textContent = status ? `Rows: ${label(status)}` : "All rows";
@@ -73,11 +94,15 @@ export function batchView(element, job) {
       table.replaceChildren(h("p", { class: "note" }, LIVE.includes(shown.state) ? "No row is answered yet." : "No rows."));
     }
     later.hidden = !page.next;
-    later.onclick = () => { cursors.push(page.next); rows().then(() => chosen.focus()); };
+    later.onclick = () => { cursors.push(page.next ?? ""); rows().then(() => chosen.focus()); };
     earlier.hidden = cursors.length < 2;
   }
 
-  /** Return the line of a row; of one that stands there and has changed, only that line is another one. */
+  /**
+   * Return the line of a row; of one that stands there and has changed, only that line is another one.
+   * @param {Row} row
+   * @param {string[]} heads
+   */
   function renew(row, heads) {
     const known = lines.get(row.line), text = JSON.stringify([row, LIVE.includes(shown.state)]);
     if (known?.text === text) return known.line;
@@ -91,34 +116,47 @@ export function batchView(element, job) {
     return line;
   }
 
-  /** Keep what somebody may point at; only numbers change. */
+  /**
+   * Keep what somebody may point at; only numbers change.
+   * @param {string} name
+   * @param {number} number
+   */
   function told(name, number) {
-    if (!marks.has(name)) {
-      const part = h("span", { class: `share ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}` }), said = h("span");
-      const dot = h("span", { class: `dot ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}`, "aria-hidden": "true" });
-      const line = h("li", {}, name === WAITING ? h("span", { class: "badge" }, dot, said) : h("button", { type: "button", class: "small", onclick: () => choose(status === name ? "" : name) }, dot, said));
-      marks.set(name, { part, said, line });
-      bar.append(part);
-      legend.append(line);
-    }
-    const { part, said, line } = marks.get(name);
+    const { part, said, line } = marks.get(name) ?? marked(name);
     part.style.flexGrow = String(number);
     part.title = said.textContent = `${figure(number)} ${label(name)}`;
     part.hidden = line.hidden = !number;
     line.querySelector("button")?.setAttribute("aria-pressed", String(status === name));
+    return { part, line };
+  }
+
+  /** @param {string} name */
+  function marked(name) {
+    const part = h("span", { class: `share ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}` }), said = h("span");
+    const dot = h("span", { class: `dot ${name === WAITING ? WAITING : ROWS[name]?.[1] ?? ""}`, "aria-hidden": "true" });
+    const line = h("li", {}, name === WAITING ? h("span", { class: "badge" }, dot, said) : h("button", { type: "button", class: "small", onclick: () => choose(status === name ? "" : name) }, dot, said));
+    marks.set(name, { part, said, line });
+    bar.append(part);
+    legend.append(line);
+    return { part, said, line };
   }
 
   const view = {
+    /** @type {Promise<void> | undefined} */
+    loaded: undefined,
+    /** @param {Job} job */
     show(job) {
       shown = job;
       const progress = job.progress ?? {};
+      /** @type {Record<string, number>} */
       const parts = { ...(job.summary?.status ?? { ...(progress.bad ? { bad_input: progress.bad } : {}), ...progress.status }) };
       const total = job.summary?.rows ?? progress.rows ?? job.rows;
       const done = Object.values(parts).reduce((sum, number) => sum + number, 0);
       parts[WAITING] = Math.max(0, total - done);
       for (const name of new Set([...Object.keys(ROWS).filter((name) => parts[name]), ...Object.keys(parts), ...marks.keys()])) told(name, parts[name] ?? 0);
-      bar.append(marks.get(WAITING).part);
-      legend.append(marks.get(WAITING).line);
+      const { part, line } = told(WAITING, parts[WAITING]);
+      bar.append(part);
+      legend.append(line);
       bar.setAttribute("aria-label", Object.entries(parts).filter(([, number]) => number).map(([name, number]) => `${number} ${label(name)}`).join(", ") || "nothing yet");
       const seconds = job.started ? (job.ended ?? Date.now() / 1000) - job.started : 0;
       const answered = done - (parts.bad_input ?? 0); // faulty rows take no time
@@ -135,4 +173,5 @@ export function batchView(element, job) {
   return view;
 }
 
+/** @param {string} name */
 const label = (name) => (name === WAITING ? WAITING : (ROWS[name]?.[0] ?? words(name)).toLowerCase());

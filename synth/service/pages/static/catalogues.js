@@ -1,15 +1,23 @@
 // Part tables: those that come with the families, and one's own in versions.
 
-import { ask, faultCard, get, maySubmit, post, sentence } from "./api.js";
+import { ask, faultCard, get, maySubmit, messageOf, post, problemsOf, sentence, statusOf } from "./api.js";
 import { cellsOf, headingOf, sheet, short } from "./csv.js";
-import { byId, figure, firstOf, h, say, unitText, when, words } from "./dom.js";
-import { FULL_DIGITS } from "./numbers.js";
+import { allOf, byId, figure, firstOf, h, say, unitText, when, words } from "./dom.js";
+import { FULL_DIGITS, number } from "./numbers.js";
 import { badge, count } from "./words.js";
+
+/**
+ * @typedef {import("./answers.js").CatalogueDiff} Changes
+ * @typedef {import("./answers.js").CatalogueEntry} Entry
+ * @typedef {import("./answers.js").TableEntry} TableEntry
+ */
 
 const place = byId("catalogues");
 const address = new URLSearchParams(location.search);
 const SHOWN_JOBS = 5, MOST = 300;
+/** @type {Record<string, string>} */
 const CONFIDENCE = { verified: "good", textbook: "fair", computed: "fair", typical: "warn" };
+/** @param {string} reference */
 const ownPlace = (reference) => `/catalogues?own=${encodeURIComponent(reference)}`;
 
 async function begin() {
@@ -19,7 +27,7 @@ async function begin() {
     else if (own) await ownTable(own);
     else await lists();
   } catch (error) {
-    place.replaceChildren(error.status === 404 ? h("section", { class: "card stack" }, h("h1", {}, "No such table"), h("p", {}, h("a", { href: "/catalogues" }, "To the catalogues"))) : faultCard(error, () => location.reload()));
+    place.replaceChildren(statusOf(error) === 404 ? h("section", { class: "card stack" }, h("h1", {}, "No such table"), h("p", {}, h("a", { href: "/catalogues" }, "To the catalogues"))) : faultCard(error, () => location.reload()));
   }
   place.setAttribute("aria-busy", "false");
 }
@@ -29,6 +37,7 @@ async function begin() {
 async function lists() {
   const [{ catalogues }, { tables }, { families }] = await Promise.all([get("/catalogues"), get("/tables"), get("/families")]);
   const titles = new Map(families.map((family) => [family.name, family.title]));
+  /** @param {string[]} names */
   const heads = (names) => h("thead", {}, h("tr", {}, names.map((name) => h("th", { scope: "col", class: name === "Rows" ? "right" : "" }, name))));
   place.replaceChildren(h("h1", {}, "Catalogues"), h("p", { class: "note lead" }, "The part tables that designs are made of: those that come with the families, and your own in versions."),
     h("section", { class: "card stack" }, h("h2", {}, "Your own"), catalogues.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Your own tables" }, h("table", {}, heads(["Version", "Rows", "Rows for", "Brought", "Note"]),
@@ -42,37 +51,50 @@ async function lists() {
   if (location.hash === "#bring") document.getElementById("bring")?.scrollIntoView();
 }
 
+/** @param {string} text */
 const users = (text) => h("span", { class: "users", title: text }, text);
 const back = () => h("p", { class: "note" }, h("a", { href: "/catalogues" }, "Catalogues"));
 
+/** @param {string} confidence */
 const trust = (confidence) => h("span", { class: `badge ${CONFIDENCE[confidence] ?? ""}` }, confidence);
 
-/** Return the places of columns as they are read: what a row is, how far it can be trusted, then the rest. */
+/**
+ * Return the places of columns as they are read: what a row is, how far it can be trusted, then the rest.
+ * @param {string[]} names
+ */
 function inOrder(names) {
   const trusted = names.indexOf("confidence");
   return [0, ...(trusted > 0 ? [trusted] : []), ...names.keys()].filter((k, at, all) => all.indexOf(k) === at);
 }
 
-/** Return a field that leaves the lines of a table that have a text, and the table. */
+/**
+ * Return a field that leaves the lines of a table that have a text, and the table.
+ * @param {HTMLElement} table
+ */
 function found(table) {
-  const lines = [...table.querySelectorAll("tbody tr")];
+  const lines = allOf(table, "tbody tr");
   const told = h("span", { class: "note", role: "status" });
   return h("p", { class: "row" }, h("input", { type: "search", class: "find", placeholder: "Find in the rows", "aria-label": "Find in the rows", oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
     const wanted = event.target.value.toLowerCase();
-    for (const line of lines) line.hidden = !line.textContent.toLowerCase().includes(wanted);
+    for (const line of lines) line.hidden = !(line.textContent ?? "").toLowerCase().includes(wanted);
     told.textContent = wanted ? `${count(lines.filter((line) => !line.hidden).length, "row")} of ${lines.length}` : "";
   } }), told);
 }
 
 // ---- a table that comes with the families ----
 
+/** @param {import("./answers.js").TableAnswer} table */
 function shippedTable(table) {
   document.title = `${words(table.name)} · clutchsynth`;
   const name = words(table.name), numeric = table.columns.map((_, k) => table.rows.some((row) => typeof row[k] === "number"));
   const order = inOrder(table.columns.map((column) => column.name));
-  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(value) : value === null ? h("span", { class: "note" }, "–") : short(typeof value === "string" ? value.replaceAll(/;(?=\S)/g, "; ") : figure(value, FULL_DIGITS)));
+  /**
+   * @param {string | number | null} value
+   * @param {number} k
+   */
+  const cell = (value, k) => (table.columns[k].name === "confidence" && value ? trust(String(value)) : value === null ? h("span", { class: "note" }, "–") : short(typeof value === "string" ? value.replaceAll(/;(?=\S)/g, "; ") : number(value, FULL_DIGITS)));
   const rows = h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Rows" }, h("table", { class: "sheet" },
-    h("thead", {}, h("tr", {}, order.map((k) => [table.columns[k], k]).map(([column, k]) => h("th", { scope: "col", class: numeric[k] ? "right" : "", title: column.text }, words(column.name), unitText(column.unit) && !column.unit.startsWith("column:") ? h("span", { class: "unit" }, ` ${unitText(column.unit)}`) : null)))),
+    h("thead", {}, h("tr", {}, order.map((k) => ({ column: table.columns[k], k })).map(({ column, k }) => h("th", { scope: "col", class: numeric[k] ? "right" : "", title: column.text }, words(column.name), unitText(column.unit) && !column.unit?.startsWith("column:") ? h("span", { class: "unit" }, ` ${unitText(column.unit)}`) : null)))),
     h("tbody", {}, table.rows.map((row) => h("tr", {}, order.map((k) => h(k ? "td" : "th", { scope: k ? null : "row", class: numeric[k] ? "right" : typeof row[k] === "string" && row[k].length > 40 ? "long" : "" }, cell(row[k], k))))))));
   place.replaceChildren(back(), h("h1", {}, name[0].toUpperCase() + name.slice(1)), h("section", { class: "card stack" },
     h("p", { class: "note" }, `${count(table.rows.length, "row")}. `, table.families.length ? ["Parts of ", table.families.map((family, k) => [k ? ", " : "", h("a", { href: `/families/${family}` }, words(family))]), ". "] : null, "In a spec it is ", h("code", {}, table.name), "."),
@@ -85,9 +107,10 @@ function shippedTable(table) {
 
 // ---- a version of one's own ----
 
+/** @param {string} reference */
 async function ownTable(reference) {
   const [name, stated] = reference.split("@");
-  const version = Number(stated), path = `/catalogues/${encodeURIComponent(name)}/${version}`;
+  const version = Number(stated), path = /** @type {const} */ (`/catalogues/${encodeURIComponent(name)}/${version}`);
   const [own, { catalogues }] = await Promise.all([get(path), get("/catalogues")]);
   const { entry, csv, separator, used_by: users } = own;
   const others = catalogues.filter((one) => one.name === name && one.version !== version);
@@ -95,6 +118,7 @@ async function ownTable(reference) {
   const changed = h("div", { class: "stack" }), rows = h("div", { class: "stack" }), fault = h("p", { class: "fault", role: "alert" });
   document.title = `${entry.reference} · clutchsynth`;
 
+  /** @param {string | number} since */
   async function compare(since) {
     const changes = since ? await get(`${path}/changes?since=${since}`) : null;
     const cells = new Map(changes?.changed.map((cell) => [`${cell.designation}\n${headingOf(cell.column).name}`, cell]) ?? []), added = new Set(changes?.added ?? []);
@@ -104,21 +128,28 @@ async function ownTable(reference) {
     rows.replaceChildren(h("h2", {}, count(entry.rows, "row")), found(table), table);
     changed.replaceChildren(...(changes ? differences(changes) : []));
   }
-  const choice = h("select", { id: "since", onchange: () => compare(choice.value).catch((error) => { fault.textContent = sentence(error.message); }) }, h("option", { value: "" }, "nothing"), others.map((one) => h("option", { value: one.version }, one.reference)));
+  const choice = h("select", { id: "since", onchange: () => compare(choice.value).catch((error) => { fault.textContent = messageOf(error); }) }, h("option", { value: "" }, "nothing"), others.map((one) => h("option", { value: one.version }, one.reference)));
   const before = others.find((one) => one.version < version);
-  choice.value = before ? before.version : "";
+  choice.value = before ? String(before.version) : "";
   await compare(choice.value);
   place.replaceChildren(back(), h("div", { class: "heading" }, h("h1", {}, entry.reference), maySubmit() ? removing(entry, users, fault) : null), h("section", { class: "card stack" }, fault,
     h("dl", { class: "facts" }, h("dt", {}, "Rows for"), h("dd", {}, h("a", { href: `/catalogues?table=${encodeURIComponent(entry.table)}` }, words(entry.table))), h("dt", {}, "Brought"), h("dd", {}, when(entry.created)), entry.note ? [h("dt", {}, "Note"), h("dd", {}, entry.note)] : null,
       h("dt", {}, "In a spec"), h("dd", {}, h("code", {}, `catalogs: {${entry.table}: ["+", "${entry.reference}"]}`)),
       h("dt", {}, "Versions"), h("dd", {}, others.length ? others.map((one, k) => [k ? ", " : "", h("a", { href: ownPlace(one.reference) }, one.reference)]) : "this one alone"),
-      h("dt", {}, "Used by"), h("dd", {}, users.length ? h("ul", {}, jobs.filter(Boolean).map((job) => h("li", { class: "row" }, badge(job), h("a", { href: `/jobs/${job.id}` }, job.title))), users.length > SHOWN_JOBS ? h("li", { class: "note" }, `and ${users.length - SHOWN_JOBS} more`) : null) : "no study")),
+      h("dt", {}, "Used by"), h("dd", {}, users.length ? h("ul", {}, jobs.filter((job) => job !== null).map((job) => h("li", { class: "row" }, badge(job), h("a", { href: `/jobs/${job.id}` }, job.title))), users.length > SHOWN_JOBS ? h("li", { class: "note" }, `and ${users.length - SHOWN_JOBS} more`) : null) : "no study")),
     others.length ? h("p", { class: "row" }, h("label", { for: "since" }, "Compare with"), choice) : null, changed),
   h("section", { class: "card" }, rows));
 }
 
-/** Return what is different between two versions; cells that changed are marked in the rows as well. */
+/**
+ * Return what is different between two versions; cells that changed are marked in the rows as well.
+ * @param {Changes} changes
+ */
 function differences(changes) {
+  /**
+   * @param {string} title
+   * @param {string[]} names
+   */
   const named = (title, names) => (names.length ? h("p", {}, `${title}: ${names.join(", ")}`) : null);
   const told = [named("Added", changes.added), named("Removed", changes.removed), named("Columns added", changes.columns_added), named("Columns removed", changes.columns_removed),
     changes.changed.length ? h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Changed cells" }, h("table", {}, h("thead", {}, h("tr", {}, ["Row", "Column", "Before", "After"].map((text) => h("th", { scope: "col" }, text)))),
@@ -126,6 +157,11 @@ function differences(changes) {
   return [h("h3", {}, `Since ${changes.before.reference}`), ...(told.length ? told : [h("p", {}, "The rows are the same.")])];
 }
 
+/**
+ * @param {Entry} entry
+ * @param {string[]} users
+ * @param {HTMLElement} fault
+ */
 function removing(entry, users, fault) {
   if (users.length) return h("span", { class: "note" }, "A version that a study names stays.");
   const button = h("button", { type: "button", onclick: async () => {
@@ -138,7 +174,7 @@ function removing(entry, users, fault) {
       await ask("DELETE", `/catalogues/${encodeURIComponent(entry.name)}/${entry.version}`);
       location.assign("/catalogues");
     } catch (error) {
-      fault.textContent = sentence(error.message);
+      fault.textContent = messageOf(error);
     }
   } }, "Remove");
   return button;
@@ -146,8 +182,17 @@ function removing(entry, users, fault) {
 
 // ---- a table that is brought ----
 
+/** @param {TableEntry[]} tables */
 function bringing(tables) {
-  const fields = {}, faults = {};
+  /** @type {Record<string, HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement>} */
+  const fields = {};
+  /** @type {Record<string, HTMLElement>} */
+  const faults = {};
+  /**
+   * @param {string} name
+   * @param {string} text
+   * @param {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} field
+   */
   const labelled = (name, text, field) => {
     fields[name] = field;
     faults[name] = h("span", { class: "fault", id: `${field.id}-fault` });
@@ -171,14 +216,14 @@ function bringing(tables) {
       if (made.remarks.length) kept.replaceChildren(h("p", {}, h("a", { href: ownPlace(made.reference) }, made.reference), " is kept. As it was read:"), h("ul", {}, made.remarks.map((text) => h("li", {}, sentence(text)))));
       else location.assign(ownPlace(made.reference));
     } catch (error) {
-      const left = error.problems.filter((problem) => {
+      const problems = problemsOf(error), left = problems.filter((problem) => {
         const name = problem.path[0];
         if (!faults[name]) return true;
         faults[name].textContent = sentence(problem.message);
         fields[name].setAttribute("aria-invalid", "true");
         return false;
       });
-      fault.textContent = left.length || !error.problems.length ? sentence(left[0]?.message ?? error.message) : "";
+      fault.textContent = left.length ? sentence(left[0].message) : problems.length ? "" : messageOf(error);
       firstOf(form, "[aria-invalid]")?.focus();
     }
   } }, h("h2", {}, "Bring a table"), h("p", { class: "note" }, "Each change is a new version; studies name the one that they were asked with. The first column is ", h("code", {}, "designation"), ", units stand in the headings: ", h("code", {}, "thickness [mm]"), "."),

@@ -3,20 +3,28 @@
 import { get } from "./api.js";
 import { h, unitText, words } from "./dom.js";
 
+/**
+ * @typedef {import("./answers.js").BatchCheck} BatchCheck
+ * @typedef {import("./answers.js").Problem} Problem
+ * @typedef {import("./records.js").DeclarationRow} DeclarationRow
+ */
+
 const CARRY = "carry";
 const STRUCTURE = ["family", "options", "limits", "fix", "parts"];
 /** @type {[label: string, sections: string[]][]} */
 const GROUPS = [["Requirements", ["needed", "limit", "assumption"]], ["Options", ["option"]], ["Given sizes, counts and parts", ["variable", "count", "choice", "part"]]];
 const SHOWN_CELLS = 3;
+/** @type {Map<string, DeclarationRow[]>} */
 const declared = new Map(); // family -> the rows of its declaration that a table may name
 
-/** Return what a table may say of a family, by name. */
+/**
+ * Return what a table may say of a family, by name.
+ * @param {string} family
+ */
 async function namesOf(family) {
-  if (!declared.has(family)) {
-    const { rows } = await get(`/families/${family}`);
-    declared.set(family, rows.filter((row) => GROUPS.some(([, sections]) => sections.includes(row.section))));
-  }
-  return declared.get(family);
+  const known = declared.get(family) ?? (await get(`/families/${family}`)).rows.filter((row) => GROUPS.some(([, sections]) => sections.includes(row.section)));
+  declared.set(family, known);
+  return known;
 }
 
 /**
@@ -28,8 +36,15 @@ export function columnsCard(changed) {
   const own = h("span", { class: "note" });
   const asked = h("details", { open: true }, h("summary", {}, h("h2", {}, "What the columns mean"), own), columns);
   const element = h("section", { class: "card", hidden: true }, asked);
-  let all = [], families = null;
+  /** @type {Column[]} */
+  let all = [];
+  /** @type {string | null} */
+  let families = null;
 
+  /**
+   * @param {string[]} header
+   * @param {{cells: string[]}[]} rows
+   */
   function bring(header, rows) {
     const before = new Map(all.map((one) => [one.title, one]));
     const same = header.length === all.length && header.every((title) => before.has(title));
@@ -43,13 +58,18 @@ export function columnsCard(changed) {
     element.hidden = false;
   }
 
-  /** Tell what the service understands, and offer the names of the families that rows name. */
+  /**
+   * Tell what the service understands, and offer the names of the families that rows name.
+   * @param {BatchCheck | null} answer
+   * @param {string[]} known
+   */
   async function told(answer, known) {
     const names = new Map(answer?.columns.map((column) => [column.title, column.name]) ?? []);
     const offered = known.join(",");
     if (offered !== families) {
       families = offered;
-      const merged = new Map((await Promise.all(known.map((family) => namesOf(family).catch(() => [])))).flat().map((row) => [row.name, row]));
+      const rows = await Promise.all(known.map((family) => namesOf(family).catch(() => [])));
+      const merged = new Map(rows.flat().map((row) => [row.name, row]));
       if (offered === families) for (const one of all) one.offer(merged);
     }
     for (const one of all) one.understood(answer ? names.get(one.title) ?? "" : one.likely());
@@ -58,15 +78,19 @@ export function columnsCard(changed) {
     if (!answer) own.textContent = "";
   }
 
-  /** Show what is wrong with a heading at its column; tell whether it was one. */
+  /**
+   * Show what is wrong with a heading at its column; tell whether it was one.
+   * @param {Problem | null | undefined} problem
+   */
   function fault(problem) {
     for (const one of all) one.fault("");
-    const places = (title) => [`mapping: ${title}:`, `, line 1, column ${title}:`, `, line 1: got '${title}'`, `, line 1: got "${title}"`];
+    const places = (/** @type {string} */ title) => [`mapping: ${title}:`, `, line 1, column ${title}:`, `, line 1: got '${title}'`, `, line 1: got "${title}"`];
     const found = all.find((one) => problem && (problem.value === one.title || places(one.title).some((text) => problem.message.includes(text))));
-    const told = problem?.value === null || problem?.value === undefined ? "expected" : `got ${problem.value}; expected`;
-    found?.fault(`${told} ${problem?.expected.replace(/ \(or '.*$/s, "")}`, problem?.expected.split(" (or ")[0], problem?.value !== found.title);
-    if (found) asked.open = true;
-    return Boolean(found);
+    if (!problem || !found) return false;
+    const told = problem.value === null || problem.value === undefined ? "expected" : `got ${problem.value}; expected`;
+    found.fault(`${told} ${problem.expected.replace(/ \(or '.*$/s, "")}`, problem.expected.split(" (or ")[0], problem.value !== found.title);
+    asked.open = true;
+    return true;
   }
 
   const request = () => Object.fromEntries(all.map((one) => [one.title, one.stated]).filter(([, stated]) => stated));
@@ -74,13 +98,22 @@ export function columnsCard(changed) {
 }
 
 class Column {
+  /**
+   * @param {string} title
+   * @param {number} k its place
+   * @param {() => void} changed
+   */
   constructor(title, k, changed) {
     this.title = title;
     this.changed = changed;
     this.name = ""; // as the service understands it
+    /** @type {Map<string, DeclarationRow>} */
     this.rows = new Map();
+    /** @type {string | undefined} */
+    this.wanted = undefined;
     this.first = h("p", { class: "note cells" });
     this.said = h("option", { value: "" }, "as the heading says");
+    /** @type {HTMLElement[]} */
     this.groups = [];
     this.choice = h("select", { id: `means-${k}`, "aria-label": `What ${title} means`, "aria-describedby": `means-${k}-fault`, onchange: () => { this.unit.value = ""; this.measured(); changed(); } },
       this.said, h("option", { value: CARRY }, "left out: carried along unread"));
@@ -91,9 +124,13 @@ class Column {
     this.element = h("li", {}, h("div", {}, h("p", { class: "heading-text" }, title), this.first), h("div", { class: "row means" }, this.choice, this.measure), this.wrong, this.mend);
   }
 
+  /** @param {string[]} texts */
   cells(texts) { this.first.textContent = texts.slice(0, SHOWN_CELLS).map((text) => text || "–").join(" · "); }
 
-  /** Keep what was chosen for the same heading of an earlier file. */
+  /**
+   * Keep what was chosen for the same heading of an earlier file.
+   * @param {Column | undefined} other
+   */
   as(other) {
     if (!other?.stated) return;
     this.wanted = other.choice.value;
@@ -102,11 +139,12 @@ class Column {
     this.offer(other.rows);
   }
 
+  /** @param {Map<string, DeclarationRow>} rows */
   offer(rows) {
     const chosen = this.wanted ?? this.choice.value;
     this.rows = rows;
     for (const group of this.groups) group.remove();
-    const named = (row) => h("option", { value: row.name }, words(row.name), unitText(row.unit) ? `, ${unitText(row.unit)}` : "");
+    const named = (/** @type {DeclarationRow} */ row) => h("option", { value: row.name }, words(row.name), unitText(row.unit) ? `, ${unitText(row.unit)}` : "");
     const groups = GROUPS.map(([label, sections]) => ({ label, options: [...rows.values()].filter((row) => sections.includes(row.section)).map(named) }));
     groups.push({ label: "Several at once", options: STRUCTURE.map((name) => h("option", { value: name }, name)) });
     this.groups = groups.filter(({ options }) => options.length).map(({ label, options }) => h("optgroup", { label }, options));
@@ -123,7 +161,10 @@ class Column {
     return this.rows.has(name) || STRUCTURE.includes(name) ? name : "";
   }
 
-  /** Tell what the service makes of the column. */
+  /**
+   * Tell what the service makes of the column.
+   * @param {string} name
+   */
   understood(name) {
     if (this.choice.value === "") this.name = name;
     this.said.textContent = this.name ? `${words(this.name)}, as the heading says` : "carried along: no name of ours";
@@ -136,7 +177,7 @@ class Column {
     const row = this.rows.get(this.choice.value || this.name);
     const measured = Boolean(row?.unit && row.unit !== "-");
     this.measure.hidden = !measured;
-    this.unit.placeholder = measured ? /\[(.+)\]\s*$/.exec(this.title)?.[1] ?? row.unit : "";
+    this.unit.placeholder = row && measured ? /\[(.+)\]\s*$/.exec(this.title)?.[1] ?? row.unit : "";
   }
 
   /** What goes to the service; nothing where the heading says it all. */
@@ -146,14 +187,17 @@ class Column {
     return name && unit && name !== CARRY ? `${name} [${unit}]` : name;
   }
 
-  /** Show what is wrong with what the column means, or with its unit. */
+  /**
+   * Show what is wrong with what the column means, or with its unit.
+   * @param {string} text
+   */
   fault(text, meant = "", measured = false) {
     this.wrong.textContent = text && text[0].toUpperCase() + text.slice(1);
     this.unit.setAttribute("aria-invalid", String(Boolean(text) && measured && !this.measure.hidden));
     this.choice.setAttribute("aria-invalid", String(Boolean(text)));
     this.element.classList.toggle("bad", Boolean(text));
-    const take = (value, words) => h("button", { type: "button", class: "small", onclick: () => { this.wanted = value; this.offer(this.rows); this.changed(); this.choice.focus(); } }, words);
+    const take = (/** @type {string} */ value, /** @type {string} */ words) => h("button", { type: "button", class: "small", onclick: () => { this.wanted = value; this.offer(this.rows); this.changed(); this.choice.focus(); } }, words);
     const known = this.rows.has(meant) || STRUCTURE.includes(meant);
-    this.mend.replaceChildren(...(text ? [known ? take(meant, `It means ${words(meant)}`) : "", take(CARRY, "Leave it out")].filter(Boolean) : []));
+    this.mend.replaceChildren(...(text ? [...(known ? [take(meant, `It means ${words(meant)}`)] : []), take(CARRY, "Leave it out")] : []));
   }
 }

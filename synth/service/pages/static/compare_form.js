@@ -2,19 +2,37 @@
 
 import { h, words } from "./dom.js";
 
+/**
+ * @typedef {import("./answers.js").FamilyAnswer} Family
+ * @typedef {import("./records.js").DeclarationRow} DeclarationRow
+ * @typedef {{name: string, rows: DeclarationRow[]}} Declaration
+ */
+
 /** The name of the choice, as a spec states it. */
 export const ANY = "any";
 const FEW = 2; // names that are told one by one
 
 /**
+ * Return the end of a range that holds two; null where one of them has no end.
+ * @param {(...ends: number[]) => number} which
+ * @param {number | null} a
+ * @param {number | null} b
+ */
+const widest = (which, a, b) => (a === null || b === null ? null : which(a, b));
+
+/**
  * Return what several families declare as one declaration: the requirements that mean the same in each.
- * @param {{name: string, title: string, understands: string[]}[]} families
- * @param {Map<string, {rows: object[]}>} declarations by name
+ * @param {Family[]} families
+ * @param {Map<string, Declaration>} declarations by name
+ * @returns {Declaration}
  */
 export function together(families, declarations) {
-  const found = new Map(), objectives = new Map();
+  /** @type {Map<string, DeclarationRow & {who: string[], sections: Set<string>, defaults: Set<string | number | null>}>} */
+  const found = new Map();
+  /** @type {Map<string, DeclarationRow & {who: string[]}>} */
+  const objectives = new Map();
   for (const family of families) {
-    const { rows } = declarations.get(family.name) ?? { rows: [] };
+    const rows = declarations.get(family.name)?.rows ?? [];
     for (const name of family.understands) {
       const row = rows.find((row) => row.kind === "requirement" && row.name === name);
       if (!row) continue;
@@ -22,7 +40,7 @@ export function together(families, declarations) {
       own.who.push(family.title);
       own.sections.add(row.section);
       own.defaults.add(row.default);
-      if (own.unit === row.unit && row.lower !== null) [own.lower, own.upper] = [Math.min(own.lower, row.lower), Math.max(own.upper, row.upper)];
+      if (own.unit === row.unit) [own.lower, own.upper] = [widest(Math.min, own.lower, row.lower), widest(Math.max, own.upper, row.upper)];
       found.set(name, own);
     }
     for (const row of rows.filter((row) => row.section === "objective")) {
@@ -43,8 +61,8 @@ export function together(families, declarations) {
 
 /**
  * Return why a family cannot serve what is asked; empty where it can.
- * @param {{understands: string[]}} family
- * @param {{rows: object[]}} declaration
+ * @param {Family} family
+ * @param {Declaration} declaration
  * @param {string[]} asked names of requirements
  */
 function misfit(family, declaration, asked) {
@@ -53,18 +71,19 @@ function misfit(family, declaration, asked) {
   return [strange.length ? `does not know ${few(strange)}` : "", lacking.length ? `needs ${few(lacking)}` : ""].filter(Boolean).join("; ");
 }
 
+/** @param {string[]} names */
 const few = (names) => (names.length > FEW ? `${words(names[0])} and ${names.length - 1} more` : names.map(words).join(", "));
 
 /**
  * Make the choice of families.
- * @param {object[]} families
+ * @param {Family[]} families
  * @param {Set<string>} chosen
  * @param {() => void} changed
  */
 export function choiceOf(families, chosen, changed) {
   const notes = new Map(families.map((family) => [family.name, h("span", { class: "note" })]));
   const summary = h("p", { class: "note", role: "status" });
-  const box = (family) => h("label", { title: family.line }, h("input", { type: "checkbox", name: "families", value: family.name, checked: chosen.has(family.name), onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
+  const box = (/** @type {Family} */ family) => h("label", { title: family.line }, h("input", { type: "checkbox", name: "families", value: family.name, checked: chosen.has(family.name), onchange: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
     if (event.target.checked) chosen.add(family.name);
     else chosen.delete(family.name);
     changed();
@@ -72,7 +91,11 @@ export function choiceOf(families, chosen, changed) {
   const element = h("div", { class: "several" }, h("div", { class: "families", role: "group", "aria-label": "Families that are compared" }, families.map(box)), summary);
   return {
     element,
-    /** Show who can serve what is asked. */
+    /**
+     * Show who can serve what is asked.
+     * @param {Map<string, Declaration>} declarations
+     * @param {string[]} asked
+     */
     show(declarations, asked) {
       let able = 0;
       for (const family of families) {

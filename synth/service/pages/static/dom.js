@@ -48,46 +48,75 @@ function filled(element, attributes, children) {
   return element;
 }
 
+/** @type {Record<string, string>} */
 const SUPERSCRIPT = { 2: "²", 3: "³" };
+/** @type {Record<string, string>} */
 const GREEK = {
   alpha: "α", beta: "β", gamma: "γ", delta: "δ", epsilon: "ε", eta: "η", theta: "θ", kappa: "κ", lambda: "λ", mu: "μ", nu: "ν", xi: "ξ", pi: "π",
   rho: "ρ", sigma: "σ", tau: "τ", phi: "φ", psi: "ψ", omega: "ω", Omega: "Ω", Delta: "Δ", Phi: "Φ",
 };
 
-/** Return a unit as people write it: `kg·m²` for `kg*m2`. */
+/**
+ * Return a unit as people write it: `kg·m²` for `kg*m2`.
+ * @param {string | null | undefined} unit
+ */
 export function unitText(unit) {
   return unit && unit !== "-" ? unit.replaceAll("*", "·").replace(/([A-Za-z])([23])(?!\d)/g, (_, letter, power) => letter + SUPERSCRIPT[power]) : "";
 }
 
-/** A number as it is shown; a text as it is. */
+/**
+ * A number as it is shown; a text as it is.
+ * A number as it is shown; a text as it is.
+ * @param {string | number | null | undefined} value
+ * @param {number} [digits]
+ */
 export const figure = (value, digits) => (typeof value === "string" ? value : number(value, digits));
 
-/** Return a name of the interface as words. */
+/**
+ * Return a name of the interface as words.
+ * @param {unknown} name
+ */
 export const words = (name) => String(name).replaceAll("_", " ");
 
 const LONG_NUMBER = /(?<![\w.,'"#-])\d[\d.]{3,}\d(?![\w'"]|,\d)/g; // neither quoted nor part of a name
 
+/** @param {string} found */
 const regrouped = (found) => (/^\d+(\.\d+)?$/.test(found) ? number(Number(found), FULL_DIGITS) : found);
 
-/** Return a text with its long numbers as they are shown elsewhere. */
+/**
+ * Return a text with its long numbers as they are shown elsewhere.
+ * @param {string} text
+ */
 export const withFigures = (text) => text.replaceAll(LONG_NUMBER, regrouped);
 
-/** Return a sentence of the engine as people read it: names in words, units, signs and numbers as they are written. */
+/**
+ * Return a sentence of the engine as people read it: names in words, units, signs and numbers as they are written.
+ * @param {string | null | undefined} text
+ */
 export const asWords = (text) =>
   withFigures(words(text ?? "").replaceAll(/(\d) ([A-Za-z][A-Za-z0-9*/()]*)/g, (_, digit, unit) => `${digit}\u00a0${unitText(unit)}`))
     .replaceAll("<=", "≤").replaceAll(">=", "≥").replaceAll("->", "→");
 
-/** Return a symbol with its subscript; nothing where there is none. */
+/**
+ * Return a symbol with its subscript; nothing where there is none.
+ * @param {string | null | undefined} text
+ */
 export function symbol(text) {
   if (!text) return null;
   const [, base, below] = /^([A-Za-z]+?)_?([0-9]+|(?<=_).*)?$/.exec(text) ?? [null, text, ""];
   return h("span", { class: "symbol" }, GREEK[base] ?? base, below ? h("sub", {}, GREEK[below] ?? below) : null);
 }
 
-/** Return a date. */
+/**
+ * Return a date.
+ * @param {number} seconds
+ */
 export const day = (seconds) => new Date(1000 * seconds).toLocaleDateString("en-GB", { day: "numeric", month: "short", year: "numeric" });
 
-/** Return a time of day or a date, as near as it matters. */
+/**
+ * Return a time of day or a date, as near as it matters.
+ * @param {number} seconds
+ */
 export function when(seconds) {
   const date = new Date(1000 * seconds), minutes = Math.round((Date.now() / 1000 - seconds) / 60);
   const text = minutes < 1 ? "just now" : minutes < 60 ? `${minutes} min ago` : minutes < 24 * 60 ? `${Math.round(minutes / 60)} h ago`
@@ -95,14 +124,20 @@ export function when(seconds) {
   return h("time", { datetime: date.toISOString(), title: date.toLocaleString("en-GB") }, text);
 }
 
-/** Return how long something takes. */
+/**
+ * Return how long something takes.
+ * @param {number} seconds
+ */
 export function duration(seconds) {
   if (seconds < 9.95) return `${number(Math.max(0, seconds), 2)} s`;
   if (seconds < 90) return `${Math.round(seconds)} s`;
   return seconds < 5400 ? `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s` : `${number(seconds / 3600, 2)} h`;
 }
 
-/** Say something to whoever listens to the page instead of looking at it. */
+/**
+ * Say something to whoever listens to the page instead of looking at it.
+ * @param {string} text
+ */
 export function say(text) {
   let place = document.getElementById("said");
   if (!place) document.body.append((place = h("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" })));

@@ -1,8 +1,16 @@
 // What can be asked of a front beyond it, and what was asked of a job already.
 
-import { get, listen, maySubmit, post, sentence } from "./api.js";
+import { get, listen, maySubmit, messageOf, post } from "./api.js";
 import { firstOf, h } from "./dom.js";
 import { KINDS, LIVE, badge, outcomeText } from "./words.js";
+
+/**
+ * @typedef {import("./answers.js").JobAnswer} Job
+ * @typedef {import("./records.js").Spec} Spec
+ * @typedef {import("./answers.js").Requests & {rate: {of: string}}} Requests
+ * @typedef {{text: (rank: number, single: boolean) => string, note: string, of: (job: Job, request: Spec) => boolean}} Offer
+ * @typedef {{[K in keyof Requests]: Offer & {kind: K, request: (job: Job, rank: number) => Omit<Requests[K], "of">}}[keyof Requests]} Ask
+ */
 
 const SHOWN = 5; // jobs before the rest is unfolded
 const MOST = 50; // jobs that are told
@@ -11,7 +19,7 @@ const AGAIN = ["cancelled", "failed", "stopped"];
 
 /**
  * What can be asked: the kind, what its button says, what comes of it, and its request.
- * @type {{kind: string, text: (rank: number, single: boolean) => string, note: string, request: (job: object, rank: number) => object, of: (job: object, request: object) => boolean}[]}
+ * @type {Ask[]}
  */
 const ASKS = [
   { kind: "prices", text: (rank, single) => (single ? `Prices of design ${rank}` : "Prices"), note: "What one per cent more or less of each requirement and limit would change.",
@@ -25,16 +33,17 @@ const ASKS = [
     request: (_, rank) => ({ design: [rank], length: "full" }), of: (job) => job.kind === "synthesis" },
 ];
 
-const many = (job) => job.summary.designs > ALL;
+/** @param {Job} job */
+const many = (job) => (job.summary?.designs ?? 0) > ALL;
 
 /**
  * Make the card.
- * @param {object} job one that has ended
- * @returns {Promise<{element: HTMLElement, shown: (job: object, rank: number | null) => void}>}
+ * @param {Job} job one that has ended
+ * @returns {Promise<{element: HTMLElement, shown: (job: Job, rank: number | null) => void}>}
  */
 export async function furtherCard(job) {
   const element = h("section", { class: "card stack further", hidden: true });
-  const front = ["synthesis", "compare"].includes(job.kind) && job.summary?.designs > 0;
+  const front = ["synthesis", "compare"].includes(job.kind) && Boolean(job.summary?.designs);
   const request = front && maySubmit() ? await get(`/jobs/${job.id}/request`) : null;
   const beside = job.kind === "batch" ? ["size_range"] : front ? [] : ["explain"]; // what the page shows itself
   const offered = request ? ASKS.filter((ask) => ask.of(job, request)) : [];
@@ -43,9 +52,15 @@ export async function furtherCard(job) {
   const buttons = offered.map((ask) => h("button", { type: "button", onclick: () => asked(ask) }));
   const asks = h("ul", { class: "ask-list" }, offered.map((ask, k) => h("li", {}, buttons[k], h("span", { class: "note" }, ask.note))));
   const lacking = h("p", { class: "note", hidden: true }, "There is no design with these values that could be asked about.");
-  let of = job, rank = 1, stop = null, known = [];
+  let of = job, rank = 1, stop = () => {};
+  /** @type {Job[]} */
+  let known = [];
 
-  /** Take note of what is shown: what is asked is asked of that. */
+  /**
+   * Take note of what is shown: what is asked is asked of that.
+   * @param {Job} other
+   * @param {number | null} chosen
+   */
   function shown(other, chosen) {
     if (other.id !== of.id) load();
     of = other;
@@ -57,6 +72,7 @@ export async function furtherCard(job) {
     });
   }
 
+  /** @param {Ask} ask */
   async function asked(ask) {
     fault.textContent = "";
     const body = { kind: ask.kind, request: { of: of.id, ...ask.request(of, rank) }, title: `${ask.text(rank, many(of))}: ${of.title}`.slice(0, 200), parent: job.id };
@@ -66,27 +82,38 @@ export async function furtherCard(job) {
       await load();
       firstOf(list, `a[href="/jobs/${made.id}"]`)?.focus();
     } catch (error) {
-      fault.textContent = sentence(error.message);
+      fault.textContent = messageOf(error);
     }
   }
 
   async function load() {
     known = (await get(`/jobs?parent=${job.id}&limit=${MOST}`)).jobs.filter((one) => !beside.includes(one.kind));
     draw();
-    stop?.();
+    stop();
     const live = known.filter((one) => LIVE.includes(one.state)).map((one) => one.id);
-    stop = live.length ? listen(live, heard) : null;
+    stop = live.length ? listen(live, heard, (job) => exchanged(job)) : () => {};
   }
 
+  /**
+   * @param {string} kind
+   * @param {import("./records.js").Happening} told
+   */
   async function heard(kind, told) {
-    if (!["snapshot", "progress", "started", "end"].includes(kind)) return;
-    const number = known.findIndex((one) => one.id === (told.job ?? told.id));
-    if (number < 0 || told.state === "deleted") return;
-    known[number] = kind === "snapshot" ? told : kind === "progress" ? { ...known[number], state: told.state, progress: told } : await get(`/jobs/${told.job}`).catch(() => known[number]);
+    const one = known.find((one) => one.id === told.job);
+    if (!one || told.state === "deleted" || !["progress", "started", "end"].includes(kind)) return;
+    exchanged(kind === "progress" ? { ...one, state: told.state, progress: told } : await get(`/jobs/${told.job}`).catch(() => one));
+  }
+
+  /** @param {Job} job */
+  function exchanged(job) {
+    known = known.map((one) => (one.id === job.id ? job : one));
     draw();
   }
 
-  /** Return a job as one line; what it shares with the title of the page is left out. */
+  /**
+   * Return a job as one line; what it shares with the title of the page is left out.
+   * @param {Job} one
+   */
   function line(one) {
     const title = one.title.replace(`: ${job.title}`, "").replace(`, ${job.title}`, "");
     const kind = KINDS[one.kind] ?? one.kind;

@@ -1,6 +1,6 @@
 // A job: watched while it is worked at, and what it has found.
 
-import { ask, faultCard, get, listen, maySubmit, sentence } from "./api.js";
+import { ask, faultCard, get, listen, maySubmit, messageOf, sentence } from "./api.js";
 import { batchView } from "./batch_view.js";
 import { byId, day, duration, h, say, when, words } from "./dom.js";
 import { frontView } from "./front_view.js";
@@ -12,10 +12,24 @@ import { sizesView } from "./sizes_card.js";
 import { watchView } from "./watch_view.js";
 import { KINDS, LIVE, badge, outcomeText } from "./words.js";
 
+/**
+ * @typedef {import("./answers.js").JobAnswer} Job
+ * @typedef {import("./records.js").Progress} Progress
+ */
+
 const place = byId("job");
 const { job: id = "", explorer = "" } = place.dataset;
 const RESUMABLE = ["cancelled", "failed", "stopped"];
-let job, titles = {}, content = null, stop = null, files = null;
+/** @type {Job} */
+let job;
+/** @type {Record<string, string>} */
+let titles = {};
+/** @type {{show: (job: Job) => void, loaded?: Promise<void>} | null} */
+let content = null;
+/** @type {(() => void) | null} */
+let stop = null;
+/** @type {Awaited<ReturnType<typeof filesCard>> | null} */
+let files = null;
 let shown = { id, moved: "" }; // whose front is shown, and with which values other than those of the job
 
 const head = h("div", { class: "job-head" });
@@ -39,7 +53,11 @@ async function show() {
   heading();
   place.setAttribute("aria-busy", "true");
   if (LIVE.includes(job.state)) {
-    stop ??= listen([id], heard);
+    stop ??= listen([id], heard, (seen) => {
+      job = seen;
+      heading();
+      content?.show(job);
+    });
     content = job.kind === "batch" ? batchView(below, job) : watchView(below, job);
     await content.loaded;
   } else {
@@ -50,17 +68,17 @@ async function show() {
   place.setAttribute("aria-busy", "false");
 }
 
+/**
+ * @param {string} kind
+ * @param {import("./records.js").Happening} told
+ */
 async function heard(kind, told) {
-  if (kind === "snapshot") {
-    job = told;
-    heading();
-    content?.show(job);
-  } else if (kind === "progress") {
+  if (told.state === "deleted") gone();
+  else if (kind === "progress") {
     job = { ...job, state: told.state, progress: { ...(told.columns ? {} : kept(job.progress)), ...told } };
     heading();
     content?.show(job);
   } else if (kind === "started" || kind === "end") {
-    if (told.state === "deleted") return gone();
     const before = job.state;
     job = await get(`/jobs/${id}`);
     if (LIVE.includes(before) && !LIVE.includes(job.state)) {
@@ -70,12 +88,18 @@ async function heard(kind, told) {
   }
 }
 
-/** The designs that were known last are shown until others are told. */
+/**
+ * The designs that were known last are shown until others are told.
+ * @param {Progress | null} progress
+ */
 const kept = (progress) => (progress?.columns ? { columns: progress.columns, points: progress.points } : {});
 
 const gone = () => place.replaceChildren(h("section", { class: "card" }, h("p", {}, "This job was removed."), h("p", {}, h("a", { href: "/" }, "To the studies"))));
 
-/** Until when a job is kept that nobody looks at any more. */
+/**
+ * Until when a job is kept that nobody looks at any more.
+ * @param {Job} told
+ */
 const keptUntil = (told) => (told.pinned || told.expires === null ? "" : ` · kept until ${day(told.expires)} unless it is used`);
 
 function heading() {
@@ -97,16 +121,21 @@ function heading() {
   document.title = `${live ? "… " : ""}${shown.moved ? `${shown.moved}: ` : ""}${job.title} · clutchsynth`;
 }
 
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {object} [body]
+ */
 async function act(method, path, body) {
   fault.textContent = "";
   try {
     if (path === "/cancel") job = await get(`/jobs/${id}`); // it may have ended just now: then there is nothing to cancel
-    if (path !== "/cancel" || LIVE.includes(job.state)) job = await ask(method, `/jobs/${id}${path}`, body);
+    if (path !== "/cancel" || LIVE.includes(job.state)) job = /** @type {Job} */ (await ask(method, `/jobs/${id}${path}`, body));
     if (path === "/resume") show();
     else if (path === "/cancel" && !LIVE.includes(job.state)) show();
     else heading();
   } catch (error) {
-    fault.textContent = sentence(error.message);
+    fault.textContent = messageOf(error);
     job = await get(`/jobs/${id}`).catch(() => job);
     heading();
   }
@@ -121,7 +150,7 @@ function remove() {
         location.assign("/");
       } catch (error) {
         dialog.close();
-        fault.textContent = sentence(error.message);
+        fault.textContent = messageOf(error);
       }
     } }, "Delete"), h("button", { type: "button", autofocus: true, onclick: () => dialog.close() }, "Keep it")));
   dialog.addEventListener("close", () => dialog.remove());
@@ -129,6 +158,7 @@ function remove() {
   dialog.showModal();
 }
 
+/** @type {Record<string, string>} */
 const ENDS = {
   cancelled: "The job was cancelled. Resume begins it again; rows of a batch that were answered stay.",
   stopped: "The job was stopped at its limit of time or memory. What was found until then is kept.",
@@ -141,7 +171,7 @@ async function ended() {
   if (job.state !== "done") {
     parts.push(h("section", { class: "card" }, h("h2", {}, badge(job)), h("p", {}, ENDS[job.state] ?? ""),
       job.error ? h("p", { class: "fault" }, sentence(job.error.message)) : null,
-      (job.error?.problems ?? []).length > 1 ? h("ul", { class: "fault" }, job.error.problems.map((problem) => h("li", {}, problem.message))) : null));
+      job.error && job.error.problems.length > 1 ? h("ul", { class: "fault" }, job.error.problems.map((problem) => h("li", {}, problem.message))) : null));
   }
   const slot = h("div");
   below.replaceChildren(...parts, slot);
@@ -149,7 +179,7 @@ async function ended() {
     const further = await furtherCard(job);
     if (job.kind === "batch") await batchView(slot, job).loaded;
     else if (job.kind === "explain") await nothingView(slot, job, job);
-    else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || ["infeasible", "not_found"].includes(job.summary?.outcome)))) {
+    else if (job.kind === "compare" || (job.kind === "synthesis" && (job.summary?.designs || ["infeasible", "not_found"].includes(job.summary?.outcome ?? "")))) {
       await frontView(slot, job, explorer, (other, rank, moved) => {
         further.shown(other, rank);
         if (moved === undefined || other.id === shown.id) return;
@@ -170,7 +200,7 @@ async function ended() {
 }
 
 function facts() {
-  const told = Object.entries(job.summary).filter(([, value]) => ["string", "number", "boolean"].includes(typeof value) && value !== "");
+  const told = Object.entries(job.summary ?? {}).filter(([, value]) => ["string", "number", "boolean"].includes(typeof value) && value !== "");
   return h("section", { class: "card" }, h("h2", {}, outcomeText(job)), h("dl", { class: "facts" },
     told.map(([name, value]) => [h("dt", {}, words(name)), h("dd", {}, typeof value === "boolean" ? (value ? "yes" : "no") : String(value))])));
 }

@@ -1,31 +1,50 @@
 // The form of a study: what a family declares, checked by the service while somebody types.
 
-import { Refusal, faultCard, get, maySubmit, post, sentence } from "./api.js";
+import { Refusal, faultCard, get, maySubmit, messageOf, post } from "./api.js";
 import { ANY, choiceOf, together } from "./compare_form.js";
 import { byId, firstOf, h, say, unitText, words } from "./dom.js";
 import { Field, choices, hintOf, stated, typed } from "./fields.js";
 import { sideView } from "./new_side.js";
+
+/**
+ * @typedef {import("./answers.js").FamilyAnswer} Family
+ * @typedef {import("./answers.js").Problem} Problem
+ * @typedef {import("./records.js").DeclarationRow} DeclarationRow
+ * @typedef {import("./records.js").Spec} Spec
+ */
 
 const PATIENCE = 300; // ms without a key, before the service is asked
 const place = byId("new");
 const address = new URLSearchParams(location.search);
 const SIZES = ["variable", "count"];
 
-/** @typedef {string[] | Record<string, string>} Objectives names alone, or names with what is made of them */
+/**
+ * @typedef {string[] | Record<string, string>} Objectives names alone, or names with what is made of them
+ * @typedef {{[key: string]: import("./records.js").Json, family: string}} Own a family, with what concerns it alone
+ * @typedef {Record<string, import("./records.js").Json>} Values by name
+ */
 
 // What is asked: the spec as stated, apart from what fields hold. `rest` has no field and is passed on.
 /**
- * @type {{family: string, several: Set<string> | null, own: {family: string}[], title: string, options: Record<string, string>, objectives: Objectives | null,
- *   values: Record<string, Record<string, unknown>>, limits: unknown[], points: string, rest: Record<string, unknown>}}
+ * @type {{family: string, several: Set<string> | null, own: Own[], title: string, options: Record<string, string>, objectives: Objectives | null,
+ *   values: Record<string, Values>, points: string, rest: Spec}}
  */
-const study = { family: "", several: null, own: [], title: "", options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, limits: [], points: "20", rest: {} };
+const study = { family: "", several: null, own: [], title: "", options: {}, objectives: null, values: { requirements: {}, fix: {}, parts: {} }, points: "20", rest: {} };
 // Where several families are compared, `several` holds their names, `own` the entries that say more than a name.
 /** @type {ReturnType<typeof choiceOf> | null} */
 let choice = null;
 /** @type {Field[]} */
 let fields = [];
-let families = [], examples = [], declared = null, told = { ready: false, problems: [], read: {}, combinations: null };
+/** @type {Family[]} */
+let families = [];
+/** @type {import("./answers.js").ExampleAnswer[]} */
+let examples = [];
+/** @type {import("./compare_form.js").Declaration} what the form shows */
+let declared = { name: "", rows: [] };
+/** @type {import("./answers.js").CheckAnswer} */
+let told = { ready: false, problems: [], read: {}, remarks: [], combinations: null };
 
+/** @type {Map<string, import("./answers.js").DeclarationAnswer>} */
 const declarations = new Map();
 const side = sideView({ start, spec: () => body(), fieldAt });
 const form = h("form", { id: "study", novalidate: true, onsubmit: (event) => { event.preventDefault(); start(); } });
@@ -38,7 +57,7 @@ async function begin() {
     if (from) await fromJob(from);
     else if (example) take(example.spec);
     else if (address.get("family") === ANY) take({ family: ANY });
-    else study.family = families.some((family) => family.name === address.get("family")) ? address.get("family") : examples[0]?.family ?? families[0].name;
+    else study.family = families.find((family) => family.name === address.get("family"))?.name ?? examples[0]?.family ?? families[0].name;
     await redraw();
   } catch (error) {
     place.replaceChildren(faultCard(error, () => location.reload()));
@@ -46,19 +65,24 @@ async function begin() {
   place.setAttribute("aria-busy", "false");
 }
 
+/** @param {string} id */
 async function fromJob(id) {
   const [job, request] = await Promise.all([get(`/jobs/${id}`), get(`/jobs/${id}/request`)]);
+  /** @type {import("./records.js").Patch} */
   const patch = location.hash.startsWith("#patch=") ? JSON.parse(decodeURIComponent(location.hash.slice(7))) : {};
-  for (const [section, values] of Object.entries(patch)) request[section] = { ...request[section], ...values };
+  for (const [section, values] of Object.entries(patch)) request[section] = { .../** @type {object} */ (request[section]), ...values };
   take(request);
   study.title = patch && Object.keys(patch).length ? `${job.title}, changed`.slice(0, 200) : "";
 }
 
-/** Take a spec as what is asked. */
+/**
+ * Take a spec as what is asked.
+ * @param {Spec} spec
+ */
 function take(spec) {
   const { family, options = {}, requirements = {}, objectives = null, fix = {}, parts = {}, limits = {}, points, ...rest } = spec;
   const entries = Array.isArray(family) ? family : [];
-  const several = family === ANY ? families.map((one) => one.name) : entries.length ? entries.map((entry) => entry.family ?? entry) : null;
+  const several = family === ANY ? families.map((one) => one.name) : entries.length ? entries.map((entry) => (typeof entry === "string" ? entry : entry.family)) : null;
   Object.assign(study, { several: several && new Set(several), own: entries.filter((entry) => typeof entry !== "string") });
   Object.assign(study, { family: several ? ANY : family, options: { ...options }, objectives: objectives === null ? null : structuredClone(objectives), rest, points: String(points ?? 20) });
   study.values = { requirements: { ...requirements }, fix: { ...fix }, parts: { ...parts } };
@@ -80,8 +104,11 @@ async function declaredBySeveral() {
   return together(compared, declarations);
 }
 
+/** @param {...string} sections */
 const of = (...sections) => declared.rows.filter((row) => sections.includes(row.section));
+/** @param {DeclarationRow} row */
 const ofPractice = (row) => row.group === "practice";
+/** @param {string} section */
 const asked = (section) => declared.rows.filter((row) => row.section === section && row.kind === "requirement");
 
 function draw() {
@@ -109,10 +136,21 @@ function draw() {
   if (!place.contains(form)) place.replaceChildren(h("div", { class: "split" }, form, side.element));
 }
 
+/**
+ * @param {string} title
+ * @param {string} hint
+ * @param {import("./dom.js").Child} children
+ */
 function card(title, hint, children) {
   return h("section", { class: "card" }, h("h2", {}, title, h("span", { class: "note" }, hint)), children);
 }
 
+/**
+ * @param {string} id
+ * @param {string} title
+ * @param {string} hint
+ * @param {HTMLElement[]} children
+ */
 function folded(id, title, hint, children, open = false, find = false) {
   if (!children.length) return null;
   const search = find ? h("input", { type: "search", class: "find", placeholder: "Find: friction, oil …", "aria-label": `Find in ${title.toLowerCase()}`, oninput: (/** @type {import("./elements.js").EventOf<HTMLInputElement>} */ event) => {
@@ -132,15 +170,24 @@ function familyCard() {
       h("button", { type: "button", class: "small", title: example.description, onclick: () => { take(example.spec); redraw(); } }, words(example.name)))) : null);
 }
 
+/** @param {string} family */
 function turn(family) {
-  const known = study.values.requirements, limits = new Set(study.several || family === ANY ? Object.keys(known) : []);
+  const known = /** @type {Record<string, string | number>} */ (study.values.requirements), limits = new Set(study.several || family === ANY ? Object.keys(known) : []);
   take({ family, requirements: Object.fromEntries(Object.entries(known).filter(([name]) => limits.has(name) && understood(family, name))) });
   redraw().then(() => firstOf(form, `input[value="${family}"]`)?.focus()).catch(show);
 }
 
-/** Tell whether a requirement means the same in other families: then it is taken over. */
+/**
+ * Tell whether a requirement means the same in other families: then it is taken over.
+ * @param {string} family
+ * @param {string} name
+ */
 const understood = (family, name) => families.some((one) => (family === ANY || one.name === family) && one.understands.includes(name));
 
+/**
+ * @param {DeclarationRow} row
+ * @param {string} name
+ */
 function choose(row, name) {
   collect();
   if (name === row.default) delete study.options[row.name];
@@ -148,6 +195,10 @@ function choose(row, name) {
   redraw().then(() => firstOf(form, `input[name="o-${row.name}"]:checked`)?.focus()).catch(show);
 }
 
+/**
+ * @param {DeclarationRow} row
+ * @param {string} section
+ */
 function field(row, section) {
   const value = typed(study.values[section][row.name] ?? "", row.unit);
   const one = new Field(row, { path: [section, row.name], hint: hintOf(row), value, changed: later });
@@ -155,6 +206,7 @@ function field(row, section) {
   return one.element;
 }
 
+/** @param {DeclarationRow[]} rows */
 function objectiveCard(rows) {
   const chosen = study.objectives === null ? rows.filter((row) => row.default === "yes").map((row) => row.name)
     : Array.isArray(study.objectives) ? study.objectives : Object.keys(study.objectives);
@@ -176,11 +228,12 @@ function collect() {
   const names = [...boxes].filter((box) => box.checked).map((box) => box.value);
   const before = study.objectives;
   if (before === null || Array.isArray(before)) study.objectives = names;
-  else study.objectives = Object.fromEntries(names.map((name) => [name, before[name] ?? of("objective").find((row) => row.name === name).sense]));
+  else study.objectives = Object.fromEntries(names.map((name) => [name, before[name] ?? of("objective").find((row) => row.name === name)?.sense ?? "min"]));
 }
 
 /** Return what is asked of a part: a condition, or designations; one that has a comma itself stands in double quotes. */
 const NAMES = /\s*(?:"((?:[^"]|"")*)"\s*(?=,|$)|([^,]*))(?:,|$)/g;
+/** @param {string} text */
 const partsOf = (text) => {
   if (/[<>=]| in /.test(text.replace(/(^|,)\s*"(?:[^"]|"")*"\s*(?=,|$)/g, "$1"))) return text;
   return [...text.matchAll(NAMES)].map(([, quoted, plain]) => (quoted === undefined ? plain : quoted.replaceAll('""', '"')).trim()).filter(Boolean);
@@ -189,6 +242,7 @@ const partsOf = (text) => {
 function spec() {
   collect();
   const all = study.several && study.several.size === families.length && !study.own.length;
+  /** @type {Spec} */
   const found = { family: !study.several || all ? study.family : [...study.several].map((name) => study.own.find((entry) => entry.family === name) ?? name) };
   if (Object.keys(study.options).length) found.options = study.options;
   for (const [section, values] of Object.entries(study.values)) if (Object.keys(values).length || section === "requirements") found[section] = values;
@@ -201,17 +255,18 @@ function spec() {
 const count = () => (study.objectives === null ? 0 : Array.isArray(study.objectives) ? study.objectives.length : Object.keys(study.objectives).length);
 
 function body() {
+  /** @type {import("./spec.js").Asked} */
   const own = { kind: study.several ? "compare" : "synthesis", request: spec() };
   if (study.title.trim()) own.title = study.title.trim();
   return own;
 }
 
-let waiting, number = 0;
+let waiting = 0, number = 0;
 function later() {
   clearTimeout(waiting);
   side.code();
   side.checking();
-  waiting = setTimeout(() => check().catch(show), PATIENCE);
+  waiting = window.setTimeout(() => check().catch(show), PATIENCE);
 }
 
 async function check() {
@@ -221,6 +276,7 @@ async function check() {
   if (own === number) tell(answer);
 }
 
+/** @param {import("./answers.js").CheckAnswer} answer */
 function tell(answer) {
   told = answer;
   const left = [];
@@ -240,15 +296,19 @@ function tell(answer) {
   side.show(answer, at, left, { objectives, stated: Object.keys(study.values.requirements).length, slots: of("part").map((row) => words(row.name)) });
 }
 
+/** @param {(string | number)[]} path */
 function fieldAt(path) {
   return fields.find((one) => one.path[0] === path[0] && one.path[1] === path[1]);
 }
 
-/** Show a refusal; what is wrong in the input goes to its fields. */
+/**
+ * Show a refusal; what is wrong in the input goes to its fields.
+ * @param {unknown} error
+ */
 function show(error) {
   if (!(error instanceof Refusal)) throw error;
   if (error.problems.length) tell({ ...told, ready: false, problems: error.problems });
-  else side.refused(sentence(error.message));
+  else side.refused(messageOf(error));
 }
 
 async function start() {

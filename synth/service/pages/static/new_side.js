@@ -4,11 +4,18 @@ import { maySubmit } from "./api.js";
 import { figure, h, words } from "./dom.js";
 import { curlText, pythonText, yamlText } from "./spec.js";
 
+/**
+ * @typedef {import("./fields.js").Field} Field
+ * @typedef {import("./answers.js").Problem} Problem
+ * @typedef {import("./spec.js").Asked} Asked
+ */
+
+/** @type {Record<string, (body: Asked) => string>} */
 const TEXTS = { "spec.yaml": (body) => yamlText(body.request), HTTP: curlText, Python: pythonText };
 
 /**
  * Make the column beside the form.
- * @param {{start: () => void, spec: () => object, fieldAt: (path: string[]) => object | undefined}} page
+ * @param {{start: () => void, spec: () => Asked, fieldAt: (path: (string | number)[]) => Field | undefined}} page
  */
 export function sideView({ start, spec, fieldAt }) {
   let shown = "spec.yaml";
@@ -34,9 +41,10 @@ export function sideView({ start, spec, fieldAt }) {
     setTimeout(() => { copy.textContent = "Copy"; }, 1500);
   } }, "Copy");
 
+  /** @type {(mark: string, kind: string, text: string, path?: string[]) => HTMLElement} */
   const line = (mark, kind, text, path) => {
     const field = path && fieldAt(path);
-    const said = field ? h("a", { href: `#${field.input.id}`, onclick: (event) => {
+    const said = field ? h("a", { href: `#${field.input.id}`, onclick: (/** @type {Event} */ event) => {
       event.preventDefault();
       field.element.closest("details")?.setAttribute("open", "");
       field.input.focus();
@@ -50,23 +58,30 @@ export function sideView({ start, spec, fieldAt }) {
       h("section", { class: "card" }, h("div", { class: "row" }, h("span", { class: "row grow", role: "group", "aria-label": "Form" }, tabs), copy), code)),
     code() { code.textContent = TEXTS[shown](spec()); },
     checking() { state.classList.add("soft"); },
+    /** @param {boolean} busy */
     busy(busy) { go.disabled = busy; go.textContent = busy ? "Starting …" : "Find designs"; },
+    /** @param {string} text */
     refused(text) { refusal.textContent = text; },
+    /**
+     * @param {import("./answers.js").CheckAnswer} answer
+     * @param {Map<Field, Problem>} at what is wrong at a field
+     * @param {Problem[]} left what is wrong elsewhere
+     * @param {{objectives: number, stated: number, slots: string[]}} facts
+     */
     show(answer, at, left, facts) {
       refusal.textContent = "";
       state.classList.remove("soft");
-      const missing = [], wrong = [];
-      for (const [field, problem] of at) (field.value === "" && field.needed ? missing : wrong).push([field, problem]);
+      const fields = [...at.keys()], missing = fields.filter((one) => one.value === "" && one.needed), wrong = fields.filter((one) => !missing.includes(one));
       const other = left.filter((problem) => problem.path.length);
       const loose = left.filter((problem) => !problem.path.length);
       const faults = wrong.length + other.length + loose.length;
       state.textContent = answer.ready && facts.objectives ? "Ready" : faults ? `${faults} to correct` : missing.length ? `${missing.length} more needed` : "Choose an objective";
       state.className = answer.ready && facts.objectives ? "good" : faults ? "fault-text" : "";
       points.replaceChildren(
-        ...wrong.map(([field]) => line("✗", "fault", words(field.row.name), field.path)),
+        ...wrong.map((field) => line("✗", "fault", words(field.row.name), field.path)),
         ...[...other, ...loose].map((problem) => line("✗", "fault", problem.message)),
-        ...(answer.remarks ?? []).map((remark) => line("○", "note", remark.message)),
-        ...missing.map(([field]) => line("○", "note", words(field.row.name), field.path)),
+        ...(answer.remarks).map((remark) => line("○", "note", remark.message)),
+        ...missing.map((field) => line("○", "note", words(field.row.name), field.path)),
         ...(answer.ready ? [line("✓", "good", `${facts.stated} requirements stated, all others by default`), facts.slots.length ? line("✓", "good", `Searched among parts: ${facts.slots.join(", ")}`) : ""] : []));
       cost.textContent = answer.combinations ? `${figure(answer.combinations)} combinations of parts and counts. You can close the page; the job goes on.` : "";
       go.disabled = !facts.objectives || faults > 0;

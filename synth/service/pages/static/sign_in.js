@@ -1,6 +1,6 @@
 // Where a browser shows its token once.
 
-import { ask, sentence } from "./api.js";
+import { ask, messageOf, statusOf } from "./api.js";
 import { byId } from "./dom.js";
 
 const form = byId("sign-in"), fault = byId("fault");
@@ -14,8 +14,8 @@ form.addEventListener("submit", async (event) => {
   try {
     await ask("POST", "/session", undefined, { Authorization: `Bearer ${token}` });
   } catch (error) {
-    if (error.status !== 409) {
-      fault.textContent = sentence(error.message);
+    if (statusOf(error) !== 409) {
+      fault.textContent = messageOf(error);
       field.focus();
       return;
     }

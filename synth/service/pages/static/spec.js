@@ -3,7 +3,14 @@
 const PLAIN = /^[A-Za-z_][A-Za-z0-9_ .*/<>()-]*$/;
 const WORDS = /^(true|false|yes|no|on|off|null|none|y|n|nan|inf)$/i;
 
-/** Return a spec as YAML. */
+/** @typedef {import("./records.js").Spec} Spec */
+/** @typedef {{kind: string, request: Spec, title?: string}} Asked */
+
+/**
+ * Return a spec as YAML.
+ * @param {object} value
+ * @returns {string}
+ */
 export function yamlText(value, indent = "") {
   return Object.entries(value).map(([name, entry]) => {
     if (Array.isArray(entry)) return `${indent}${scalar(name)}: [${entry.map(flow).join(", ")}]`;
@@ -14,15 +21,21 @@ export function yamlText(value, indent = "") {
   }).join("\n");
 }
 
+/** @param {unknown} value */
 function scalar(value) {
   if (typeof value !== "string") return JSON.stringify(value);
   return isPlain(value) || /^\d[\d.]*(e[-+]?\d+)? [A-Za-z0-9*/()]+$/.test(value) ? value : JSON.stringify(value);
 }
 
+/** @param {string} text */
 const isPlain = (text) => PLAIN.test(text) && !WORDS.test(text) && text.trim() === text && !text.includes(" -");
+/** @param {unknown} value */
 const flow = (value) => (typeof value === "string" ? (isPlain(value) ? value : JSON.stringify(value)) : JSON.stringify(value));
 
-/** Return a command that asks for a study. */
+/**
+ * Return a command that asks for a study.
+ * @param {Asked} body
+ */
 export function curlText(body) {
   const said = JSON.stringify(body, null, 2).replaceAll("'", "'\\''");
   return `curl -s ${location.origin}/api/v1/jobs \\\n  -H "Authorization: Bearer $TOKEN" \\\n  -H "Content-Type: application/json" -d '${said}'`;
@@ -30,7 +43,10 @@ export function curlText(body) {
 
 const ARGUMENTS = ["objectives", "parts", "limits", "fix", "weights", "points", "gap", "grid", "seed", "time_limit", "robust"];
 
-/** Return a program that finds the designs: at one's own machine, or by the service where the spec needs what it keeps. */
+/**
+ * Return a program that finds the designs: at one's own machine, or by the service where the spec needs what it keeps.
+ * @param {Asked} body
+ */
 export function pythonText(body) {
   const { family, options = {}, requirements = {}, ...more } = body.request;
   if (body.kind === "compare") return comparingText(body.request);
@@ -41,12 +57,14 @@ export function pythonText(body) {
   return `import synth\n\nfront = synth.synthesize(\n${said.map((line) => `    ${line},\n`).join("")})\nfront.save("out/")`;
 }
 
+/** @param {Spec} request */
 function comparingText({ family, requirements = {}, ...more }) {
   if (!Object.keys(more).every((name) => [...ARGUMENTS, "options"].includes(name))) return askingText({ kind: "compare", request: { family, requirements, ...more } });
   const said = [python(family), python(requirements, "    "), ...Object.entries(more).map(([name, value]) => `${name}=${python(value, "    ")}`)];
   return `import synth\n\nfound = synth.compare(\n${said.map((line) => `    ${line},\n`).join("")})\nfound.save("out/")`;
 }
 
+/** @param {Asked} body */
 function askingText(body) {
   const { request, ...rest } = body;
   return [
@@ -61,6 +79,11 @@ function askingText(body) {
 
 const NAME = Symbol("request");
 
+/**
+ * @param {unknown} value
+ * @param {string} [indent]
+ * @returns {string}
+ */
 function python(value, indent = "") {
   if (value === NAME) return "request";
   if (value === null) return "None";

@@ -1,8 +1,10 @@
 // The list of studies: found by words and states, watched by one stream.
 
-import { faultCard, get, listen, maySubmit, post, sentence } from "./api.js";
+import { faultCard, get, listen, maySubmit, messageOf, post } from "./api.js";
 import { asWords, byId, h, when, words } from "./dom.js";
 import { KINDS, LIVE, badge, outcomeText, share } from "./words.js";
+
+/** @typedef {import("./answers.js").JobAnswer} Job */
 
 /** @type {[name: string, states: string[]][]} */
 const FILTERS = [["All", []], ["Running", LIVE], ["Done", ["done"]], ["Ended early", ["failed", "cancelled", "stopped"]]];
@@ -12,6 +14,7 @@ const address = new URLSearchParams(location.search);
 /** @type {{text: string, filter: number, followed: boolean, next: string | null, titles: Record<string, string>, stop: (() => void) | null, asked: number}} */
 const state = { text: address.get("q") ?? "", filter: Math.max(0, FILTERS.findIndex(([name]) => name === address.get("state"))), followed: address.get("followed") === "yes", next: null, titles: {}, stop: null, asked: 0 };
 
+/** @type {Map<string, Row>} */
 const rows = new Map(); // of the list, by job
 const list = h("ul", { class: "studies card" });
 const nothing = h("p", { class: "card note", hidden: true }, "No study fits. Another word, or another state?");
@@ -26,18 +29,20 @@ const followed = h("button", { type: "button", class: "small", title: "Values of
 } }, "Also what followed");
 const tools = h("div", { class: "tools row", hidden: true }, search, filters, followed);
 
-let waiting;
+let waiting = 0;
 function later() {
   clearTimeout(waiting);
-  waiting = setTimeout(() => { state.text = search.value.trim(); load(); }, PATIENCE);
+  waiting = window.setTimeout(() => { state.text = search.value.trim(); load(); }, PATIENCE);
 }
 
+/** @param {number} index */
 function choose(index) {
   state.filter = index;
   [...filters.children].forEach((button, own) => button.setAttribute("aria-pressed", String(own === index)));
   load();
 }
 
+/** @param {boolean} more */
 function query(more) {
   const asked = new URLSearchParams();
   for (const name of FILTERS[state.filter][1]) asked.append("state", name);
@@ -68,6 +73,10 @@ async function load(further = false) {
   }
 }
 
+/**
+ * @param {import("./answers.js").JobList[]} pages
+ * @param {boolean} further
+ */
 function show(pages, further) {
   if (!further) {
     rows.clear();
@@ -75,10 +84,11 @@ function show(pages, further) {
   }
   for (const job of pages.flatMap((page) => page.jobs)) {
     if (rows.has(job.id)) continue;
-    rows.set(job.id, new Row(job));
-    list.append(rows.get(job.id).element);
+    const row = new Row(job);
+    rows.set(job.id, row);
+    list.append(row.element);
   }
-  state.next = pages.at(-1).next;
+  state.next = pages.at(-1)?.next ?? null;
   more.hidden = !state.next;
   const empty = !rows.size;
   const unasked = !state.text && !state.filter;
@@ -93,7 +103,9 @@ function show(pages, further) {
 }
 
 class Row {
+  /** @param {Job} job */
   constructor(job) {
+    this.job = job;
     this.state = h("span", { class: "state" });
     this.words = h("span", { class: "outcome" });
     this.bar = h("progress", { hidden: true, "aria-label": "Share that is done" });
@@ -111,6 +123,7 @@ class Row {
     this.about.replaceChildren(...aboutOf(this.job));
   }
 
+  /** @param {Job} job */
   show(job) {
     this.job = job;
     this.state.replaceChildren(badge(job));
@@ -122,7 +135,9 @@ class Row {
   }
 }
 
+/** @param {Job} job */
 const aboutOf = (job) => [`${job.pinned ? "Kept for good · " : ""}${KINDS[job.kind] ?? words(job.kind)}${familyText(job)} · `, when(job.created)];
+/** @param {Job} job */
 const familyText = (job) => (job.families.length === 1 ? ` · ${state.titles[job.families[0]] ?? words(job.families[0])}` : job.families.length ? ` · ${job.families.length} families` : "");
 
 function watch() {
@@ -130,13 +145,12 @@ function watch() {
   const live = [...rows.values()].filter((row) => LIVE.includes(row.job.state)).map((row) => row.job.id);
   if (!live.length) return;
   state.stop = listen(live.slice(0, MOST_WATCHED), async (kind, told) => {
-    const row = rows.get(told.job ?? told.id);
+    const row = rows.get(told.job);
     if (!row) return;
-    if (kind === "snapshot") row.show(told);
+    if (told.state === "deleted") row.element.remove();
     else if (kind === "progress") row.show({ ...row.job, state: told.state, progress: told });
-    else if (kind === "end" && told.state === "deleted") row.element.remove();
     else if (kind === "end" || kind === "started") row.show(await get(`/jobs/${told.job}`).catch(() => row.job));
-  });
+  }, (job) => rows.get(job.id)?.show(job));
 }
 
 // ---- nobody has asked anything yet ----
@@ -148,12 +162,13 @@ async function greet() {
   if (welcome.childElementCount) return;
   const names = (place.dataset.examples ?? "").split(",");
   const [{ examples }] = await Promise.all([get("/examples"), named]);
-  const offered = names.map((name) => examples.find((example) => example.name === name)).filter(Boolean);
+  const offered = names.flatMap((name) => examples.find((example) => example.name === name) ?? []);
   welcome.replaceChildren(
     h("p", {}, "No studies yet. ", maySubmit() ? "State a duty, or run one of these as it stands:" : "Your token may look at studies, not ask for any."),
     maySubmit() ? h("ul", { class: "offers" }, offered.map(offer)) : h("span"));
 }
 
+/** @param {import("./answers.js").ExampleAnswer} example */
 function offer(example) {
   const fault = h("p", { class: "fault", role: "alert" });
   const run = h("button", { type: "button", class: "primary", onclick: async () => {
@@ -163,7 +178,7 @@ function offer(example) {
       const job = await post("/jobs", { kind: "synthesis", request: example.spec, title: title[0].toUpperCase() + title.slice(1) });
       location.assign(`/jobs/${job.id}`);
     } catch (error) {
-      fault.textContent = sentence(error.message);
+      fault.textContent = messageOf(error);
       run.disabled = false;
     }
   } }, "Run it");

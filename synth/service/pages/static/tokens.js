@@ -1,7 +1,9 @@
 // Tokens: made, shown once, and revoked.
 
-import { API, ask, faultCard, get, post, sentence } from "./api.js";
+import { API, ask, faultCard, get, messageOf, post, problemsOf, sentence } from "./api.js";
 import { byId, day, h, say, when } from "./dom.js";
+
+/** @typedef {import("./answers.js").TokenAnswer} Token */
 
 const place = byId("tokens");
 const SCOPES = [["read", "see the jobs of its tenant"], ["submit", "ask for jobs, cancel and delete them"], ["admin", "make tokens for all tenants"]];
@@ -21,16 +23,21 @@ async function begin() {
 async function list() {
   const { tokens } = await get("/tokens");
   none = !tokens.length;
+  /** @param {Token} token */
   const over = (token) => Boolean(token.revoked) || (token.expires !== null && token.expires < Date.now() / 1000);
   tokens.sort((a, b) => Number(over(a)) - Number(over(b)) || b.created - a.created);
   listed.replaceChildren(tokens.length ? h("section", { class: "card" }, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Tokens" }, h("table", {},
     h("thead", {}, h("tr", {}, ["Name", "Begins", "Tenant", "May", "Made", "Last used", "Valid until"].map((name) => h("th", { scope: "col" }, name)), h("td", {}, h("span", { class: "unseen" }, "What can be done")))),
     h("tbody", {}, tokens.map((token) => h("tr", { class: over(token) ? "over" : "" }, h("th", { scope: "row", class: "text" }, token.name), h("td", {}, h("code", {}, `${token.prefix}…`)), h("td", {}, token.tenant), h("td", {}, token.scopes.join(", ")), h("td", {}, when(token.created)), h("td", {}, token.used ? when(token.used) : "never"),
       h("td", {}, token.expires ? day(token.expires) : "for ever"),
-      h("td", {}, over(token) ? h("span", { class: "badge" }, token.revoked ? "revoked" : "run out") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (event) => revoke(token, event.target) }, "Revoke"))))))))
+      h("td", {}, over(token) ? h("span", { class: "badge" }, token.revoked ? "revoked" : "run out") : h("button", { type: "button", class: "small", "aria-label": `Revoke ${token.name}`, onclick: (/** @type {import("./elements.js").EventOf<HTMLButtonElement>} */ event) => revoke(token, event.target) }, "Revoke"))))))))
     : h("p", { class: "card note" }, "There are no tokens: everybody at this machine may do everything. The first one must be one that may admin: from then on nobody comes in without a token."));
 }
 
+/**
+ * @param {Token} token
+ * @param {HTMLButtonElement} button
+ */
 async function revoke(token, button) {
   if (button.dataset.sure !== "yes") {
     button.dataset.sure = "yes";
@@ -53,12 +60,18 @@ function making() {
   const days = h("input", { id: "days", inputmode: "numeric", autocomplete: "off", placeholder: "365" });
   const boxes = SCOPES.map(([scope, text]) => h("label", {}, h("input", { type: "checkbox", value: scope, checked: none || scope !== "admin" }), scope, h("span", { class: "note" }, text)));
   const fault = h("p", { class: "fault", role: "alert" });
+  /** @type {Record<string, HTMLElement>} */
   const faults = {};
+  /**
+   * @param {string} text
+   * @param {HTMLInputElement} field
+   */
   const labelled = (text, field) => {
     faults[field.id] = h("span", { class: "fault", id: `${field.id}-fault` });
     field.setAttribute("aria-describedby", `${field.id}-fault`);
     return h("p", { class: "labelled" }, h("label", { for: field.id }, text), field, faults[field.id]);
   };
+  /** @type {Record<string, HTMLInputElement>} */
   const fields = { name, tenant, days };
   return h("form", { class: "card stack", novalidate: true, onsubmit: async (event) => {
     event.preventDefault();
@@ -67,6 +80,7 @@ function making() {
       faults[id].textContent = "";
       field.removeAttribute("aria-invalid");
     }
+    /** @type {Record<string, string | number | string[]>} */
     const body = { name: name.value.trim(), scopes: boxes.flatMap((box) => box.querySelector("input") ?? []).filter((box) => box.checked).map((box) => box.value) };
     if (tenant.value.trim()) body.tenant = tenant.value.trim();
     if (days.value.trim()) body.days = /^[\d.]+$/.test(days.value.trim()) ? Number(days.value) : days.value.trim();
@@ -80,10 +94,10 @@ function making() {
       if (open.ok) await list();
       else listed.replaceChildren();
     } catch (error) {
-      const at = error.problems?.find((problem) => fields[problem.path.at(-1)]);
-      (at ? faults[at.path.at(-1)] : fault).textContent = sentence(at?.message ?? error.message);
-      fields[at?.path.at(-1)]?.setAttribute("aria-invalid", "true");
-      fields[at?.path.at(-1)]?.focus();
+      const at = problemsOf(error).find((problem) => problem.path.some((id) => id in fields)), id = at?.path.find((id) => id in fields) ?? "";
+      (faults[id] ?? fault).textContent = at ? sentence(at.message) : messageOf(error);
+      fields[id]?.setAttribute("aria-invalid", "true");
+      fields[id]?.focus();
     }
   } }, h("h2", {}, "Make a token"), h("div", { class: "asks" }, labelled("Name", name), labelled("Tenant", tenant), labelled("Valid for, in days", days)), h("div", { class: "objectives", role: "group", "aria-label": "What it may" }, boxes), fault, h("p", {}, h("button", { type: "submit", class: "primary" }, "Make it")));
 }

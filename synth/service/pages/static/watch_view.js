@@ -4,7 +4,13 @@ import { duration, figure, h, withFigures } from "./dom.js";
 import { plotOf } from "./plot.js";
 import { STAGE_ORDER, STEPS, stageText } from "./words.js";
 
-/** Show a job while it waits and is worked at. */
+/** @typedef {import("./answers.js").JobAnswer} Job */
+
+/**
+ * Show a job while it waits and is worked at.
+ * @param {HTMLElement} element
+ * @param {Job} job
+ */
 export function watchView(element, job) {
   let shown = job;
   const stage = h("h2", { role: "status" });
@@ -26,18 +32,20 @@ export function watchView(element, job) {
   }
 
   const view = {
+    /** @param {Job} job */
     show(job) {
       shown = job;
       const told = job.progress;
       const text = job.state === "open" ? "Waits for a worker" : stageText(told);
       if (stage.textContent !== text) stage.textContent = text;
-      if (told?.done > 0 && told.done < 1) bar.value = told.done;
+      const done = told?.done ?? 0;
+      if (done > 0 && done < 1) bar.value = done;
       else bar.removeAttribute("value");
-      const at = STAGE_ORDER.indexOf(told?.stage);
+      const at = STAGE_ORDER.indexOf(told?.stage ?? "");
       steps.hidden = at < 0;
       steps.replaceChildren(...STAGE_ORDER.map((name, k) => h("li", { class: k < at ? "past" : k === at ? "now" : "" }, STEPS[name])));
       count();
-      if (told?.points?.length) plot.replaceChildren(plotOf(told.columns.map(column), told.points.map((values) => ({ values })), { label: "Designs known so far" }));
+      if (told?.points?.length) plot.replaceChildren(plotOf((told.columns ?? []).map(column), told.points.map((values) => ({ values })), { label: "Designs known so far" }));
     },
   };
   element.replaceChildren(h("section", { class: "card stack" }, stage, bar, steps, facts, h("p", { class: "note" }, "You can close the page; the job goes on.")), plot);
@@ -45,7 +53,10 @@ export function watchView(element, job) {
   return view;
 }
 
-/** Return a heading such as `mass [kg]` as a column. */
+/**
+ * Return a heading such as `mass [kg]` as a column.
+ * @param {string} heading
+ */
 export function column(heading) {
   const [name, unit = ""] = heading.split(" [");
   return { name, unit: unit.replace("]", "") };

@@ -1,11 +1,11 @@
 // The strip below a front: sliders for requirements and limits; each release is a search of its own.
 
-import { get, listen, post, sentence } from "./api.js";
+import { get, listen, messageOf, post, sentence } from "./api.js";
 import { duration, h } from "./dom.js";
 import { asTyped } from "./as_typed.js";
 import { seek } from "./nothing_view.js";
 import { asked, stopped } from "./what_if_jobs.js";
-import { filling, knobsOf, patchOf, shown, valuesOf } from "./what_if_knobs.js";
+import { filling, knobsOf, numbersOf, patchOf, shown, valuesOf } from "./what_if_knobs.js";
 import { Slider } from "./what_if_slider.js";
 import { marksOf } from "./what_if_track.js";
 import { difference } from "./what_if_words.js";
@@ -21,18 +21,13 @@ const MOST = 4; // sliders
  * @typedef {import("./what_if_knobs.js").Knob} Knob
  * @typedef {import("../../../../reports/explorer/options.js").Handle} Handle
  * @typedef {import("../../../../reports/explorer/record.js").FrontRecord} FrontRecord
- * @typedef {object} Job
- * @property {string} id
- * @property {string} title
- * @property {string} state
- * @property {number} [started]
- * @property {number} [ended]
- * @property {{message: string}} [error]
- * @property {Record<string, unknown>} [summary]
+ * @typedef {import("./answers.js").JobAnswer} Job
+ * @typedef {import("./records.js").Patch} Patch
+ * @typedef {import("./records.js").Study} Study
  * @typedef {object} Page what the strip knows of the page around it
  * @property {Job} job
  * @property {FrontRecord} record
- * @property {{family: string, options?: Record<string, string>, requirements?: Record<string, string | number>}} request
+ * @property {import("./records.js").Spec} request
  * @property {string} state
  * @property {(text: string) => void} onState
  * @property {(job: Job, moved: string) => void} onJob
@@ -47,8 +42,8 @@ const MOST = 4; // sliders
 export async function whatIf(slot, handle, page) {
   const { request } = page;
   const options = Object.entries(request.options ?? {}).map(([name, value]) => `${name}:${value}`).join(",");
-  const [family, checked] = await Promise.all([get(`/families/${request.family}${options ? `?options=${encodeURIComponent(options)}` : ""}`), post("/check", request).catch(() => ({ read: {} }))]);
-  const knobs = knobsOf(request, family.rows, checked.read, page.record);
+  const [family, read] = await Promise.all([get(`/families/${request.family}${options ? `?options=${encodeURIComponent(options)}` : ""}`), post("/check", request).then(({ read }) => read, () => ({}))]);
+  const knobs = knobsOf(request, family.rows, read, page.record);
   if (!knobs.length) return slot.setAttribute("hidden", "");
   return new Strip(slot, handle, page, knobs).begin();
 }
@@ -116,10 +111,7 @@ export class Strip {
     this.buttons();
   }
 
-  /**
-   * Return the knobs that do not stand at what was asked, with their values.
-   * @returns {[Knob, number][]}
-   */
+  /** @returns {[Knob, number][]} knobs that do not stand at what was asked, with their values */
   moved() {
     return this.sliders.flatMap(({ knob, value }) => (value === null || value === knob.base ? [] : [[knob, value]]));
   }
@@ -132,6 +124,7 @@ export class Strip {
     if (this.shown) this.fresh.setAttribute("href", `/jobs/${this.shown.id}`);
   }
 
+  /** @param {(Node | string)[]} parts */
   say(...parts) {
     if (parts.length) return this.line.replaceChildren(...parts);
     const slow = `The search took ${duration(this.took)}: too long to follow a slider. Set values, and ask for them as a job.`;
@@ -148,6 +141,7 @@ export class Strip {
     this.recall();
   }
 
+  /** @param {Slider} slider */
   remove(slider) {
     const moved = slider.value !== slider.knob.base;
     this.sliders = this.sliders.filter((one) => one !== slider);
@@ -196,7 +190,7 @@ export class Strip {
     this.give(live.id);
   }
 
-  /** Cancel a job that nobody waits for: a short one not before its end is due, as a process that is ended costs more. */
+  /** @param {string} id of a job that nobody waits for; a short one is not cancelled before its end is due, as a process that is ended costs more */
   give(id) {
     setTimeout(async () => {
       if (![this.live?.id, this.shown?.id].includes(id)) await stopped(id);
@@ -213,7 +207,7 @@ export class Strip {
     try {
       location.assign(`/jobs/${(await asked(this.body())).id}`);
     } catch (error) {
-      this.say(h("span", { class: "fault" }, sentence(error.message)));
+      this.say(h("span", { class: "fault" }, messageOf(error)));
     }
   }
 
@@ -230,7 +224,7 @@ export class Strip {
       if (own !== this.number) return this.give(job.id);
       const ended = await this.follow(job, (stage) => own === this.number && this.say(`Searching anew with ${what}: ${stage.toLowerCase()} …`));
       if (own !== this.number) return undefined;
-      const record = ended.state === "done" || ended.summary?.designs ? asTyped(await get(`/jobs/${ended.id}/files/${RECORD}`), { ...this.page.request.requirements, ...patch.requirements }) : null;
+      const record = ended.state === "done" || ended.summary?.designs ? asTyped(/** @type {FrontRecord} */ (await get(`/jobs/${ended.id}/files/${RECORD}`)), { ...this.page.request.requirements, ...patch.requirements }) : null;
       if (own !== this.number) return undefined;
       const show = () => {
         if (own === this.number) this.show(ended, record, what);
@@ -239,31 +233,43 @@ export class Strip {
       else show();
       this.slot.dataset.took = String(Math.round(performance.now() - begun));
     } catch (error) {
-      if (own === this.number) this.failed(sentence(error.message));
+      if (own === this.number) this.failed(messageOf(error));
     }
     return undefined;
   }
 
-  /** Wait for the end of a job. */
+  /**
+   * Wait for the end of a job.
+   * @param {Job} job
+   * @param {(stage: string) => void} told
+   * @returns {Promise<Job>}
+   */
   follow(job, told) {
     if (!LIVE.includes(job.state)) return Promise.resolve(job);
     return new Promise((done, fail) => {
+      const ended = () => {
+        this.live = null;
+        get(`/jobs/${job.id}`).then(done, fail);
+      };
       const stop = listen([job.id], (kind, news) => {
         if (kind === "progress") told(stageText(news));
-        if (kind === "end" || (kind === "snapshot" && !LIVE.includes(news.state))) {
-          this.live = null;
-          get(`/jobs/${job.id}`).then(done, fail);
-        }
-      });
+        if (kind === "end") ended();
+      }, (seen) => LIVE.includes(seen.state) || ended());
       this.live = { id: job.id, stop };
     });
   }
 
+  /** @param {string} text */
   failed(text) {
     this.slot.classList.remove("busy");
     this.say(h("span", { class: "fault" }, text), " Shown is the front as it was before.");
   }
 
+  /**
+   * @param {Job} job
+   * @param {FrontRecord | null} record
+   * @param {string} what
+   */
   show(job, record, what) {
     if (!record) return this.failed(job.error ? sentence(job.error.message) : "The search has ended without an answer.");
     this.slot.classList.remove("busy");
@@ -285,14 +291,14 @@ export class Strip {
     return ends.length ? `${ends.map((mark) => mark.text.split(":")[0].replace(/^It /, "It ")).join("; ")}.` : "";
   }
 
-  /** Fill the place for ways out. */
+  /** @param {HTMLElement} place that ways out fill */
   ways(place) {
     const job = this.shown;
     if (!job) return;
-    const apply = (patch) => {
+    const apply = (/** @type {Patch} */ patch) => {
       const values = valuesOf(patch, this.knobs);
       const room = values && values.filter(([knob]) => !this.sliders.some((slider) => slider.knob === knob)).length + this.sliders.length <= MOST;
-      return room ? () => this.take(values) : null;
+      return values && room ? () => this.take(values) : null;
     };
     const own = this.number;
     const latest = () => this.explaining?.own === own;
@@ -306,16 +312,17 @@ export class Strip {
     place.replaceChildren(h("h3", {}, "Looking for ways out"));
     const begin = () => {
       if (own !== this.number) return;
-      for (const id of [this.explaining?.id, this.filling].filter(Boolean)) stopped(id); // one process stays free for the next value
+      for (const id of [this.explaining?.id, this.filling]) if (id) stopped(id); // one process stays free for the next value
       this.explaining = { own, id: "" };
       seek(place, job, how).catch((error) => {
         told();
-        place.replaceChildren(h("p", { class: "fault" }, sentence(error.message)));
+        place.replaceChildren(h("p", { class: "fault" }, messageOf(error)));
       });
     };
     setTimeout(begin, CALM);
   }
 
+  /** @param {[Knob, number][]} values */
   take(values) {
     for (const [knob, value] of values) {
       const there = this.sliders.find((slider) => slider.knob === knob);
@@ -362,22 +369,30 @@ export class Strip {
     }
   }
 
+  /**
+   * @param {Knob} knob
+   * @param {Job} job
+   */
   async filled(knob, job) {
     this.fills.set(knob, null);
     const slider = () => this.sliders.find((one) => one.knob === knob);
     slider()?.note("looking along the track …");
     this.filling = job.id;
-    const ended = await new Promise((done) => {
-      if (!LIVE.includes(job.state)) done(job);
-      else listen([job.id], (kind, news) => ((kind === "end" || (kind === "snapshot" && !LIVE.includes(news.state))) ? done(news) : undefined));
+    /** @type {string} */
+    const state = await new Promise((done) => {
+      if (!LIVE.includes(job.state)) done(job.state);
+      else listen([job.id], (kind, news) => kind === "end" && done(news.state), (seen) => LIVE.includes(seen.state) || done(seen.state));
     });
     this.filling = "";
-    const study = ended.state === "done" ? await get(`/jobs/${job.id}/result`) : null;
+    const study = state === "done" ? /** @type {Study} */ (await get(`/jobs/${job.id}/result`)) : null;
     if (study) this.fills.set(knob, marksOf(study));
     else this.fills.delete(knob); // it is asked again
     slider()?.ticks();
   }
 }
 
-/** Return how the title of a study begins that fills a track: by this it is known again. */
-const fillTitle = (knob) => `What if: ${knob.label} ${shown(knob, knob.values.find((value) => value !== null))} to ${shown(knob, knob.values.findLast((value) => value !== null))}, `;
+/**
+ * Return how the title of a study begins that fills a track: by this it is known again.
+ * @param {Knob} knob
+ */
+const fillTitle = (knob) => `What if: ${knob.label} ${shown(knob, numbersOf(knob).at(0) ?? null)} to ${shown(knob, numbersOf(knob).at(-1) ?? null)}, `;

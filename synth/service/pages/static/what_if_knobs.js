@@ -10,9 +10,12 @@ const STEPS = 60; // of a track, about
 const SPAN = [0.5, 2]; // of the value that was asked
 const AROUND = [0.6, 1.1]; // of the least and the largest value on the front, where no limit was asked
 const FILLED = 11; // values of the study that fills a track
+/** @type {Record<string, string>} */
 const SIGNS = { "<=": "at most", ">=": "at least" };
 
 /**
+ * @typedef {import("./records.js").DeclarationRow} DeclarationRow
+ * @typedef {import("./records.js").Patch} Patch
  * @typedef {object} Knob
  * @property {string} key what stands in addresses
  * @property {string} vary what a study of it varies
@@ -39,10 +42,10 @@ export function quantity(value, declared) {
 
 /**
  * Return what can be varied.
- * @param {object} request of the study
- * @param {object[]} rows that its family declares
+ * @param {import("./records.js").Spec} request of the study
+ * @param {DeclarationRow[]} rows that its family declares
  * @param {Record<string, string>} read how requirements were understood, in declared units
- * @param {object} record what the explorer shows
+ * @param {import("../../../../reports/explorer/record.js").FrontRecord} record what the explorer shows
  * @returns {Knob[]}
  */
 export function knobsOf(request, rows, read, record) {
@@ -62,11 +65,11 @@ export function knobsOf(request, rows, read, record) {
     const [, sign, value] = LIMIT.exec(told) ?? [];
     const row = rows.find((row) => row.name === name);
     const asked = value && quantity(value, row?.unit ?? "-");
-    if (asked && asked.number !== 0) found.push(limit(name, sign, "Limits", row, asked));
+    if (asked && asked.number !== 0) found.push(limit(name, sign === ">=" ? ">=" : "<=", "Limits", row, asked));
   }
   record.quantities.forEach((own, k) => {
     const row = rows.find((row) => row.name === own.name && row.kind !== "limit" && row.kind !== "objective");
-    const values = record.designs.map((design) => design.v[k]).filter((value) => value !== null && value > 0);
+    const values = record.designs.flatMap(({ v }) => v[k] ?? []).filter((value) => value > 0);
     const objective = own.name in record.objectives;
     if (!row || !values.length || row.kind === "count" || request.limits?.[own.name] !== undefined || request.fix?.[own.name] !== undefined) return;
     const [least, most] = [Math.min(...values), Math.max(...values)];
@@ -79,6 +82,13 @@ export function knobsOf(request, rows, read, record) {
   return found.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
 }
 
+/**
+ * @param {string} name
+ * @param {"<=" | ">="} sign
+ * @param {string} group
+ * @param {DeclarationRow | undefined} row
+ * @param {{number: number | null, unit: string, ends?: number[]}} asked
+ */
 const limit = (name, sign, group, row, asked) =>
   knob({ ...asked, group, key: `${name}${sign}`, vary: `${name} ${sign}`, sign, label: `${words(name)} ${SIGNS[sign]}`, text: row?.text ?? "", bounds: [-Infinity, Infinity] });
 
@@ -109,10 +119,18 @@ function trackOf(low, high, base) {
   return values.sort((a, b) => a - b);
 }
 
-/** Return a value as people read it. */
+/**
+ * Return a value as people read it.
+ * @param {Knob} knob
+ * @param {number | null} value
+ */
 export const shown = (knob, value) => (value === null ? "no limit" : `${figure(value, FULL_DIGITS)} ${unitText(knob.unit)}`.trim());
 
-/** Return a value as a spec states it. */
+/**
+ * Return a value as a spec states it.
+ * @param {Knob} knob
+ * @param {number} value
+ */
 export const stated = (knob, value) => (knob.unit && knob.unit !== "-" ? `${value} ${knob.unit}` : value);
 
 /**
@@ -120,6 +138,7 @@ export const stated = (knob, value) => (knob.unit && knob.unit !== "-" ? `${valu
  * @param {[Knob, number][]} moved
  */
 export function patchOf(moved) {
+  /** @type {Patch} */
   const patch = {};
   for (const [knob, value] of moved) {
     const [section, told] = knob.sign ? ["limits", `${knob.sign} ${stated(knob, value)}`] : ["requirements", stated(knob, value)];
@@ -130,7 +149,7 @@ export function patchOf(moved) {
 
 /**
  * Return at which values knobs must stand for what a patch says; null where it says something else as well.
- * @param {object} patch
+ * @param {Patch} patch
  * @param {Knob[]} knobs
  * @returns {[Knob, number][] | null}
  */
@@ -139,7 +158,7 @@ export function valuesOf(patch, knobs) {
   const found = [];
   for (const [section, entries] of Object.entries(patch)) {
     for (const [name, told] of Object.entries(entries)) {
-      const [, sign = "", value = told] = section === "limits" ? LIMIT.exec(told) ?? [] : [];
+      const [, sign = "", value = told] = section === "limits" ? LIMIT.exec(String(told)) ?? [] : [];
       const own = knobs.find((knob) => knob.key === name + sign);
       const asked = own && quantity(value, own.unit);
       if (!asked || asked.unit !== own.unit || !["requirements", "limits"].includes(section)) return null;
@@ -149,10 +168,18 @@ export function valuesOf(patch, knobs) {
   return found.length ? found : null;
 }
 
-/** Return what a study that fills the track of a knob varies. */
+/**
+ * Return the values along a track that are numbers.
+ * @param {Knob} knob
+ */
+export const numbersOf = (knob) => knob.values.filter((value) => value !== null);
+
+/**
+ * Return what a study that fills the track of a knob varies.
+ * @param {Knob} knob
+ */
 export function filling(knob) {
-  const values = knob.values.filter((value) => value !== null);
-  const [low, high] = [values[0], values.at(-1)];
+  const values = numbersOf(knob), low = values[0], high = values[values.length - 1];
   const spread = Array.from({ length: FILLED }, (_, k) => Number((low + ((high - low) * k) / (FILLED - 1)).toPrecision(6)));
   return { [knob.vary]: spread.map((value) => stated(knob, value)) };
 }

@@ -37,7 +37,11 @@ export class Slider {
     this.draw();
   }
 
-  /** Show which sliders there are beside this one. */
+  /**
+   * Show which sliders there are beside this one.
+   * @param {number} number
+   * @param {number} count
+   */
   place(number, count) {
     this.word.textContent = number ? "and" : "What if";
     this.drop.hidden = count < 2;
@@ -76,17 +80,21 @@ export class Slider {
     this.ticks();
   }
 
+  /** @param {number | null} value */
   set(value) {
     clearTimeout(this.waiting);
     this.value = value;
     const { values } = this.knob;
-    const far = (k) => Math.abs((values[k] ?? Infinity) - (value ?? 0));
+    const far = (/** @type {number} */ k) => Math.abs((values[k] ?? Infinity) - (value ?? 0));
     const k = values.indexOf(value);
     this.range.value = String(k >= 0 ? k : [...values.keys()].reduce((best, i) => (far(i) < far(best) ? i : best), values[0] === null ? 1 : 0));
     this.tell(value);
   }
 
-  /** Show a value in words and in the field. */
+  /**
+   * Show a value in words and in the field.
+   * @param {number | null} value
+   */
   tell(value) {
     this.range.setAttribute("aria-valuetext", shown(this.knob, value) + (value === this.knob.base ? ", as asked" : ""));
     this.field.value = value === null ? "" : String(Number(value.toPrecision(7)));
@@ -130,6 +138,7 @@ export class Slider {
     return undefined;
   }
 
+  /** @param {string} text */
   note(text) {
     this.noted.textContent = text;
   }

@@ -16,11 +16,12 @@ const APART = 10; // pixels between two labels
 
 /**
  * Return what is worth a tick.
- * @param {object} study record of a study that varies one thing
+ * @param {import("./records.js").Study} study of one thing that varies
  * @returns {{marks: Mark[], barren: [number, number][]}}
  */
 export function marksOf(study) {
   const { unit } = study.varied[0];
+  /** @param {number} value */
   const told = (value) => `${figure(value)} ${unitText(unit)}`.trim();
   const seen = new Set();
   /** @type {Mark[]} */
@@ -38,8 +39,12 @@ export function marksOf(study) {
     marks.push({ value: found.value, objective: ends ? "" : found.objective, ends, label, text: found.proven ? text : `${text} (not proven)` });
   }
   /** @type {[value: number, fits: boolean][]} */
-  const steps = study.steps.map((step) => [step.values[0], Boolean(step.front?.designs.length)]);
+  const steps = study.steps.map((step) => [Number(step.values[0]), Boolean(step.front?.designs.length)]);
   steps.sort((a, b) => a[0] - b[0]);
+  /**
+   * @param {number} a
+   * @param {number} b
+   */
   const edge = (a, b) => marks.find((mark) => mark.ends && mark.value >= a && mark.value <= b)?.value ?? (a + b) / 2;
   let from = -Infinity; // where nothing fits
   for (let k = 1; k < steps.length; k += 1) {
@@ -62,6 +67,7 @@ export function marksOf(study) {
 export function drawTrack(drawing, values, { marks, barren }) {
   const known = values.filter((value) => value !== null);
   const first = values[0] === null ? 1 : 0;
+  /** @param {number} value */
   const share = (value) => {
     const k = known.findIndex((other) => other >= value);
     const at = k < 0 ? known.length - 1 : k === 0 ? 0 : k - (known[k] - value) / (known[k] - known[k - 1]);
@@ -69,11 +75,13 @@ export function drawTrack(drawing, values, { marks, barren }) {
   };
   const wide = drawing.clientWidth || 300;
   const end = known.at(-1) ?? Infinity;
+  /** @param {number} value */
   const inside = (value) => value >= known[0] && value <= end;
   const bars = barren.map(([from, to]) => {
     const [a, b] = [share(Math.max(from, known[0])), share(Math.min(to, end))];
     return b > a ? s("rect", { class: "barren", x: `${100 * a}%`, width: `${100 * (b - a)}%`, y: 0, height: 4, rx: 2 }) : null;
   });
+  /** @type {[left: number, right: number][]} */
   const taken = [];
   const order = [...marks].filter((mark) => inside(mark.value)).sort((a, b) => Number(b.ends) - Number(a.ends));
   const nodes = order.map((mark) => {
@@ -87,5 +95,8 @@ export function drawTrack(drawing, values, { marks, barren }) {
   drawing.replaceChildren(...bars.filter((bar) => bar !== null), ...nodes);
 }
 
-/** Return the same for whoever does not see it. */
+/**
+ * Return the same for whoever does not see it.
+ * @param {Mark[]} marks
+ */
 export const markList = (marks) => h("ul", {}, marks.map((mark) => h("li", {}, mark.text)));

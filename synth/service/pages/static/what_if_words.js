@@ -4,24 +4,49 @@ import { figure, words } from "./dom.js";
 import { signed } from "./numbers.js";
 import { count } from "./words.js";
 
+/**
+ * @typedef {import("../../../../reports/explorer/record.js").FrontRecord} FrontRecord
+ * @typedef {import("../../../../reports/explorer/record.js").Design} Design
+ */
+
 const MOST = 3; // parts and counts that are named
 
-/** Return the design that stands for a front: its knee, else the first. */
+/**
+ * Return the design that stands for a front: its knee, else the first.
+ * @param {FrontRecord} record
+ */
 const middle = (record) => record.designs.find((design) => design.note.includes("knee")) ?? record.designs[0];
 
-/** Return the design that is best in an objective. */
+/**
+ * Return the design that is best in an objective.
+ * @param {FrontRecord} record
+ * @param {number} k
+ * @param {string} sense
+ */
 function best(record, k, sense) {
   const side = sense === "min" ? 1 : -1;
-  return record.designs.reduce((a, b) => (side * b.v[k] < side * a.v[k] ? b : a));
+  const of = (/** @type {Design} */ design) => side * (design.v[k] ?? NaN);
+  return record.designs.reduce((a, b) => (of(b) < of(a) ? b : a));
 }
 
+/**
+ * @param {number} before
+ * @param {number} after
+ * @param {string} unit
+ */
 function change(before, after, unit) {
   const part = before ? (100 * (after - before)) / Math.abs(before) : NaN;
   const share = Number.isFinite(part) ? ` (${signed(part, 2)} %)` : "";
   return `${figure(before)} → ${figure(after)}${unit ? ` ${unit}` : ""}${share}`;
 }
 
-/** Return what a design is made of that another one is not. */
+/**
+ * Return what a design is made of that another one is not.
+ * @param {FrontRecord} record
+ * @param {Design} design
+ * @param {FrontRecord} before
+ * @param {Design} other
+ */
 function made(record, design, before, other) {
   const told = [];
   for (const [slot, key] of Object.entries(design.parts)) {
@@ -38,8 +63,8 @@ function made(record, design, before, other) {
 
 /**
  * Return what differs between the front as asked and another one; both have designs.
- * @param {object} asked
- * @param {object} now
+ * @param {FrontRecord} asked
+ * @param {FrontRecord} now
  */
 export function difference(asked, now) {
   const [a, b] = [middle(asked), middle(now)];
@@ -63,4 +88,5 @@ export function difference(asked, now) {
   return `${parts.join("; ")}.`;
 }
 
+/** @param {string[]} texts */
 const listed = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts[0]);
