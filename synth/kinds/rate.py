@@ -63,14 +63,8 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
 def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Rate the designs."""
     given = _designs(request, sources)
-    found = rate(
-        given.designs,
-        given.block,
-        problem=given.problem,
-        catalogs=given.tables,
-        progress=told(tell),
-        time_limit=given.time_limit,
-    )
+    how: dict[str, Any] = {"progress": told(tell), "time_limit": given.time_limit}
+    found = rate(given.designs, given.block, problem=given.problem, catalogs=given.tables, **how)
     return {**of_files(found.files()), **by_name(question_record("rate", request, sources))}
 
 

@@ -39,7 +39,7 @@ from synth.studies.whatif.steps import check_steps
 from synth.studies.whatif.study_record import study_record
 from synth.studies.whatif.vary import Varied, read_vary
 from synth.verbs.request import WHERE, in_request
-from synth.verbs.requests import OF, SPEC, VARIED_ENDS, WhatIfRequest, python_vary
+from synth.verbs.requests import OF, SPEC, VARIED_ENDS, WhatIfRequest
 
 MAIN = "study.json"
 VARY, BREAKS = "vary", "breaks"
@@ -58,8 +58,7 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         spec.pop("points", None)  # those of a whole front are far more than a step needs
     beyond = WhatIfRequest.read(own, in_request)
     asked, settings = question_of(spec, sources, points=POINTS)
-    vary = python_vary(beyond.vary)
-    varied, count = check_steps(asked, settings, vary, KIND_SETTINGS.posed_steps)
+    varied, count = check_steps(asked, settings, beyond.vary, KIND_SETTINGS.posed_steps)
     if count > KIND_SETTINGS.steps:
         raise InputError(f"{WHERE}: vary", f"{count} steps", f"at most {KIND_SETTINGS.steps} steps", (VARY,))
     stated = stated_spec(asked, settings)
@@ -90,7 +89,7 @@ def beside(request: Mapping[str, object], sources: Sources) -> tuple[dict[str, A
         return spec, faults
     for name, values in stated.items():
         with gathered(faults):
-            vary |= python_vary(WhatIfRequest.read({VARY: {name: values}}, in_request).vary)
+            vary |= WhatIfRequest.read({VARY: {name: values}}, in_request).vary
     with gathered([]):  # of the spec: its check tells it
         known = {key: value for key, value in spec.items() if key in (*SPEC, OF)}
         whole, _ = spec_of(known, sources)
@@ -119,7 +118,7 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     beyond = WhatIfRequest.read(own, in_request)
     question = question_of(spec, sources, points=POINTS)
-    study = study_of(*question, python_vary(beyond.vary), told(tell), beyond.breaks)
+    study = study_of(*question, beyond.vary, told(tell), beyond.breaks)
     main = json_record(MAIN, study_record(study))
     return {**of_files(study.files()), **by_name(main, question_record("whatif", request, sources))}
 

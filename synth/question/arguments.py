@@ -51,5 +51,6 @@ Objectives: TypeAlias = "str | Sequence[str] | Mapping[str, str] | None"
 # What scatters with its range, {"friction": "catalogue range"}, beside the settings of the block.
 Scatter: TypeAlias = "Mapping[str, object] | Uncertainty"
 
-# What a study varies, by requirement, limit, "weights.NAME", "parts.SLOT" and the like: its values.
-Variations: TypeAlias = "Mapping[str, str | Sequence[Value | Sequence[str]]]"
+# What a study varies, by requirement, limit, "weights.NAME", "parts.SLOT" and the like: its values, or the ends and the
+# count of them, {"from": "200 mm", "to": "300 mm", "count": 11}.
+Variations: TypeAlias = "Mapping[str, str | Sequence[Value | Sequence[str]] | Mapping[str, Value]]"

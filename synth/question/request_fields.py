@@ -106,8 +106,8 @@ class RequestField:
         """Type of its option on the command line; None where it has none."""
         return self.value.option if self.typed is None else self.typed.option
 
-    def read(self, where: str, value: object) -> Any:
-        """Value as it is used; ``where`` names the field in messages.
+    def read(self, where: str, value: object, typed: bool = False) -> Any:
+        """Value as it is used; ``where`` names the field in messages, ``typed`` is its form on the command line.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class RequestField:
             It is not of its kind.
         """
         with at(self.name):
-            return self.value.read(where, value)
+            return self.value.read(where, self.typed.read(where, value) if typed and self.typed else value)
 
     def schema(self) -> dict[str, Any]:
         """JSON Schema of the field."""
@@ -457,6 +457,7 @@ def _by_name(*fields: RequestField) -> Mapping[str, RequestField]:
     return MappingProxyType({field.name: field for field in fields})
 
 
+OBJECTIVE_HELP = "An objective, name or name=min or name=max; repeat it."
 FIELDS: Mapping[str, RequestField] = _by_name(
     RequestField("family", ValueKind(family_schema, _family), "Name of a family."),
     RequestField(
@@ -477,13 +478,7 @@ FIELDS: Mapping[str, RequestField] = _by_name(
         ValueKind(some(TEXT, listed({"type": "string"}), by_name(one_of(("min", "max")))), _objectives),
         "What is minimised or maximised; by default what the family names.",
         examples=(["mass", "actuation_force"], {"mass": "min"}, "mass"),
-        typed=TypedForm(
-            "--objective",
-            "NAME[=SENSE]",
-            "An objective, name or name=min or name=max; repeat it.",
-            list[str],
-            _typed_objectives,
-        ),
+        typed=TypedForm("--objective", "NAME[=SENSE]", OBJECTIVE_HELP, list[str], _typed_objectives),
     ),
     RequestField(
         "limits",

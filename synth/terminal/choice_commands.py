@@ -84,7 +84,7 @@ def prices(
     front = load_front(source)
     with progress_display(quiet) as progress:
         try:
-            found = find(front, asked.design, asked.step, progress=progress, time_limit=asked.time_limit, folder=folder)
+            found = find(front, progress=progress, folder=folder, **vars(asked))
         except KeyboardInterrupt:
             tell("stopped before the first design was begun; nothing is written")
             raise typer.Exit(STOPPED) from None

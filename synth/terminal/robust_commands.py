@@ -59,14 +59,8 @@ def rate(
         right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
         raise InputError("--over", None, right)
     with progress_display(quiet) as progress:
-        found = rate_designs(
-            designs,
-            {**block, **told},
-            problem=problem,
-            catalogs=catalogs,
-            progress=progress,
-            time_limit=asked.time_limit,
-        )
+        limits: dict[str, Any] = {"progress": progress, "time_limit": asked.time_limit}
+        found = rate_designs(designs, {**block, **told}, problem=problem, catalogs=catalogs, **limits)
     target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_ratings(found, output())

@@ -61,10 +61,7 @@ class VerbRequest:
         for name, record in cls.fields().items():
             with gathered(faults):
                 if stated.get(name) is not None:
-                    value = stated[name]
-                    if typed and record.typed is not None:
-                        value = record.typed.read(named(name), value)
-                    read[name] = record.read(named(name), value)
+                    read[name] = record.read(named(name), stated[name], typed)
                 elif record.needed:
                     raise InputError(named(name), None, record.needed, (name,))
         refuse_gathered(faults)

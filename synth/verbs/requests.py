@@ -110,21 +110,15 @@ def typed_vary(where: str, texts: list[str]) -> dict[str, str]:
 
 def _typed_spread(where: str, texts: list[str]) -> dict[str, str]:
     """What scatters, in ``load_torque=+-10 %``."""
-    pairs = [pair(where, text) for text in texts]
-    for name, _ in pairs:
-        if [other for other, _ in pairs].count(name) > 1:
+    spread: dict[str, str] = {}
+    for name, value in (pair(where, one) for one in texts):
+        if spread.setdefault(name, value) is not value:
             raise InputError(where, name, "each thing once")
-    return dict(pairs)
+    return spread
 
 
-def _typed_sheets(where: str, words: str) -> list[str]:
+def _split(where: str, words: str) -> list[str]:
     return [word.strip() for word in words.split(",")]
-
-
-def python_vary(varied: Mapping[str, Any]) -> dict[str, Any]:
-    """Varied quantities as Python states them: ends and a count as a tuple."""
-    ends = {name: tuple(v[end] for end in VARIED_ENDS) for name, v in varied.items() if isinstance(v, Mapping)}
-    return {**varied, **ends}
 
 
 def _sheets(where: str, value: object) -> tuple[str, ...]:
@@ -353,11 +347,7 @@ class FrontReportRequest(VerbRequest):
         usual=("1",),
         examples=([1, 3, "knee"], 2),
         typed=TypedForm(
-            "--design",
-            None,
-            "Designs that get sheets, such as 1,3,knee; by default the first.",
-            str,
-            _typed_sheets,
+            "--design", None, "Designs that get sheets, such as 1,3,knee; by default the first.", str, _split
         ),
     )
     full: int = field(

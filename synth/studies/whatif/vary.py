@@ -18,6 +18,7 @@ from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import number_text, typed_number
 from synth.text.plain_text import listed, words
 from synth.units import as_decimal, parse_quantity, parse_unit
+from synth.verbs.requests import VARIED_ENDS
 
 DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options|robust)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
@@ -118,6 +119,8 @@ def read_vary(vary: Variations, model: Model, chosen: Sequence[str]) -> list[Var
     varied = []
     for key, values in vary.items():
         with at("vary", str(key)):
+            if isinstance(values, Mapping) and set(values) == set(VARIED_ENDS):
+                values = tuple(values[end] for end in VARIED_ENDS)
             varied.append(_read_one(str(key), values, model, chosen))
     if len({(x.kind, x.name, x.sign) for x in varied}) < len(varied):
         raise InputError("vary", varied[0].label, "each thing once (name and symbol mean the same)", ("vary",))
