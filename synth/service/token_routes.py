@@ -169,14 +169,4 @@ async def sign_out(request: Request, response: Response, context: Context) -> No
 
 
 def _entry(token: TokenEntry) -> TokenAnswer:
-    return TokenAnswer(
-        id=token.id,
-        name=token.name,
-        prefix=token.prefix,
-        tenant=token.tenant,
-        scopes=list(token.scopes),
-        created=token.created,
-        expires=token.expires,
-        used=token.used,
-        revoked=token.revoked,
-    )
+    return TokenAnswer.model_validate(token, from_attributes=True)

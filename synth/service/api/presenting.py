@@ -11,6 +11,7 @@ from synth.queue.models import Job
 from synth.service.api.schemas import JobAnswer, JobFault, JobLinks
 
 FAMILIES = "families"  # what is kept with a job of those that it asks
+MADE = ("error", FAMILIES, "rows", "links")  # fields of an answer that a job does not have as they are
 STATED_ROWS = "stated_rows"  # how many a batch has whose rows are not planned yet
 
 
@@ -22,35 +23,14 @@ def job_place(request: Request, job: str) -> str:
 def job_answer(request: Request, job: Job) -> JobAnswer:
     """Return a job as clients see it."""
     place = job_place(request, job.id)
+    parts = {name: f"{place}/{name}" for name in JobLinks.model_fields if name not in ("self", "rows")}
+    same = {name: getattr(job, name) for name in JobAnswer.model_fields if name not in MADE}
     return JobAnswer(
-        id=job.id,
-        kind=job.kind,
-        title=job.title,
-        state=job.state,
-        outcome=job.outcome,
-        progress=job.progress,
-        summary=job.summary,
+        **same,
         error=_fault(job.error),
         families=list(job.content.get(FAMILIES, ())),
-        priority=job.priority,
-        parent=job.parent,
-        pinned=job.pinned,
         rows=job.rows or int(job.content.get(STATED_ROWS, 0)),
-        seconds_limit=job.seconds_limit,
-        created=job.created,
-        started=job.started,
-        updated=job.updated,
-        ended=job.ended,
-        expires=job.expires,
-        links=JobLinks(
-            self=place,
-            request=f"{place}/request",
-            result=f"{place}/result",
-            designs=f"{place}/designs",
-            files=f"{place}/files",
-            events=f"{place}/events",
-            rows=f"{place}/rows" if job.kind == BATCH else None,
-        ),
+        links=JobLinks(self=place, rows=f"{place}/rows" if job.kind == BATCH else None, **parts),
     )
 
 
