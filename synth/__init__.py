@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from synth.analysis.operating_state import state
     from synth.batches.batch import BatchResult, batch
     from synth.client.connection import connect
+    from synth.kinds.run import run
     from synth.model.problem import DesignProblem
     from synth.model.registry import families, load
     from synth.results import Design, ParetoFront
@@ -71,6 +72,7 @@ __all__ = [
     "near_equals",
     "prices",
     "rate",
+    "run",
     "second_opinion",
     "simulate",
     "size_range",
@@ -114,6 +116,7 @@ _HOME = {
     "prices": "synth.studies.prices.run",
     "rate": "synth.robust.rate",
     "report": "synth.analysis.reporting",
+    "run": "synth.kinds.run",
     "second_opinion": "synth.analysis.hooks",
     "simulate": "synth.analysis.hooks",
     "size_range": "synth.variants.size_range",

@@ -181,6 +181,18 @@ def _report(name: str, file: str, sources: Sources) -> bytes | str:
         return made[file]
 
 
+def must_have_one_table(stated: Mapping[str, object]) -> None:
+    """Refuse a request with no table, or with two.
+
+    Raises
+    ------
+    InputError
+    """
+    if (UPLOAD in stated) == (ROWS in stated):
+        given = "both upload and rows" if UPLOAD in stated else None
+        raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
+
+
 def table_of(stated: Mapping[str, object], sources: Sources) -> Record:
     """Return the table of a request: a file that was brought, or rows that stand in it.
 
@@ -189,9 +201,7 @@ def table_of(stated: Mapping[str, object], sources: Sources) -> Record:
     InputError
         There is neither, or both.
     """
-    if (UPLOAD in stated) == (ROWS in stated):
-        given = "both upload and rows" if UPLOAD in stated else None
-        raise InputError(f"{WHERE}: {UPLOAD}", given, "the id of a file that was uploaded, or rows", (UPLOAD,))
+    must_have_one_table(stated)
     if ROWS in stated:
         return Record.of(STATED, json.dumps(_stated_rows(stated[ROWS]), ensure_ascii=False))
     upload = stated[UPLOAD]
