@@ -14,7 +14,7 @@ import synth
 from synth.declaration import Block, Declaration
 from synth.question.catalogs import as_catalogs
 from tests.conformance.cases import CASES
-from tests.figures import parsed
+from tests.syntax import parsed
 from tests.test_architecture import ROOT, imported_by
 
 pytestmark = pytest.mark.slow
