@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
+
+    from .lining.model import Pair
 
 
 def declare_bought(d: Declaration, *, slot: str, table: str, made: str, text: str) -> Part | None:
@@ -38,3 +42,44 @@ def declare_bought(d: Declaration, *, slot: str, table: str, made: str, text: st
         group="model",
     )
     return None if plates == "made" else d.part(slot, table, symbol="set", text=text, source=source)
+
+
+def limit_bought(d: Declaration, row: Part, *, table: str, what: str, lined: str, pair: Pair, pressure: Any) -> None:
+    """Declare what every list says of its rows: of which lining they are, and how much pressure they stand.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    row : Part
+        Row of the list.
+    table, what : str
+        The list, and what it lists.
+    lined : str
+        Beginning of the sentence that refuses other linings.
+    pair : Pair
+        Slot friction_pair.
+    pressure : symbol
+        Largest pressure on the linings [Pa].
+    """
+    if d.has_column(table, "lining"):
+        d.refuse(
+            f"lining_of_{what}",
+            np.logical_not(np.logical_or(row.says("lining", ""), row.code("lining") == pair.part.code("designation"))),
+            f"{lined} that their list names",
+        )
+    d.at_most(
+        "set_pressure",
+        pressure,
+        row.optional("p_max"),
+        "N/mm2",
+        text=f"No more pressure than the list of the {what} allows",
+        source=f"table {table}",
+    )
+    if d.has_column(table, "confidence"):
+        d.advise(
+            f"computed_{what}",
+            row.says("confidence", "computed"),
+            f"these {what} are of a computed series, no maker lists them: give a maker's list as table {table}",
+            source=f"table {table}",
+        )

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.declaration import Declaration, Part
 
-from ..bought import declare_bought
+from ..bought import declare_bought, limit_bought
 from ..lining.model import Pair
 from .model import Facing
 
@@ -52,24 +52,4 @@ def declare_set_limits(d: Declaration, row: Part, *, pair: Pair, pressure: Any) 
     pressure : symbol
         Pressure on the linings [Pa].
     """
-    if d.has_column(TABLE, "lining"):
-        d.refuse(
-            "lining_of_facings",
-            np.logical_not(np.logical_or(row.says("lining", ""), row.code("lining") == pair.part.code("designation"))),
-            "facings of the lining that their list names",
-        )
-    d.at_most(
-        "set_pressure",
-        pressure,
-        row.optional("p_max"),
-        "N/mm2",
-        text="No more pressure than the list of the facings allows",
-        source=f"table {TABLE}",
-    )
-    if d.has_column(TABLE, "confidence"):
-        d.advise(
-            "computed_facings",
-            row.says("confidence", "computed"),
-            "these facings are of a computed series, no maker lists them: give a maker's list as table facing_sets",
-            source=f"table {TABLE}",
-        )
+    limit_bought(d, row, table=TABLE, what="facings", lined="facings of the lining", pair=pair, pressure=pressure)

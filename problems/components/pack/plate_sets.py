@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from synth.declaration import Declaration, Part
 
-from ..bought import declare_bought
+from ..bought import declare_bought, limit_bought
 from ..lining.model import Pair
 from ..ring.model import Ring
 from .model import Pack, Plates
@@ -87,12 +85,6 @@ def declare_set_limits(d: Declaration, row: Part, *, pair: Pair, pack: Pack, pre
     pressure : symbol
         Largest pressure on the linings [Pa].
     """
-    if d.has_column(TABLE, "lining"):
-        d.refuse(
-            "lining_of_plates",
-            np.logical_not(np.logical_or(row.says("lining", ""), row.code("lining") == pair.part.code("designation"))),
-            "plates with the lining that their list names",
-        )
     d.at_most(
         "set_surfaces",
         pack.surfaces,
@@ -101,18 +93,4 @@ def declare_set_limits(d: Declaration, row: Part, *, pair: Pair, pack: Pack, pre
         text="No more surfaces than the list of the plates allows",
         source=f"table {TABLE}",
     )
-    d.at_most(
-        "set_pressure",
-        pressure,
-        row.optional("p_max"),
-        "N/mm2",
-        text="No more pressure than the list of the plates allows",
-        source=f"table {TABLE}",
-    )
-    if d.has_column(TABLE, "confidence"):
-        d.advise(
-            "computed_plates",
-            row.says("confidence", "computed"),
-            "these plates are of a computed series, no maker lists them: give a maker's list as table plate_sets",
-            source=f"table {TABLE}",
-        )
+    limit_bought(d, row, table=TABLE, what="plates", lined="plates with the lining", pair=pair, pressure=pressure)
