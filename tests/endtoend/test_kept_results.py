@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.folders.test_output_folder import small_disk
-from tests.terminal.entry import COMMAND, at_once, clutchsynth, in_process
+from tests.terminal.entry import COMMAND, LONG_SEARCH, at_once, clutchsynth, in_process
 from tests.terminal.test_choice_commands import SEVERAL
 from tests.terminal.test_cli import HOIST, SMALL, refused
 from tests.waiting import PATIENCE, until
@@ -26,7 +26,6 @@ pytestmark = [
     pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX"),
 ]
 
-LONG = ["--points", "500", "--gap", "1e-6", "--no-grid"]
 TIGHT = SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")
 HEADER = (
     "family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,practice,ramp_time [s],parts,"
@@ -85,7 +84,7 @@ def until_it_works(database: Path, rows: int) -> None:
 def begun(folder: Path, *words: object) -> subprocess.Popen[str]:
     """Start a long search into a folder, and wait until it has begun."""
     process = subprocess.Popen(
-        [*COMMAND, "run", str(HOIST), "-o", str(folder), *LONG, *map(str, words)],
+        [*COMMAND, *LONG_SEARCH, "-o", str(folder), *map(str, words)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -19,6 +19,8 @@ from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
+# A search that takes as long as one may, on machines of any speed: boxes of continuous cones never all close.
+LONG_SEARCH = ["run", str(ROOT / "examples" / "cone_drive.yaml"), "--points", "500", "--gap", "1e-6", "--no-grid"]
 BUILT = cache(typer.main.get_command)  # all commands, at each call anew otherwise
 
 LACKING = """

@@ -18,7 +18,7 @@ import yaml
 
 import synth
 from synth.results import drawings
-from tests.terminal.entry import COMMAND, ROOT, at_once, clutchsynth
+from tests.terminal.entry import COMMAND, LONG_SEARCH, ROOT, at_once, clutchsynth
 from tests.waiting import PATIENCE
 
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
@@ -476,7 +476,7 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
     with subprocess.Popen(
-        [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "500", "--gap", "1e-6", "--no-grid"],
+        [*COMMAND, *LONG_SEARCH, "-o", "out"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -493,9 +493,7 @@ def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
-    done = at_once(
-        "run", HOIST, "-o", tmp_path / "out", "--points", "500", "--gap", "1e-6", "--no-grid", "--time-limit", "1 s"
-    )
+    done = at_once(*LONG_SEARCH, "-o", tmp_path / "out", "--time-limit", "1 s")
     assert done.returncode == 4
     assert "stopped: time limit" in done.stdout
     assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "time limit"
