@@ -38,6 +38,7 @@ from synth.verbs.requests import OF, RateRequest
 
 MAIN = "rating.json"
 ROBUST = "robust"
+OF_ONE = tuple(name for name in RateRequest.fields() if name != "design")  # of a design that is stated
 
 
 def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
@@ -107,12 +108,13 @@ def _designs(request: Mapping[str, object], sources: Sources) -> _Given:
         return _Given(
             designs=designs,
             tables=tables,
-            block=_block(asked.robust or front.frame.restated.get(ROBUST)),
+            block=_block(asked.block(front.frame.restated.get(ROBUST) or {})),
             frame=front.frame,
             stated={**of.to_json(), "design": [int(d.rank or 0) for d in designs]},
             time_limit=asked.time_limit,
         )
-    content = known_keys(request, tuple(FIELDS))
+    content = known_keys(request, tuple(dict.fromkeys([*FIELDS, *OF_ONE])))
+    asked = RateRequest.read({name: content.pop(name, None) for name in OF_ONE}, in_request)
     tables = catalogs_of(content.get("catalogs"), sources)
     spec = spec_from_mapping({k: v for k, v in content.items() if k != "catalogs"}, WHERE, Path())
     must_be_a_design(spec)
@@ -121,10 +123,10 @@ def _designs(request: Mapping[str, object], sources: Sources) -> _Given:
         designs=[design],
         problem=problem,
         tables=tables,
-        block=_block(spec.robust),
+        block=_block(asked.block({})),
         frame=design.frame,
-        stated={str(k): plain(v) for k, v in content.items() if k not in (ROBUST, "time_limit")},
-        time_limit=spec.time_limit,
+        stated={str(k): plain(v) for k, v in content.items()},
+        time_limit=asked.time_limit,
     )
 
 

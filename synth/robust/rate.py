@@ -15,7 +15,7 @@ from synth.folders.csv_style import ENGLISH, CsvStyle
 from synth.folders.files import csv_text, table_frame
 from synth.folders.output_folder import RATING, save_result
 from synth.model.registry import load
-from synth.question.arguments import Family, Scatter, UserTables
+from synth.question.arguments import Family, Scatter, UserTables, Value
 from synth.question.catalogs import catalogs_for
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -24,6 +24,7 @@ from synth.results import Design, Frame, ParetoFront, design_columns, design_row
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row, robust_sentence
 from synth.robust.counterpart import nominal
 from synth.robust.rating import Rater
+from synth.verbs.requests import RateRequest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -111,6 +112,9 @@ def rate(
     *,
     problem: Family | None = None,
     catalogs: UserTables = None,
+    samples: int | None = None,
+    confidence: Value | None = None,
+    seed: int | None = None,
     progress: Progress | None = None,
     time_limit: float | None = None,
 ) -> Ratings:
@@ -124,6 +128,8 @@ def rate(
         What scatters, as for ``synthesize``; by default what the question of the front says.
     problem, catalogs : optional
         As for ``ParetoFront.verify``: for designs of a problem, or with tables, of one's own.
+    samples, confidence, seed : optional
+        In place of these entries of the block.
     progress : callable, optional
         Called with a mapping: stage, done, incumbents.
     time_limit : float, optional
@@ -150,7 +156,11 @@ def rate(
     if not designs:
         raise InputError("front", "no designs", "a front with designs")
     frame = designs[0].frame
-    uncertainty = read_block(frame.restated.get("robust") if robust is None else robust)
+    block = frame.restated.get("robust") if robust is None else robust
+    block = block.block() if isinstance(block, Uncertainty) else block
+    if isinstance(block, Mapping):
+        block = RateRequest(samples=samples, confidence=confidence, seed=seed).block(block)
+    uncertainty = read_block(block)
     question = source.question if isinstance(source, ParetoFront) else None
     if question is not None and problem is None:
         problem, catalogs = nominal(question.problem), question.catalogs if catalogs is None else catalogs

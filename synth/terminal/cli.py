@@ -36,6 +36,7 @@ from synth.terminal import study_commands as studies
 from synth.terminal.options import (
     Csv,
     Encoding,
+    ExplainOptions,
     Family,
     Folder,
     FrontFolder,
@@ -43,7 +44,6 @@ from synth.terminal.options import (
     Quiet,
     SearchOptions,
     SpecFile,
-    TimeLimit,
     VisibleRows,
     takes,
 )
@@ -72,7 +72,7 @@ from synth.terminal.session import (
 )
 from synth.text.notices import listening
 from synth.text.plain_text import plain_streams
-from synth.verbs.requests import ExplainRequest, VerifyRequest
+from synth.verbs.requests import VerifyRequest
 
 if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
@@ -283,13 +283,12 @@ def run(
 
 
 @app.command()
-@takes(ExplainRequest)
+@takes(ExplainOptions)
 def explain(
-    beyond: ExplainRequest,
+    options: ExplainOptions,
     *,
     spec: SpecFile,
     folder: Folder = None,
-    time_limit: TimeLimit = None,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -299,7 +298,7 @@ def explain(
     from synth.terminal.console import output, print_explanation, progress_display
 
     style = csv_style(csv, "--csv")
-    asked = read_spec(spec).merged(time_limit=time_limit)
+    asked = read_spec(spec).merged(time_limit=options.time_limit)
     must_be_a_question(asked)
     must_be_one_family(asked)
     claim_output(folder, EXPLANATION)
@@ -307,7 +306,7 @@ def explain(
         request = asked.request()
         if not quiet:
             tell_readings(request.catalogs)
-        found = explanation_of(request, asked.settings(), progress, beyond.physics)
+        found = explanation_of(request, asked.settings(), progress, options.physics)
     if not quiet:
         print_explanation(found, request.problem.title, output())
     if folder is not None:

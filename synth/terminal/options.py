@@ -14,7 +14,7 @@ from synth.question.request_fields import FIELDS, RequestField
 from synth.text.notices import ignore_notices
 from synth.text.numbers import typed_number
 from synth.verbs.request import VerbRequest, as_flag, shared
-from synth.verbs.requests import BatchRequest, WhatIfRequest
+from synth.verbs.requests import BatchRequest, ExplainRequest, WhatIfRequest
 
 P = ParamSpec("P")
 Asked = TypeVar("Asked", bound=VerbRequest)
@@ -128,6 +128,13 @@ class WhatIfOptions(SearchOptions):
     breaks: bool = shared(WhatIfRequest.fields()["breaks"])
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExplainOptions(ExplainRequest):
+    """Options of a way out."""
+
+    time_limit: float | None = shared(FIELDS["time_limit"])
+
+
 # Without -o a result is shown and nothing is written; of a table that is worked off the result is files, see session.
 Folder = Annotated[
     Path | None,
@@ -148,7 +155,6 @@ Encoding = Annotated[
     str | None, typer.Option(help="Of CSV files where it is not recognised, such as cp1250.", metavar="NAME")
 ]
 VisibleRows = Annotated[bool, typer.Option("--visible-rows", help="Leave out hidden and filtered rows of workbooks.")]
-TimeLimit = Annotated[str | None, option(FIELDS["time_limit"])]
 Plot = Annotated[bool, typer.Option("--plot", help="Draw the front here, and with -o into front.svg as well.")]
 Csv = Annotated[
     str, typer.Option("--csv", help="How CSV is written: en, or de (semicolons, decimal commas).", metavar="en|de")

@@ -38,9 +38,6 @@ def rate(
     *,
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
     folder: Folder = None,
-    samples: Annotated[int | None, typer.Option(help="Points of the range, a power of 2.")] = None,
-    confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
     csv: Csv = "en",
     quiet: Quiet = False,
 ) -> None:
@@ -51,16 +48,14 @@ def rate(
     from synth.terminal.console import output, progress_display
     from synth.terminal.robust_console import print_ratings
 
-    flags = {"samples": samples, "confidence": confidence, "seed": seed}
-    told = {name: value for name, value in flags.items() if value is not None}
     designs, problem, catalogs, known = _designs(source, quiet)
-    block = dict(asked.robust or known)
+    block = asked.block(known)
     if not block:
         right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
         raise InputError("--over", None, right)
     with progress_display(quiet) as progress:
         limits: dict[str, Any] = {"progress": progress, "time_limit": asked.time_limit}
-        found = rate_designs(designs, {**block, **told}, problem=problem, catalogs=catalogs, **limits)
+        found = rate_designs(designs, block, problem=problem, catalogs=catalogs, **limits)
     target = None if folder is None else found.save(folder, style)
     if not quiet:
         print_ratings(found, output())

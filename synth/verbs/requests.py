@@ -162,6 +162,7 @@ SHARE = ValueKind(some(NUMBER, TEXT), as_stated, str)
 FRACTION = ValueKind({**NUMBER, "minimum": 0, "exclusiveMaximum": 1}, _fraction, float)
 RANKS_SCHEMA = some(whole_schema(1, INPUT_LIMITS.points), listed(whole_schema(1, INPUT_LIMITS.points), 1))
 RANKS = ValueKind(RANKS_SCHEMA, as_stated, list[int])
+SAMPLES = whole(1, INPUT_LIMITS.samples)
 NAMES = ValueKind(listed({"type": "string"}), _names, list[str])
 OWN_TABLES = ValueKind(TABLES, as_stated)
 VARIED = ValueKind(
@@ -208,9 +209,9 @@ def _families_schema() -> Schema:
 SEVERAL = ValueKind(_families_schema, FIELDS["family"].value.read)
 
 
-def design_schema() -> Schema:
-    """JSON Schema of a design as a spec."""
-    spec = schema_of("A design: a spec with `values` and the parts that are meant.", JOB_FIELDS)
+def design_schema(**more: RequestField) -> Schema:
+    """JSON Schema of a design as a spec, perhaps with more fields."""
+    spec = schema_of("A design: a spec with `values` and the parts that are meant.", {**JOB_FIELDS, **more})
     return {**spec, "required": ["family", "values"]}
 
 
@@ -321,7 +322,16 @@ class RateRequest(VerbRequest):
             _typed_spread,
         ),
     )
+    samples: int | None = field(SAMPLES, "Points of the range, a power of 2.", examples=(256,))
+    confidence: Any = field(SHARE, "Of the interval of the yield, such as '95 %'.", examples=("99 %", 0.9))
+    seed: int | None = shared(FIELDS["seed"], usual=None, help="Seed of the points.")
     time_limit: float | None = shared(FIELDS["time_limit"])
+
+    def block(self, known: Mapping[str, Any]) -> dict[str, Any]:
+        """What scatters: this, or else what is known, with the entries that are stated beside it."""
+        beside = {"samples": self.samples, "confidence": self.confidence, "seed": self.seed}
+        block = self.robust or known
+        return {**block, **{name: one for name, one in beside.items() if one is not None}} if block else {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -478,7 +488,8 @@ class Verb:
         """JSON Schema of its request as a job."""
         either = {Subject.QUESTION: ("family", OF), Subject.ROWS: ("upload", "rows")}.get(self.about, ())
         schema = schema_of(f"{self.title}.", self.fields(), either=either)
-        return {"anyOf": [schema, design_schema()]} if self.about is Subject.DESIGNS else schema
+        of_one = {name: one for name, one in self.request.fields().items() if name != "design"}
+        return {"anyOf": [schema, design_schema(**of_one)]} if self.about is Subject.DESIGNS else schema
 
 
 def _verbs(*verbs: Verb) -> Mapping[str, Verb]:

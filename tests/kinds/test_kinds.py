@@ -337,6 +337,15 @@ def test_what_is_asked_of_a_front(name: str, expected: dict[str, Any]) -> None:
     assert {key: facts[key] for key in expected} == expected
 
 
+@pytest.mark.parametrize("what", [OF["rate"], {**SPECS["lecture_design"], "robust": {"load_torque": "+-1 %"}}])
+def test_points_of_a_rating_are_stated_beside_what_scatters(what: dict[str, Any]) -> None:
+    beside = {"samples": 256, "confidence": "99 %", "seed": 3}
+    stated = posed("rate", {**what, **beside}).request
+    assert stated == posed("rate", {**what, "robust": {**what["robust"], **beside}}).request
+    assert stated["robust"] == {"load_torque": "+-1 %", **beside}
+    assert fault("rate", {**what, "samples": 0}).path == ("samples",)
+
+
 @pytest.mark.slow
 def test_a_given_design_is_rated() -> None:
     design = {**SPECS["lecture_design"], "robust": {"load_torque": "+-1 %"}}

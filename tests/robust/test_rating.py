@@ -70,6 +70,16 @@ def test_the_interval_holds_the_exact_yield():
     assert told["yield_high"] - told["yield_low"] < 0.02
 
 
+def test_points_may_stand_beside_the_block():
+    block, beside = {"friction": "catalogue range", "seed": 7}, {"samples": 128, "confidence": "99 %", "seed": 2}
+    how = {"problem": ShaftBrake(), "catalogs": CATALOGS}
+    found = synth.rate(design(), block, **beside, **how)
+    assert found.asked == synth.rate(design(), {**block, **beside}, **how).asked
+    assert {name: found.asked[name] for name in beside} == {**beside, "confidence": 0.99}
+    again = synth.rate(design(), read_block(block), **beside, **how)
+    assert again.asked == found.asked
+
+
 @pytest.mark.slow
 def test_intervals_of_independent_draws_cover_the_yield_as_often_as_they_say():
     # Each seed gives other points; scrambled ones fill the range evenly, so that hardly any interval misses.

@@ -20,7 +20,7 @@ from synth.question.request_fields import FIELDS, RequestField
 from synth.question.settings import SearchSettings
 from synth.terminal.cli import app
 from synth.terminal.options import flag_of
-from synth.verbs.requests import VERBS, NearEqualsRequest, PricesRequest, Verb
+from synth.verbs.requests import VERBS, BatchRequest, NearEqualsRequest, PricesRequest, Verb
 from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
@@ -73,7 +73,7 @@ OPTIONS = {
     "explain": "physics",
     "prices": "design step time_limit",
     "near_equals": "design within count seed time_limit",
-    "rate": "robust time_limit",
+    "rate": "robust samples confidence seed time_limit",
     "verify": "time_limit",
     "report": "design full length",
     "batch": "family objectives points gap grid seed time_limit",
@@ -101,15 +101,17 @@ OF_COMMANDS = (
     "--output --csv --quiet --all --more --plot --encoding --visible-rows --verbose --mapping --catalogs --workers"
 )
 OF_COMMANDS += " --scheduler --database --row --explorer --pdf --xlsx --drawing --dxf --step --json --about --font-path"
-# Entries of a spec that a command takes alone.
-OF_SPECS = {"rate": {"samples", "confidence", "seed"}, "explain": {"time_limit"}, "size_range": {"family", "points"}}
+# A table is worked off first; its options are those of a batch.
+FIRST = {"size_range": BatchRequest.fields()}
 
 
 @pytest.mark.parametrize("verb", VERBS.values(), ids=list(VERBS))
 def test_the_command_line_has_no_words_of_its_own_for_a_request(verb: Verb) -> None:
+    fields = {**FIRST.get(verb.name, {}), **verb.fields()}
     for one in COMMANDS[COMMAND.get(verb.name, verb.name.replace("_", "-"))].params:
         if one.param_type_name == "option" and not set(one.opts) & set(OF_COMMANDS.split()):
-            assert one.name in {*options(verb), *OF_SPECS.get(verb.name, ())}, one.opts
+            assert one.name in fields, f"{verb.name} {one.opts[0]} is not in the record of the verb"
+            assert set(one.opts) <= set((fields[one.name].flag or flag_of(fields[one.name])).split("/"))
 
 
 def test_pages_write_no_field_of_a_verb_by_hand() -> None:
