@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,6 +23,7 @@ from synth.terminal.session import (
     claim_output,
     own_tables,
     rows_folder,
+    stopped_as,
     tell,
 )
 from synth.text.input_limits import INPUT_LIMITS
@@ -117,7 +119,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
 
         must_answer(scheduler)
     with heard_again() as check:
-        try:
+        with stopped_as("stopped while the rows were checked; nothing is kept"):
             from synth.terminal.batch_console import batch_display, print_summary, print_table_remarks, shown_rows
 
             job = make()
@@ -127,40 +129,34 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
             check()
             if not (named or quiet):
                 tell(f"the results go to {job.folder}; -o DIR names another folder")
-        except KeyboardInterrupt:
-            tell("stopped while the rows were checked; nothing is kept")
-            raise typer.Exit(STOPPED) from None
-        try:
+        with closing(job), _goes_on():
             if not quiet:
                 print_table_remarks(job, continues)
             with batch_display(quiet) as progress:
                 stopped = job.work(_processes(workers), scheduler, _checked(progress, check), tell)
             counts = job.write()
             rows = [] if quiet else shown_rows(job.store, job.id, counts)
-        except KeyboardInterrupt:
-            tell("stopped; what was found is in the database, the same command goes on")
-            raise typer.Exit(STOPPED) from None
-        except (OSError, InputError) as error:
-            _tell_no_room(error)
-            raise typer.Exit(STOPPED) from error
-        finally:
-            job.close()
     if not quiet:
         print_summary(counts, rows, job.place, job.folder, stopped)
     return _code(counts, stopped)
 
 
-def _tell_no_room(error: OSError | InputError) -> None:
-    """Tell that a job stopped for want of a place for what it finds; every other fault is for others to tell."""
-    if isinstance(error, InputError):
-        if error.field != "output":
-            raise error
-        reason = str(error)
-    elif error.filename is None:
-        raise error
-    else:
-        reason = f"{error.filename} cannot be written ({error.strerror})"
-    tell(f"stopped: {reason}; what was found is in the database, the same command goes on")
+@contextmanager
+def _goes_on() -> Iterator[None]:
+    """Say how a job goes on that is stopped, or has no place for its results; other faults are for others to say."""
+    how = "what was found is in the database, the same command goes on"
+    try:
+        with stopped_as(f"stopped; {how}"):
+            yield
+    except (OSError, InputError) as error:
+        if isinstance(error, InputError):
+            reason = str(error) if error.field == "output" else ""
+        else:
+            reason = f"{error.filename} cannot be written ({error.strerror})" if error.filename is not None else ""
+        if not reason:
+            raise
+        tell(f"stopped: {reason}; {how}")
+        raise typer.Exit(STOPPED) from error
 
 
 def _processes(workers: int | None) -> int:
@@ -256,20 +252,13 @@ def resume(
         with store:
             _let_workers_go_on(store, found)
         return
-    with store, heard_again() as check:
-        try:
-            claim_output(Path(found.folder), BATCH, found.id)
-            with batch_display(quiet) as progress:
-                shown = _checked(progress, check)
-                stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
-            counts, place = write_outputs(store, found.id, Path(found.folder), style)
-            rows = [] if quiet else shown_rows(store, found.id, counts)
-        except KeyboardInterrupt:
-            tell("stopped; what was found is in the database, the same command goes on")
-            raise typer.Exit(STOPPED) from None
-        except (OSError, InputError) as error:
-            _tell_no_room(error)
-            raise typer.Exit(STOPPED) from error
+    with store, heard_again() as check, _goes_on():
+        claim_output(Path(found.folder), BATCH, found.id)
+        with batch_display(quiet) as progress:
+            shown = _checked(progress, check)
+            stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
+        counts, place = write_outputs(store, found.id, Path(found.folder), style)
+        rows = [] if quiet else shown_rows(store, found.id, counts)
     if not quiet:
         print_summary(counts, rows, place, Path(found.folder), stopped)
     raise typer.Exit(_code(counts, stopped))

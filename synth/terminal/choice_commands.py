@@ -15,11 +15,12 @@ from synth.results.drawings import PLOT
 from synth.terminal.options import Csv, Folder, FrontFolder, Quiet, takes
 from synth.terminal.session import (
     HELPS,
-    INFEASIBLE,
-    STOPPED,
     blamed_on,
     claim_output,
+    end,
+    hand_over,
     say,
+    stopped_as,
     tell,
     tell_not_kept,
     tell_readings,
@@ -52,14 +53,8 @@ def near_equals(
     front = load_front(source)
     with progress_display(quiet) as progress:
         found = find(front, progress=progress, **vars(asked))
-    target = None if folder is None else found.save(folder, style)
-    if not quiet:
-        print_near_equals(found, output())
-        tell_written(target, folder, [] if target is None else sorted(found.files()))
-    if found.interrupted:
-        raise typer.Exit(STOPPED)
-    if not found.designs:
-        raise typer.Exit(INFEASIBLE)
+    hand_over(found, folder, style, None if quiet else lambda: print_near_equals(found, output()))
+    end(found.interrupted, bool(found.designs))
 
 
 @takes(PricesRequest)
@@ -82,18 +77,12 @@ def prices(
     from synth.terminal.console import output, progress_display
 
     front = load_front(source)
-    with progress_display(quiet) as progress:
-        try:
-            found = find(front, progress=progress, folder=folder, **vars(asked))
-        except KeyboardInterrupt:
-            tell("stopped before the first design was begun; nothing is written")
-            raise typer.Exit(STOPPED) from None
-    target = None if folder is None else found.save(folder, style)
-    if not quiet:
-        print_prices(found, front, output(), every, folder is not None)
-        tell_written(target, folder, [] if target is None else sorted(found.files()))
-    if found.interrupted:
-        raise typer.Exit(STOPPED)
+    stopped = stopped_as("stopped before the first design was begun; nothing is written")
+    with progress_display(quiet) as progress, stopped:
+        found = find(front, progress=progress, folder=folder, **vars(asked))
+    show = None if quiet else lambda: print_prices(found, front, output(), every, folder is not None)
+    hand_over(found, folder, style, show)
+    end(found.interrupted)
 
 
 def show_common() -> None:
@@ -155,7 +144,4 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
         if len(found.designs) > 1:
             files[-1] += f" .. design_{len(found.designs):02d}.yaml"
         tell_written(target, folder, [*files, *folders])
-    if found.interrupted:
-        raise typer.Exit(STOPPED)
-    if not found.designs:
-        raise typer.Exit(INFEASIBLE)
+    end(found.interrupted, bool(found.designs))

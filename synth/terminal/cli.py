@@ -52,7 +52,6 @@ from synth.terminal.session import (
     BAD_INPUT,
     DOES_NOT_HOLD,
     HELPS,
-    INFEASIBLE,
     INTERNAL,
     INTERRUPTED,
     NOT_PROVEN,
@@ -61,11 +60,13 @@ from synth.terminal.session import (
     blamed_on,
     claim_output,
     derived_told,
+    end,
     explaining,
     frame_files,
     one_command,
     own_tables,
     say,
+    stopped_as,
     tell,
     tell_readings,
     tell_written,
@@ -276,10 +277,7 @@ def run(
         if not front.designs:
             say(f"{HELPS}: {explaining(spec)}")
         tell_written(target, folder, _listed(files))
-    if front.interrupted:
-        raise typer.Exit(STOPPED)
-    if not front.designs:
-        raise typer.Exit(INFEASIBLE)
+    end(front.interrupted, bool(front.designs))
 
 
 @app.command()
@@ -313,10 +311,7 @@ def explain(
         files = found.save(folder, style)
         if not quiet:
             tell_written(files[0].parent, folder, [file.name for file in files])
-    if found.interrupted:
-        raise typer.Exit(STOPPED)
-    if not found.feasible:
-        raise typer.Exit(INFEASIBLE)
+    end(found.interrupted, found.feasible)
 
 
 @app.command()
@@ -358,8 +353,7 @@ def check(
         save_files(folder, style.files(files))
         print()
         say(f"written: {', '.join(str(folder / name) for name in files)}")
-    if result.violated:
-        raise typer.Exit(INFEASIBLE)
+    end("", not result.violated)
 
 
 @app.command()
@@ -484,21 +478,20 @@ def _synthesize(spec: Path, asked: Spec, quiet: bool, begun: float, more: Path |
     from synth.terminal.console import progress_display
 
     given = None if more is None else load_front(more)
+    stopped = stopped_as("stopped before the search began; nothing is written")
     with blamed_on(asked.file), progress_display(quiet) as progress:
         request = asked.request()
         if not quiet:
             tell_readings(request.catalogs)
         try:
             settings = asked.settings().since(begun)
-            if given is not None:
-                return improve_for(given, request, settings, "--more", progress)
-            return find_front(request, settings, progress)
+            with stopped:
+                if given is not None:
+                    return improve_for(given, request, settings, "--more", progress)
+                return find_front(request, settings, progress)
         except RefusedError as refusal:
             right = f"{refusal.expected} (what would help: {explaining(spec)})"
             raise InputError(refusal.field, refusal.value, right, refusal.path) from refusal
-        except KeyboardInterrupt:
-            tell("stopped before the search began; nothing is written")
-            raise typer.Exit(STOPPED) from None
 
 
 def _show(front: ParetoFront, files: Mapping[str, str], every: bool, verbose: bool, plot: bool) -> None:

@@ -11,14 +11,7 @@ from synth.errors import InputError
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import RATING
 from synth.terminal.options import Csv, Folder, Quiet, takes
-from synth.terminal.session import (
-    INFEASIBLE,
-    STOPPED,
-    blamed_on,
-    claim_output,
-    tell_readings,
-    tell_written,
-)
+from synth.terminal.session import blamed_on, claim_output, end, hand_over, tell_readings
 from synth.verbs.requests import RateRequest
 
 if TYPE_CHECKING:
@@ -56,14 +49,8 @@ def rate(
     with progress_display(quiet) as progress:
         limits: dict[str, Any] = {"progress": progress, "time_limit": asked.time_limit}
         found = rate_designs(designs, block, problem=problem, catalogs=catalogs, **limits)
-    target = None if folder is None else found.save(folder, style)
-    if not quiet:
-        print_ratings(found, output())
-        tell_written(target, folder, [] if target is None else sorted(found.files()))
-    if found.interrupted:
-        raise typer.Exit(STOPPED)
-    if not any(d.robust["holds"] for d in found.designs):
-        raise typer.Exit(INFEASIBLE)
+    hand_over(found, folder, style, None if quiet else lambda: print_ratings(found, output()))
+    end(found.interrupted, any(d.robust["holds"] for d in found.designs))
 
 
 def _designs(source: Path, quiet: bool) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:

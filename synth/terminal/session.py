@@ -6,12 +6,15 @@ import os
 import shlex
 import sys
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, Protocol, TextIO
+
+import typer
 
 from synth.errors import DerivedFileWarning, InputError
+from synth.folders.csv_style import CsvStyle
 from synth.folders.files import frame_csv
 from synth.folders.output_folder import ResultKind, check_kind, check_not_held, claimed
 from synth.results.drawings import report
@@ -106,6 +109,35 @@ def tell_written(target: Path | None, folder: Path | None, files: Iterable[str])
     say(f"written to {target}: {', '.join(files)}")
     if target != folder:
         say(f"the earlier result in {folder} stays as it was, as this one is not finished")
+
+
+class _Result(Protocol):
+    def save(self, folder: Path, csv: CsvStyle) -> Path: ...
+    def files(self) -> Mapping[str, str]: ...
+
+
+def hand_over(result: _Result, folder: Path | None, csv: CsvStyle, show: Callable[[], object] | None) -> None:
+    """Save a result where a folder is named, and show it where there is something that shows."""
+    target = None if folder is None else result.save(folder, csv)
+    if show is not None:
+        show()
+        tell_written(target, folder, [] if target is None else sorted(result.files()))
+
+
+def end(interrupted: str, holds: bool = True) -> None:
+    """End a command with the code of a result that was interrupted, or has no design that holds."""
+    if interrupted or not holds:
+        raise typer.Exit(STOPPED if interrupted else INFEASIBLE)
+
+
+@contextmanager
+def stopped_as(sentence: str) -> Iterator[None]:
+    """Say a sentence where Ctrl-C stops what is done inside, and end."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        tell(sentence)
+        raise typer.Exit(STOPPED) from None
 
 
 HELPS = "which limits exclude each other, and what would help"

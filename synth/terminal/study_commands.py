@@ -11,16 +11,7 @@ from synth.analysis.design_spec import must_be_a_question, must_be_one_family
 from synth.folders.csv_style import csv_style
 from synth.folders.output_folder import STUDY
 from synth.terminal.options import Csv, Folder, Quiet, SpecFile, WhatIfOptions, takes
-from synth.terminal.session import (
-    INFEASIBLE,
-    STOPPED,
-    blamed_on,
-    claim_output,
-    tell,
-    tell_not_kept,
-    tell_readings,
-    tell_written,
-)
+from synth.terminal.session import blamed_on, claim_output, end, stopped_as, tell_not_kept, tell_readings, tell_written
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
@@ -62,10 +53,7 @@ def whatif(
         if target is not None and (target / STEPS).is_dir():  # not before the first step is finished
             files.append(f"{STEPS}/")
         tell_written(target, folder, files)
-    if study.interrupted:
-        raise typer.Exit(STOPPED)
-    if not study.feasible:
-        raise typer.Exit(INFEASIBLE)
+    end(study.interrupted, study.feasible)
 
 
 def _study(asked: Spec, options: WhatIfOptions, folder: Path | None, quiet: bool) -> Study:
@@ -76,9 +64,6 @@ def _study(asked: Spec, options: WhatIfOptions, folder: Path | None, quiet: bool
         request, settings = asked.request(), asked.settings(points=POINTS)
         if not quiet:
             tell_readings(request.catalogs)
-        with progress_display(quiet) as progress:
-            try:
-                return study_of(request, settings, options.vary, progress, options.breaks, folder)
-            except KeyboardInterrupt:
-                tell("stopped before the first step was begun; nothing is written")
-                raise typer.Exit(STOPPED) from None
+        stopped = stopped_as("stopped before the first step was begun; nothing is written")
+        with progress_display(quiet) as progress, stopped:
+            return study_of(request, settings, options.vary, progress, options.breaks, folder)
