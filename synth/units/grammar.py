@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
@@ -11,7 +11,7 @@ from functools import lru_cache
 from synth.errors import InputError
 from synth.text.input_limits import INPUT_LIMITS
 from synth.text.notices import notice
-from synth.units.spellings import FORCES, SPACES, WORDS, readings
+from synth.units.spellings import AMBIGUOUS, SPACES, WORDS, readings
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 _FAHRENHEIT = Fraction(5, 9)
@@ -70,6 +70,7 @@ class _UnitText:
 _NONE = (0, 0, 0, 0, 0)
 _MASS = (1, 0, 0, 0, 0)
 _LENGTH = (0, 1, 0, 0, 0)
+_VOLUME = (0, 3, 0, 0, 0)
 _TIME = (0, 0, 1, 0, 0)
 _KELVIN = (0, 0, 0, 1, 0)
 _CURRENT = (0, 0, 0, 0, 1)
@@ -94,9 +95,12 @@ _TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
     **_decades(_LENGTH, um=-6, mm=-3, cm=-2, dm=-1, m=0, km=3),
     "in": (_INCH, _LENGTH, 0),
     "ft": (_FOOT, _LENGTH, 0),
+    **_decades(_VOLUME, l=-3),
+    "USgal": (231 * _INCH**3, _VOLUME, 0),
     **_decades(_MASS, g=-3, kg=0, t=3),
     "lb": (_POUND, _MASS, 0),
     "oz": (_POUND / 16, _MASS, 0),
+    "slug": (_LBF / _FOOT, _MASS, 0),
     **_decades(_TIME, ms=-3, s=0),
     "min": (Fraction(60), _TIME, 0),
     "h": (Fraction(3600), _TIME, 0),
@@ -143,6 +147,7 @@ _KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "length": ("a length", ("mm", "cm", "m")),
     "area": ("an area", ("mm2", "cm2", "m2")),
     "volume": ("a volume", ("mm3", "cm3", "dm3")),
+    "flow": ("a flow (volume per time)", ("l/min", "l/s", "m3/h")),
     "second_moment_of_area": ("a second moment of area", ("mm4", "cm4")),
     "mass": ("a mass", ("kg", "g", "t")),
     "density": ("a density", ("kg/m3", "g/cm3", "kg/dm3")),
@@ -188,7 +193,8 @@ _BY_DIMENSION: dict[tuple[_Dimension, int], str] = {
     (_NONE, 1): "angle",
     (_LENGTH, 0): "length",
     ((0, 2, 0, 0, 0), 0): "area",
-    ((0, 3, 0, 0, 0), 0): "volume",
+    (_VOLUME, 0): "volume",
+    ((0, 3, -1, 0, 0), 0): "flow",
     ((0, 4, 0, 0, 0), 0): "second_moment_of_area",
     (_MASS, 0): "mass",
     ((1, -3, 0, 0, 0), 0): "density",
@@ -226,6 +232,7 @@ _BY_FLAVOUR: dict[_Dimension, tuple[str, str]] = {
 }
 
 _SUPERSCRIPTS = str.maketrans("²³⁴⁵⁶⁷⁸⁹", "23456789")
+_MASSES = re.compile(r"\b(kg|lb|oz)(?![^\W\d])")
 _TOKEN = re.compile(r"([^\W\d_]+|°)(\^?)([2-9])?\Z")
 _GRAMMAR = (
     "a unit such as N*m, J/(mm2 h) or 1/min: tokens joined by a space, * or /, exponent as a digit after the token"
@@ -270,6 +277,8 @@ def _unknown(name: str) -> str:
     meant = WORDS.get(name) or WORDS.get(name.casefold())
     if meant is not None:
         return f"{meant} instead of {name}"
+    if name.casefold() in AMBIGUOUS:
+        return AMBIGUOUS[name.casefold()]
     return f"a known unit instead of {name}: one of {', '.join(known)}, - or %"
 
 
@@ -411,8 +420,6 @@ def _wrong_kind(text: str, kind: str, actual: str) -> str:
         return f"{words}, or one in %; {measures}"
     if kind not in _KINDS:
         return f"{words}; {measures}"
-    if kind == "force" and text in FORCES:
-        return f"{words}, for example in {FORCES[text]}; {measures}"
     if kind == "temperature_rise" and actual == "temperature":
         return f"{words} in K: a difference of 20 degC (36 degF) is typed as 20 K"
     if kind == "angular_speed" and actual == "frequency":
@@ -448,21 +455,31 @@ def _respelled(text: str, kind: str) -> Unit | None:
     RefusedUnit
         It is of another kind, or may stand for several units.
     """
-    fitting: dict[Fraction, Unit] = {}
-    others: list[RefusedUnit] = []
-    for read in readings(text, {*_TOKENS, *_ALIASES}) if len(text) <= INPUT_LIMITS.quantity else ():
-        try:
-            unit = _resolve(read, kind)
-            fitting.setdefault(unit.ratio, unit)
-        except RefusedUnit as refusal:
-            others.append(refusal)
+    possible = readings(text, {*_TOKENS, *_ALIASES}) if len(text) <= INPUT_LIMITS.quantity else []
+    fitting, others = _fitting(possible, kind)
     if len(fitting) > 1:
         raise RefusedUnit(f"{' or '.join(unit.text for unit in fitting.values())} instead of {text}: it may be either")
     if fitting:
         return next(iter(fitting.values()))
+    forces, _ = _fitting([_MASSES.sub(lambda mass: f"{mass[0]}f", read) for read in possible], kind)
+    if forces:
+        raise RefusedUnit(f"{next(iter(forces.values())).text} instead of {text}: a mass is no force")
     if others:
         raise others[0]
     return None
+
+
+def _fitting(texts: Iterable[str], kind: str) -> tuple[dict[Fraction, Unit], list[RefusedUnit]]:
+    """Units of a kind among texts of the grammar, by their factors, and what is wrong with the others."""
+    fitting: dict[Fraction, Unit] = {}
+    others: list[RefusedUnit] = []
+    for text in texts:
+        try:
+            unit = _resolve(text, kind)
+            fitting.setdefault(unit.ratio, unit)
+        except RefusedUnit as refusal:
+            others.append(refusal)
+    return fitting, others
 
 
 def resolve(text: str, kind: str) -> Unit:

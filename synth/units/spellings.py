@@ -22,7 +22,8 @@ WORDS = {
     "hr": "h",
     "hour": "h",
     "hours": "h",
-    "l": "dm3",
+    "l": "l",
+    "ml": "cm3",
     "inch": "in",
     "inches": "in",
     '"': "in",
@@ -42,6 +43,12 @@ WORDS = {
     # American plates are in capitals throughout.
     **{word.upper(): word for word in ("rpm", "hp", "psi", "min", "in", "ft", "lb", "lbf", "oz", "ozf")},
 }
+# What has several meanings in every kind, with what is right in its place.
+AMBIGUOUS = {
+    "gpm": "US gpm instead of gpm: an imperial gallon is a fifth larger",
+    "gal": "USgal instead of gal: an imperial gallon is a fifth larger",
+    "gd": "the inertia J = GD2/4 in kg*m2, where GD2 is in kg m2",
+}
 FORCES = {"lb": "lbf", "oz": "ozf"}  # masses that forces are called by in products
 MOST_READINGS = 64
 MOST_LETTERS = 8  # of a product that is written as one word
@@ -51,6 +58,8 @@ _CHARACTERS = {
     **{ord(raised): str(digit) for digit, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
 }
 _DEGREES = re.compile(r"(?:°|deg(?:rees?)?) ?([CF])", re.IGNORECASE)
+_GALLONS = re.compile(r"\bUS ?(?:gal|(gpm))\b", re.IGNORECASE)
+_PER = re.compile(r" ?\bper\b ?", re.IGNORECASE)
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″])(?:\^?(-[1-9]|[2-9]))?")
 _JOINT = re.compile(r" *[*·] *| *- *(?=[^\W\d_])| +")
 
@@ -78,6 +87,7 @@ def readings(text: str, tokens: Collection[str]) -> list[str]:
     if degrees:
         return [f"deg{degrees[1].upper()}"]
     plain = re.sub(r"\.(?=[ *·/-]|$)", "", plain).replace(".", "·")  # in.-lb., N.m
+    plain = _PER.sub("/", _GALLONS.sub(lambda match: "USgal" + ("/min" if match[1] else ""), plain))
     signed = _signed_factors(plain)
     every = [_powers(factor, sign, tokens) for factor, sign in signed]
     if not every or math.prod(map(len, every)) > MOST_READINGS:
@@ -94,7 +104,7 @@ def readings(text: str, tokens: Collection[str]) -> list[str]:
 def _signed_factors(text: str) -> list[tuple[str, int]]:
     """Factors of a unit, with -1 for what a slash divides by; none where it is not put together as units are."""
     above, *below = re.split(" */ *", text)
-    factors = [] if above == "1" else [(factor, 1) for factor in _JOINT.split(above)]
+    factors = [] if above in ("", "1") else [(factor, 1) for factor in _JOINT.split(above)]
     for part in below:
         bracket = re.fullmatch(r"\(([^()]*)\)()", part) or re.fullmatch(rf"(.*?)(?:{_JOINT.pattern}(.*))?", part)
         assert bracket is not None

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import codecs
+import csv
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
@@ -21,6 +23,8 @@ from synth.tables.catalogs import Catalogs, shipped_folders
 from synth.tables.reading import load_table, table_from_frame
 from synth.tables.schema import Column, Schema, load_schema
 from synth.tables.table import Table
+from synth.units import parse_quantity
+from tests.units.test_units import SPELLINGS
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=100)
 CATALOGS = Path(__file__).parents[2] / "catalogs"
@@ -430,6 +434,31 @@ def test_a_frame_survives_the_round_trip(rows: list[tuple[float, float | None]])
     again = table_from_frame(table.to_frame(), SMALL)
     np.testing.assert_allclose(again.number("size"), table.number("size"), rtol=5e-16)
     np.testing.assert_allclose(again.number("speed"), table.number("speed"), rtol=5e-16)
+
+
+@pytest.mark.parametrize(("declared", "ours", "spelled"), [*SPELLINGS, ("mm", "mm", "mm"), ("l/min", "m3/h", "m3/h")])
+def test_a_heading_may_have_its_unit_as_a_name_plate(tmp_path: Path, declared: str, ours: str, spelled: str) -> None:
+    schema = Schema((Column("designation", "text"), Column("x", "number", declared)))
+    for typed in (word.replace("_", " ") for word in spelled.split(" ")):
+        with (tmp_path / "own.csv").open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([["designation", f"x [{typed}]"], ["a", "3"]])
+        table = load_table(tmp_path / "own.csv", schema, shipped=False)
+        assert table.number("x")[0] == parse_quantity(f"3 {ours}", declared, "x"), typed
+
+
+@pytest.mark.parametrize(
+    ("declared", "typed", "right"),
+    [
+        ("N*m", "kgm", "kgf*m instead of kgm"),
+        ("N/mm2", "kg/cm2", "kgf/cm2 instead of kg/cm2"),
+        ("l/min", "gpm", "US gpm instead of gpm"),
+        ("kg*m2", "GD2", "J = GD2/4"),
+    ],
+)
+def test_a_heading_of_which_two_units_may_be_meant_is_refused(declared: str, typed: str, right: str) -> None:
+    schema = Schema((Column("designation", "text"), Column("x", "number", declared)))
+    with pytest.raises(InputError, match=re.escape(right)):
+        table_from_frame(pd.DataFrame({"designation": ["a"], f"x [{typed}]": [3.0]}), schema)
 
 
 # ---- catalogues -----------------------------------------------------------------------------------------------------

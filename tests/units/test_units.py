@@ -64,6 +64,7 @@ DECLARED = {
     "kg": "mass",
     "kg*m2": "inertia",
     "kg/m3": "density",
+    "l/min": "flow",
     "m/s": "speed",
     "mm": "length",
     "mm2": "area",
@@ -134,6 +135,12 @@ TYPED = {
     "cN": "cN",
     "oz": "ounce",
     "ozf": "force_ounce",
+    "slug": "slug",
+    "slug ft2": "slug*ft^2",
+    "l": "liter",
+    "l/s": "liter/s",
+    "m3/h": "m^3/h",
+    "USgal/min": "gallon/minute",
 } | {
     u: u
     for u in (
@@ -341,9 +348,19 @@ def test_quantities_that_are_right(value: object, unit: str, si: float) -> None:
         ("254 Rpm", "1/min", "rpm instead of Rpm (capitals"),
         ("5 mn", "N", "mN or MN instead of mn (capitals"),
         ("5 lbs", "mm", "a length"),
-        ("5 lb", "N", "in lbf; lb measures a mass"),
+        ("5 lb", "N", "lbf instead of lb: a mass is no force"),
+        ("5 kg", "N", "kgf instead of kg: a mass is no force"),
+        ("5 kgm", "N*m", "kgf*m instead of kgm: a mass is no force"),
+        ("5 kgm", "kg*m2", "a moment of inertia"),
+        ("5 kg/cm2", "N/mm2", "kgf/cm2 instead of kg/cm2: a mass is no force"),
+        ("5 gpm", "l/min", "US gpm instead of gpm"),
+        ("5 GPM", "l/min", "US gpm instead of gpm"),
+        ("5 gal/min", "l/min", "USgal instead of gal"),
+        ("5 GD2", "kg*m2", "J = GD2/4 in kg*m2, where GD2 is in kg m2"),
+        ("5 GD²", "kg*m2", "J = GD2/4 in kg*m2, where GD2 is in kg m2"),
+        ("5 l/min", "dm3", "l/min measures a flow (volume per time)"),
+        ("5 dm3", "l/min", "a flow (volume per time), for example in l/min, l/s or m3/h"),
         ("5 furlong", "mm", "a known unit instead of furlong"),
-        ("5 /min", "1/min", "1/min"),
         ("1/min", "1/min", "a number before the unit, for example 1 1/min"),
         ("5 kW", "N*m", "kW measures a power (T = P/omega"),
         ("5 kgm2", "kg", "kg*m2 measures a moment of inertia"),
@@ -486,11 +503,12 @@ def test_scalars_and_arrays_are_converted_alike(value: float, unit: str) -> None
 # As name plates, data sheets and keyboards have them: declared unit, unit in our grammar, spellings.
 SPELLINGS = [
     ("1/min", "rev/min", "U/min u/min r/min R/MIN tr/min U·min⁻¹ U*min^-1"),
-    ("1/min", "1/min", "min-1 min^-1 min⁻¹ min−1 1/MIN"),
+    ("1/min", "1/min", "/min per_min min-1 min^-1 min⁻¹ min−1 1/MIN"),
     ("1/min", "rpm", "RPM Upm upm"),
     ("1/min", "rev/s", "U/s r/s U/sec"),
-    ("1/h", "1/h", "h-1 h^-1 h⁻¹ 1/hr"),
-    ("1/h", "1/s", "s-1 s^-1 s⁻¹"),
+    ("1/h", "1/h", "/h per_h per_hour h-1 h^-1 h⁻¹ 1/hr"),
+    ("1/h", "1/min", "/min per_min"),
+    ("1/h", "1/s", "/s per_s s-1 s^-1 s⁻¹"),
     ("kg*m2", "kg*m2", "kgm2 kgm² kg-m2 kg.m2 kgm^2 kg⋅m² kg•m2 kg×m²"),
     ("kg*m2", "kg*cm2", "kgcm2 kgcm² kg-cm2 kg.cm2"),
     ("kg*m2", "kg*mm2", "kgmm2 kg-mm²"),
@@ -525,7 +543,11 @@ SPELLINGS = [
     ("s", "s", "sec Sec SEC"),
     ("s", "h", "hr hour hours"),
     ("kg", "lb", "lbs lbm LB LBS"),
-    ("dm3", "dm3", "l L"),
+    ("dm3", "l", "L"),
+    ("dm3", "cm3", "ml"),
+    ("l/min", "l/min", "L/min l_per_min L_per_min"),
+    ("l/min", "USgal/min", "US_gpm USgpm US_GPM US_gal/min US_gal_per_min"),
+    ("kg*m2", "slug*ft2", "slug-ft2 slug.ft² slugft2"),
 ]
 
 
@@ -538,6 +560,30 @@ def test_spellings_are_read_as_our_unit_and_told(declared: str, ours: str, spell
             assert parse_quantity(f"3 {typed}", declared, "x") == parse_quantity(f"3 {ours}", declared, "x")
             assert parse_unit(typed, right.kind) == right
         assert heard == [f"read as {ours}: {typed}"], typed
+
+
+@pytest.mark.parametrize(
+    ("spelled", "declared", "si"),
+    [
+        ("N-m", "N*m", 1),
+        ("daNm", "N*m", 10),
+        ("ft-lb", "N*m", 1.35581794833),
+        ("in-lb", "N*m", 0.112984829028),
+        ("oz-in", "N*m", 0.00706155181423),
+        ("kgfm", "N*m", 9.80665),
+        ("kgcm2", "kg*m2", 1e-4),
+        ("gcm2", "kg*m2", 1e-7),
+        ("lb-ft2", "kg*m2", 0.0421401100938),
+        ("lb-in2", "kg*m2", 2.92639653429e-4),
+        ("slug-ft2", "kg*m2", 1.35581794833),
+        ("US gpm", "l/min", 6.30901964e-5),
+        ("L/min", "l/min", 1 / 60000),
+        ("l/s", "l/min", 1e-3),
+        ("m3/h", "l/min", 1 / 3600),
+    ],
+)
+def test_spellings_have_the_factors_of_tables(spelled: str, declared: str, si: float) -> None:
+    assert parse_quantity(f"1 {spelled}", declared, "x") == pytest.approx(si, rel=5e-12)
 
 
 @pytest.mark.parametrize("unit", sorted({*header_units(), *DECLARED, *TYPED}))
