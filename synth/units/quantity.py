@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -49,6 +49,21 @@ _DATE = re.compile(
     rf"|\d{{1,2}}[-. ]+{_MONTH}(?:[-. ]+\d{{2,4}})?|{_MONTH}[-. ]\d{{2,4}}",
     re.IGNORECASE,
 )
+# What is written in place of a number, and behind one, with what is right instead.
+_NO_NUMBER = {
+    r"[+-]?,[0-9]": "a decimal point instead of a decimal comma, for example 0.5",
+    r"[+-] +[0-9.]": "no blank between the sign and the number",
+}
+_BEHIND_A_NUMBER = {
+    r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])": "a number without a comma: a decimal point for decimals (1.5), "
+    "nothing between thousands (1500)",
+    r",[0-9]": "a decimal point instead of a decimal comma, for example 6.5",
+    r"(?: [0-9]{3}(?![0-9])|['’_][0-9])": "a number without a separator between the thousands, for example 1500",
+    r"(?: [0-9]+)? ?[/⁄] ?[0-9]": "a decimal number, or a fraction of whole numbers with its unit, such as 3/4 in or "
+    "1 3/4 in",
+    r" ?['’′]": "feet and inches as one number with one unit, for example 63 in",
+    r"[.'’_,]": "one number with at most one decimal point, for example 1500.5",
+}
 _NO_DATE = "a number; a table program has made a date of it: set the cell to Number or Text, and type it again"
 _LARGEST_EXPONENT = 1000
 _MOST_DIGITS = 40
@@ -135,6 +150,13 @@ def check_number(text: str, name: str) -> str:
     return number
 
 
+def _refuse_any(faults: Mapping[str, str], text: str, value: object, name: str) -> None:
+    """Refuse a text that begins as one of some patterns says, with what is right instead."""
+    for pattern, right in faults.items():
+        if re.match(pattern, text):
+            raise InputError(name, value, right)
+
+
 def _split_number(text: str, value: object, name: str, declared: str = "-") -> tuple[str, str]:
     """Split a quantity written as text into its number and its unit; the declared unit serves as an example."""
     plain = as_decimal(text).translate(SPACES).strip()
@@ -148,39 +170,17 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
         raise InputError(name, value, _NO_DATE)
     match = _NUMBER.match(plain)
     if match is None:
-        if re.match(r"[+-]?,[0-9]", plain):
-            raise InputError(name, value, "a decimal point instead of a decimal comma, for example 0.5")
-        if re.match(r"[+-] +[0-9.]", plain):
-            raise InputError(name, value, "no blank between the sign and the number")
+        _refuse_any(_NO_NUMBER, plain, value, name)
         if is_unit(plain):
             raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
-        if declared == "-":
-            raise InputError(name, value, "a number, for example 30")
-        raise InputError(
-            name, value, f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
-        )
+        both = f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
+        raise InputError(name, value, "a number, for example 30" if declared == "-" else both)
     number, unit_part = match[0], plain[match.end() :]
     if len(number) > INPUT_LIMITS.quantity:
         raise InputError(name, value, f"a number of at most {INPUT_LIMITS.quantity} characters")
-    if re.match(r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])", unit_part):
-        raise InputError(
-            name,
-            value,
-            "a number without a comma: a decimal point for decimals (1.5), nothing between thousands (1500)",
-        )
-    if re.match(r",[0-9]", unit_part):
-        raise InputError(name, value, "a decimal point instead of a decimal comma, for example 6.5")
-    if re.match(r"(?: [0-9]{3}(?![0-9])|['’_][0-9])", unit_part):
-        raise InputError(name, value, "a number without a separator between the thousands, for example 1500")
-    if re.match(r"(?: [0-9]+)? ?[/⁄] ?[0-9]", unit_part):
-        right = "a decimal number, or a fraction of whole numbers with its unit, such as 3/4 in or 1 3/4 in"
-        raise InputError(name, value, right)
+    _refuse_any(_BEHIND_A_NUMBER, unit_part, value, name)
     if number == "1" and unit_part.startswith("/") and is_unit(plain):
         raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
-    if re.match(r" ?['’′]", unit_part):
-        raise InputError(name, value, "feet and inches as one number with one unit, for example 63 in")
-    if re.match(r"[.'’_,]", unit_part):
-        raise InputError(name, value, "one number with at most one decimal point, for example 1500.5")
     return number, unit_part.strip()
 
 
