@@ -71,16 +71,8 @@ def report(
     quiet: Quiet = False,
 ) -> None:
     """Write what can be handed on: the report of a front or a batch, calculation sheets, drawings, PDF, workbooks."""
-    wanted = (
-        ("explorer", explorer),
-        ("pdf", as_pdf),
-        ("xlsx", as_xlsx),
-        ("svg", as_svg),
-        ("dxf", as_dxf),
-        ("step", as_step),
-        ("glb", as_step),
-        ("json", as_json),
-    )
+    wanted = {"explorer": explorer, "pdf": as_pdf, "xlsx": as_xlsx, "svg": as_svg, "dxf": as_dxf}
+    wanted |= {"step": as_step, "glb": as_step, "json": as_json}
     if fonts and not as_pdf:
         raise InputError("--font-path", str(fonts[0]), "--pdf as well: only PDF takes fonts")
     if folder is not None:
@@ -89,13 +81,10 @@ def report(
         source = source.parent
     from synth.results.report_request import ReportOptions
 
-    formats = ["html", *(word for word, on in wanted if on)]
+    formats = ["html", *(word for word, on in wanted.items() if on)]
     how = ReportOptions.read(formats, _about(about), length, fonts or (), None if about is None else about.parent)
-    flags = (
-        ("--design", design),
-        ("--full", full),
-        *((f"--{OPTION.get(word, word)}", on or None) for word, on in wanted),
-    )
+    of_fronts = (("--design", design), ("--full", full))
+    flags = (*of_fronts, *((f"--{OPTION.get(word, word)}", on or None) for word, on in wanted.items()))
     if _is_batch(source):
         _refuse(flags, "no option of fronts alone: a batch has report.html, --pdf and --xlsx", ("--pdf", "--xlsx"))
         if length != FrontReportRequest.length:
@@ -105,7 +94,7 @@ def report(
     elif row is not None:
         raise InputError("--row", row, "the folder of a batch with it")
     elif source.suffix in FILES and source.is_file() and source.name != "front.json":
-        for flag, value in (("--design", design), ("--full", full), ("--explorer", explorer or None)):
+        for flag, value in (*of_fronts, ("--explorer", explorer or None)):
             if value is not None:
                 raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent

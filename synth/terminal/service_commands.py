@@ -174,24 +174,13 @@ def revoke_token(token: TokenName, data: Data = None, database: ServiceDatabase 
 def _line(token: TokenEntry) -> tuple[str, ...]:
     from synth.queue.log_lines import BEGINNING
 
-    return (
-        str(token.id),
-        BEGINNING + token.prefix,
-        token.tenant,
-        ",".join(token.scopes),
-        _day(token.created),
-        _day(token.used),
-        _end(token),
-        token.name,
-    )
+    end = "revoked" if token.revoked is not None else _day(token.expires)
+    days = (_day(token.created), _day(token.used), end)
+    return (str(token.id), BEGINNING + token.prefix, token.tenant, ",".join(token.scopes), *days, token.name)
 
 
 def _day(moment: float | None) -> str:
     return "-" if moment is None else datetime.fromtimestamp(moment, UTC).strftime("%Y-%m-%d")
-
-
-def _end(token: TokenEntry) -> str:
-    return "revoked" if token.revoked is not None else _day(token.expires)
 
 
 @contextmanager
