@@ -40,6 +40,7 @@ __all__ = [
     "magnetics",
     "motors",
     "plates",
+    "reduction",
     "ring",
     "shaft",
     "startup",

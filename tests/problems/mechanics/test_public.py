@@ -39,7 +39,13 @@ OF_OTHERS = {"rad": "-", "rad/s": "1/s", "rad/s3": "1/s3"}
 DIMENSIONS = {**DIMENSION, "m/s2": (0, 1, -2, 0), "ohm": (1, 2, -3, 0, -2), "N m s": DIMENSION["kg m2/s"]}
 DIMENSIONS |= {"Wb/A": (1, 2, -2, 0, -2), "W/A2": (1, 2, -3, 0, -2)}
 UNITS = {*DIMENSIONS, *OF_OTHERS, "SI"}  # SI: each of many by its own
-NOT_QUANTITIES = ("str", "int", "callable", "StartupRun")  # first words of the types of arguments without a unit
+NOT_QUANTITIES = (
+    "str",
+    "bool",
+    "int",
+    "callable",
+    "StartupRun",
+)  # first words of the types of arguments without a unit
 
 
 @cache
@@ -221,7 +227,6 @@ CONSTANT = re.compile(r"^([A-Z_0-9]+) = .*  # .*\[(.+?)\]", re.MULTILINE)
 def the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) -> None:
     if f.takes == NUMBERS or not UNIT.search(f.returns):
         return
-    module = sys.modules[f"synth.problems.mechanics.{f.module}"]
     rng = np.random.default_rng(0)
     for _ in range(3):
         scale = rng.uniform(0.5, 2.0, 5)
@@ -232,8 +237,9 @@ def the_result_scales_as_its_unit_when_arguments_and_constants_do(f: Formula) ->
             told = {n.lstrip("*"): unit for e in f.entries for n, unit in zip(e.names, units_of(e), strict=True)}
             expected = [float(x) * factor[u] for x, u in zip(called(f, bound, base), results_of(f), strict=True)]
             with pytest.MonkeyPatch.context() as patch:
-                for name, unit in CONSTANT.findall(inspect.getsource(module)):
-                    patch.setattr(module, name, getattr(module, name) * factor[unit])
+                for module in modules():  # a formula may use the constants of others
+                    for name, unit in CONSTANT.findall(inspect.getsource(module)):
+                        patch.setattr(module, name, getattr(module, name) * factor[unit])
                 scaled = {n: [x * factor[told[n]] for x in xs] for n, xs in base.items()}
                 found = [float(x) for x in called(f, bound, scaled)]
             np.testing.assert_allclose(found, expected, rtol=1e-9)
