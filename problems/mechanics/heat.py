@@ -12,18 +12,21 @@ import numpy as np
 
 from synth.special import special
 
-from . import Quantity
+from . import Quantity, magnetics
 
 __all__ = [
     "adiabatic_rise",
     "allowed_work_at_rate",
+    "conductance",
     "cycle_time",
     "flash_rise",
     "hourly_heat",
     "mean_temperature_rise",
+    "oil_flow",
     "peak_rise_per_work",
     "peak_temperature_rise",
     "power_density",
+    "rise_after",
     "single_heat",
     "specific_hourly_heat",
     "thermal_time_constant",
@@ -331,6 +334,118 @@ def peak_rise_per_work(
     """
     cooled = heat_transfer * cooled_area / (heat_capacity * switching_rate)
     return -1 / (heat_capacity * np.expm1(-cooled))
+
+
+def rise_after(n: Quantity, work: Quantity, rate: Quantity, capacity: Quantity, conductance: Quantity) -> Quantity:
+    """Rise over ambient just after an engagement of a row that begins cold.
+
+    Equation: dT = (W/C) (1 - q**n)/(1 - q), with q = exp(-G/(C f))
+
+    An infinite row gives :func:`peak_temperature_rise`.
+
+    Parameters
+    ----------
+    n : scalar, array or symbol
+        Number of the engagement in its row n [-], at least 1.
+    work : scalar, array or symbol
+        Work per engagement W [J].
+    rate : scalar, array or symbol
+        Engagements per second f [1/s].
+    capacity : scalar, array or symbol
+        C [J/K].
+    conductance : scalar, array or symbol
+        Heat given off per kelvin G [W/K].
+
+    Returns
+    -------
+    scalar, array or symbol
+        dT [K].
+
+    References
+    ----------
+    Lumped heat balance of a body heated in steps of W/C, as a geometric series; derived here.
+
+    Examples
+    --------
+    Computed here, the first, the tenth and any later start of a row of 50 an hour:
+
+    >>> [round(float(rise_after(n, 39524.1, 50 / 3600, 4000, 9)), 6) for n in (1, 10, float("inf"))]
+    [9.881025, 52.993092, 66.06783]
+    """
+    cooled = conductance / (capacity * rate)
+    return work / capacity * np.expm1(-n * cooled) / np.expm1(-cooled)
+
+
+def conductance(
+    still: Quantity, moving: Quantity, speed: Quantity, area: Quantity, area_factor: Quantity = 1.0
+) -> Quantity:
+    """Heat that a body gives off per kelvin, standing or turning.
+
+    Equation: G = (h_still + h_rot v**0.8) A k_A
+
+    Parameters
+    ----------
+    still : scalar, array or symbol
+        Surface coefficient at rest h_still [W/(m2 K)].
+    moving : scalar, array or symbol
+        h_rot [-]: of (m/s)**0.8 and W/(m2 K); 0 where the body stands.
+    speed : scalar, array or symbol
+        Circumferential speed v [m/s].
+    area : scalar, array or symbol
+        Outer surface without fins A [m2].
+    area_factor : scalar, array or symbol
+        Effective surface over that without fins k_A [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        G [W/K].
+
+    References
+    ----------
+    Newton's law of cooling, with the coefficient of :func:`synth.problems.mechanics.magnetics.heat_transfer_in_motion`.
+
+    Examples
+    --------
+    Computed here, 0.05 m2 at rest, turning at 15 m/s, and finned:
+
+    >>> [round(float(conductance(12, 3, v, 0.05, k)), 8) for v, k in ((0, 1), (15, 1), (15, 2.5))]
+    [0.6, 1.90907421, 4.77268552]
+    """
+    return magnetics.heat_transfer_in_motion(still, moving, speed, 1.0) * area * area_factor
+
+
+def oil_flow(heat: Quantity, rise: Quantity, volumetric_heat: Quantity) -> Quantity:
+    """Oil flow that carries a heat flow away.
+
+    Equation: Q = P/(s dT)
+
+    Parameters
+    ----------
+    heat : scalar, array or symbol
+        Heat flow P [W].
+    rise : scalar, array or symbol
+        Rise of the oil dT [K].
+    volumetric_heat : scalar, array or symbol
+        Density times specific heat of the oil s [J/(m3 K)].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Q [m3/s].
+
+    References
+    ----------
+    Heat balance.
+
+    Examples
+    --------
+    Computed here, 1 kW into oil of 870 kg/m3 and 1950 J/(kg K), in l/min:
+
+    >>> 60000 * oil_flow(1000, 20, 870 * 1950)
+    1.76834660
+    """
+    return heat / (volumetric_heat * rise)
 
 
 def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quantity, share: Quantity = 1.0) -> Quantity:

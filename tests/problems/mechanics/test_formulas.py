@@ -188,6 +188,17 @@ CASES = [
         "K/J",
     ),
     (heat.peak_temperature_rise, {**HEAT, "heat_capacity": "J/K", **COOLING}, "K"),
+    (
+        heat.rise_after,
+        {"n": "-", "work": "J", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"},
+        "K",
+    ),
+    (
+        partial(heat.conductance, moving=3.0, speed=0.0),
+        {"still": "W/(m2 K)", "area": "m2", "area_factor": "-"},
+        "W/K",
+    ),
+    (heat.oil_flow, {"heat": "W", "rise": "K", "volumetric_heat": "J/(m3 K)"}, "m3/s"),
     (heat.adiabatic_rise, {"friction_work": "J", "mass": "kg", "specific_heat": "J/(kg K)", "share": "-"}, "K"),
     (
         heat.flash_rise,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from synth.problems.mechanics import heat, plates
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=40)
@@ -30,6 +30,61 @@ def test_peak_temperature_at_a_low_rate_is_one_adiabatic_rise():
 def test_peak_temperature_at_a_high_rate_is_the_mean_rise():
     mean = heat.mean_temperature_rise(1.0, 1e4, 50, 0.2)
     assert heat.peak_temperature_rise(1.0, 1e4, 1000, 50, 0.2) == pytest.approx(mean, rel=1e-6)
+
+
+@QUICK
+@given(st.integers(1, 60), st.floats(1e2, 1e5), st.floats(1e-3, 0.5), st.floats(100, 1e4), st.floats(0.5, 100))
+def test_the_rise_of_a_row_is_that_of_heating_and_cooling_one_by_one(n, work, rate, capacity, conductance):
+    rise = 0.0
+    for _ in range(n):  # cooling until the next, by the exact solution of C dT/dt = -G T
+        rise = rise * math.exp(-conductance / (capacity * rate)) + work / capacity
+    assert heat.rise_after(n, work, rate, capacity, conductance) == pytest.approx(rise, rel=1e-9)
+
+
+def test_the_rise_of_a_row_is_that_of_integration():
+    work, rate, capacity, conductance = 39524.1, 50 / 3600, 4000.0, 9.0
+    rises, rise = [], 0.0
+    for _ in range(100):
+        rises.append(rise := rise + work / capacity)
+        cooling = solve_ivp(lambda _, y: -conductance * y / capacity, (0, 1 / rate), [rise], rtol=1e-12, atol=1e-12)
+        rise = cooling.y[0, -1]
+    for n, worked in ((1, 9.881025), (10, 52.9930920), (100, 66.0678234)):
+        assert heat.rise_after(n, work, rate, capacity, conductance) == pytest.approx(worked, rel=1e-8)
+        assert rises[n - 1] == pytest.approx(worked, rel=1e-8)
+    steady = heat.rise_after(math.inf, work, rate, capacity, conductance)
+    assert steady == pytest.approx(66.0678295, rel=2e-9)
+    assert steady == pytest.approx(heat.peak_temperature_rise(work, rate, capacity, conductance, 1.0), rel=1e-14)
+
+
+def test_heat_goes_into_air_and_oil_by_the_worked_numbers():
+    for speed, factor, worked in ((0, 1, 0.6), (15, 1, 1.90907421), (15, 2.5, 4.77268552)):
+        assert heat.conductance(12, 3, speed, 0.05, factor) == pytest.approx(worked, rel=3e-9)
+        steady = heat.mean_temperature_rise(
+            100.0, 1.0, 12 + 3 * math.exp(0.8 * math.log(speed or 1e-99)), 0.05 * factor
+        )
+        assert 100.0 / heat.conductance(12, 3, speed, 0.05, factor) == pytest.approx(steady, rel=1e-12)
+    for power, worked in ((1000.0, 1.76834660), (548.9, 0.970645447)):
+        flow = heat.oil_flow(power, 20, 870 * 1950)
+        assert 60000 * flow == pytest.approx(worked, rel=3e-9)
+        assert heat.adiabatic_rise(power, 870 * flow, 1950) == pytest.approx(20, rel=1e-12)  # of what flows in a second
+
+
+@pytest.mark.parametrize(
+    ("single", "hourly", "per_hour", "allowed"),
+    [
+        (1.8, 25, 50, 0.436562769),
+        (1.5, 12, 8, 0.948180838),
+        (2.5, 18, 60, 0.282698908),
+        (1.8, 250, 50, 1.68808226),
+    ],
+)
+def test_allowed_work_has_single_and_hourly_heat_as_its_ends(single, hourly, per_hour, allowed):
+    def law(rate):
+        return heat.allowed_work_at_rate(single, hourly / single, rate)
+
+    assert law(per_hour) == pytest.approx(allowed, rel=2e-9)
+    assert law(1e-6) == pytest.approx(single, rel=1e-12)
+    assert law(1e7) * 1e7 == pytest.approx(hourly, rel=1e-5)
 
 
 def test_flash_rise_is_the_largest_convolution_of_the_flux():

@@ -82,6 +82,30 @@ def test_worn_pressure_carries_the_force_with_pressure_times_radius_constant():
     assert quad(lambda r: peak * r1 / r * 2 * math.pi * r, r1, r2)[0] == pytest.approx(force, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("outer", "inner", "surfaces", "mu", "force", "sine", "mean_pressure", "edge_pressure", "worn", "new"),
+    [
+        (0.2484, 0.1987, 2, 0.3, 1938.0, 1.0, 0.111045978, 0.124933711, 129.971970, 130.507313),
+        (0.258110624, 0.154866374, 10, 0.1, 13394.966, 1.0, 0.4, 0.533333342, 1382.95321, 1411.76474),
+        (0.236, 0.196, 1, 0.3, 1500.0, math.sin(math.radians(12)), 0.110524266, 0.121802252, 233.753089, 234.421108),
+    ],
+)
+def test_new_and_worn_rings_of_a_car_a_pack_and_a_cone(
+    outer, inner, surfaces, mu, force, sine, mean_pressure, edge_pressure, worn, new
+):
+    mean, ratio = ring.mean_diameter(outer, inner), ring.ring_ratio(outer, inner)
+    normal = force / sine  # the surfaces of a cone are larger by the same share
+    assert normal / (ring.ring_area(mean, ratio) / sine) / 1e6 == pytest.approx(mean_pressure, rel=2e-8)
+    peak = ring.worn_peak_pressure(force, mean, ratio)
+    assert peak / 1e6 == pytest.approx(edge_pressure, rel=2e-8)
+    assert ring.worn_torque(surfaces, mu, normal, mean) == pytest.approx(worn, rel=2e-8)
+    radius = ring.friction_radius(mean, ratio)
+    assert ring.friction_torque(mu, normal, radius, surfaces) == pytest.approx(new, rel=2e-8)
+    # Pressure times radius is constant: torque of the rings one by one.
+    rings = quad(lambda r: mu * peak * inner / 2 / r * r * 2 * math.pi * r / sine, inner / 2, outer / 2)[0]
+    assert surfaces * rings == pytest.approx(worn, rel=2e-8)
+
+
 def test_required_torque_without_surface_factor_is_that_with_factor_one():
     assert ring.required_torque(600, 1.5, 0.9, 0.85) == ring.required_torque(600, 1.5, 0.9, 0.85, 1)
     assert np.all(ring.required_torque(np.array([1.0, 2.0]), 1.5, 1, 0.75, 0.5) == [4.0, 8.0])
