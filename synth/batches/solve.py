@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.batches.entries import RowQuestion
 from synth.errors import InputError
-from synth.system.deadline import NEEDLESS, Stopped, until
+from synth.system.deadline import INTERRUPTED, NEEDLESS, Stopped, until
 
 if TYPE_CHECKING:
     from synth.bounds.branching import BranchingStatistics
@@ -213,7 +213,7 @@ def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[
 
 def _give_up_unwanted(reason: str) -> None:
     """Raise KeyboardInterrupt where Ctrl-C or a cancelled job has stopped a search: nobody wants half an answer."""
-    if reason in ("interrupted", NEEDLESS):
+    if reason in (INTERRUPTED, NEEDLESS):
         raise KeyboardInterrupt
 
 

@@ -21,7 +21,7 @@ from pathlib import Path, PureWindowsPath
 from typing import TextIO
 
 from synth.errors import InputError
-from synth.folders.files import read_json
+from synth.folders.files import read_json, write_atomically
 from synth.system.file_locks import is_at, unlock
 from synth.system.interrupts import held_back
 from synth.system.operating_system import OPEN_FILES_CAN_GO, SAFELY, is_held, lock, put_in_place, sync_folder
@@ -221,6 +221,19 @@ def save_files(folder: str | Path, files: Mapping[str, str | bytes], drop: Itera
             new.write(name, content)
         new.drop(drop)
     return target
+
+
+def save_file(path: Path, text: str) -> None:
+    """Write one file into a folder of results, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    with _as_input_error(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, text)
 
 
 def place_for_stopped(folder: Path, kind: ResultKind) -> Path:

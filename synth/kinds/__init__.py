@@ -5,7 +5,7 @@ Importing this package loads nothing heavy; the module of a kind is imported whe
 ``read(request, sources) -> CheckedRequest``
     Checks a request as far as that goes without the search.
 ``work(request, sources, tell) -> dict of Record``
-    Does what a request that was read asks for.
+    Does what a request that was read asks for; the record of the question itself is added to what it returns.
 ``summary(records) -> dict``
     A few facts of its records, for lists.
 ``beside(request, sources) -> dict, list of InputError``

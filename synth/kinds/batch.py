@@ -21,7 +21,7 @@ from synth.batches.row_questions import Fault
 from synth.batches.row_table import RowTable, read_table
 from synth.batches.store import Store
 from synth.errors import Described, InputError, at, first_with_others, gathered, refuse_gathered
-from synth.kinds.asked import catalogs_of, digests
+from synth.kinds.asked import catalogs_of
 from synth.kinds.files import UnknownFileError
 from synth.kinds.settings import KIND_SETTINGS
 from synth.model.registry import load
@@ -66,7 +66,6 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
             title=counted if table.name == STATED else f"{job.table.name}: {counted}",
             families=tuple(sorted(job.questioner.named)),
             bulk=True,
-            tables=digests(kept.get("catalogs"), sources),
             fingerprint=job.id,
             rows=count,
             kept=(Record(name=f"{TABLE}{_ending(table.name)}", media=table.media, content=table.content),),

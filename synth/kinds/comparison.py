@@ -6,20 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from synth.errors import InputError
-from synth.kinds.asked import (
-    FAMILY,
-    best_of,
-    by_name,
-    catalogs_of,
-    digests,
-    of_files,
-    question_record,
-    read_json,
-    settings_of,
-    spec_of,
-    told,
-    words,
-)
+from synth.kinds.asked import FAMILY, best_of, catalogs_of, of_files, read_json, settings_of, spec_of, words
 from synth.question.arguments import UserTables
 from synth.question.request import Request, check_grid, listed_objectives
 from synth.question.settings import SearchSettings
@@ -73,7 +60,6 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         request=stated,
         title="Comparison: " + ("; ".join(map(_titled, found)) if content[FAMILY] != "any" else "all families"),
         families=tuple(dict.fromkeys(one.problem.name for one in serving)),
-        tables=digests(stated.get("catalogs"), sources),
     )
 
 
@@ -109,12 +95,12 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
         objectives=content["objectives"],
         catalogs=catalogs_of(request.get("catalogs"), sources),
         grid=_grid(content),
-        progress=told(tell),
+        progress=tell,
         **asked,
         **how,
     )
     own = {name: text for name, text in found.family_files().items() if name.rsplit("/", 1)[-1] in KEPT}
-    return {**of_files({**found.files(), **own}), **by_name(question_record("compare", request, sources))}
+    return of_files({**found.files(), **own})
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

@@ -8,18 +8,7 @@ from typing import Any
 
 from synth.analysis.settings import WAYS_OUT
 from synth.errors import InputError, gathered
-from synth.kinds.asked import (
-    by_name,
-    digests,
-    of_files,
-    question_of,
-    question_record,
-    read_json,
-    spec_of,
-    stated_spec,
-    titled,
-    told,
-)
+from synth.kinds.asked import of_files, question_of, read_json, spec_of, stated_spec, titled
 from synth.order.feasibility import Status
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
@@ -50,7 +39,6 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         request={**stated, **ExplainRequest.read(own, in_request).to_json()},
         title=f"Ways out: {titled(asked)}",
         families=(asked.problem.name,),
-        tables=digests(stated.get("catalogs"), sources),
     )
 
 
@@ -66,8 +54,8 @@ def beside(request: Mapping[str, object], sources: Sources) -> tuple[dict[str, A
 def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Find what excludes each other and what would help."""
     spec, own = spec_of(request, sources, (PHYSICS,))
-    found = explanation_of(*_asked(spec, sources), told(tell), ExplainRequest.read(own, in_request).physics)
-    return {**of_files(found.files()), **by_name(question_record("explain", request, sources))}
+    found = explanation_of(*_asked(spec, sources), tell, ExplainRequest.read(own, in_request).physics)
+    return of_files(found.files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

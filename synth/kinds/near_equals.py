@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
+from synth.kinds.asked import about_front, front_of, of_files, read_json
 from synth.order.feasibility import Status
 from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.near_optimal import chosen_design, near_equals, read_share
@@ -37,8 +37,8 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
     """Find what is nearly as good."""
     of, asked = about_front(request, NearEqualsRequest)
     front, tables = front_of(of, sources)
-    found = near_equals(front, catalogs=tables, progress=told(tell), **vars(asked))
-    return {**of_files(found.files()), **by_name(question_record("near_equals", request, sources))}
+    found = near_equals(front, catalogs=tables, progress=tell, **vars(asked))
+    return of_files(found.files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

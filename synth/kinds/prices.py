@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from synth.kinds.asked import about_front, by_name, front_of, of_files, question_record, read_json, told
+from synth.kinds.asked import about_front, front_of, of_files, read_json
 from synth.order.feasibility import Status
 from synth.queue.records import QUESTION, CheckedRequest, Record, ReportProgress, Sources
 from synth.studies.prices.run import chosen_designs, prices, read_step
@@ -38,8 +38,8 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
     """Price everything."""
     of, asked = about_front(request, PricesRequest)
     front, tables = front_of(of, sources)
-    found = prices(front, catalogs=tables, progress=told(tell), **vars(asked))
-    return {**of_files(found.files()), **by_name(question_record("prices", request, sources))}
+    found = prices(front, catalogs=tables, progress=tell, **vars(asked))
+    return of_files(found.files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

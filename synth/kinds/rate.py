@@ -9,18 +9,7 @@ from typing import Any
 
 from synth.analysis.design_spec import design_of_spec, must_be_a_design
 from synth.errors import InputError
-from synth.kinds.asked import (
-    about_front,
-    by_name,
-    catalogs_of,
-    digests,
-    front_of,
-    of_files,
-    question_record,
-    read_json,
-    told,
-    words,
-)
+from synth.kinds.asked import about_front, catalogs_of, front_of, of_files, read_json, words
 from synth.model.problem import DesignProblem
 from synth.order.feasibility import Status
 from synth.question.request_fields import FIELDS
@@ -57,16 +46,15 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         request=stated if given.time_limit is None else {**stated, "time_limit": given.time_limit},
         title=f"Rating: {given.frame.title}, {', '.join(map(words, scattering.names))}",
         families=(given.frame.family,),
-        tables=digests(stated.get("catalogs"), sources),
     )
 
 
 def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Rate the designs."""
     given = _designs(request, sources)
-    how: dict[str, Any] = {"progress": told(tell), "time_limit": given.time_limit}
+    how: dict[str, Any] = {"progress": tell, "time_limit": given.time_limit}
     found = rate(given.designs, given.block, problem=given.problem, catalogs=given.tables, **how)
-    return {**of_files(found.files()), **by_name(question_record("rate", request, sources))}
+    return of_files(found.files())
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

@@ -18,7 +18,6 @@ from synth.kinds.asked import (
     fronts_in,
     is_comparison,
     json_record,
-    question_record,
     read_json,
     records_of,
 )
@@ -73,7 +72,7 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
     files, notes = reported(records_of(sources, of.of), asked, sources, of.family)
     main = json_record(MAIN, {"files": list(files), "notes": notes})
     made = [Record.of(name, content) for name, content in files.items()]
-    return by_name(*made, main, question_record("report", request, sources))
+    return by_name(*made, main)
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

@@ -5,19 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth.kinds.asked import (
-    by_name,
-    digests,
-    front_summary,
-    of_files,
-    question_of,
-    question_record,
-    read_json,
-    spec_of,
-    stated_spec,
-    titled,
-    told,
-)
+from synth.kinds.asked import front_summary, of_files, question_of, read_json, spec_of, stated_spec, titled
 from synth.question.request import Request
 from synth.question.settings import SearchSettings
 from synth.queue.records import CheckedRequest, Record, ReportProgress, Sources
@@ -45,7 +33,6 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         request=stated,
         title=titled(asked),
         families=(asked.problem.name,),
-        tables=digests(stated.get("catalogs"), sources),
     )
 
 
@@ -64,9 +51,8 @@ def checked(asked: Request, settings: SearchSettings) -> None:
 def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) -> dict[str, Record]:
     """Search the designs; every other file of a front is rendered from these records."""
     asked, settings = question_of(request, sources)
-    front = find_front(asked, settings, told(tell))
-    kept = of_files(front.files(), (FRONT_FILE, CALCULATION, OFFERED))
-    return {**kept, **by_name(question_record("synthesis", request, sources))}
+    front = find_front(asked, settings, tell)
+    return of_files(front.files(), (FRONT_FILE, CALCULATION, OFFERED))
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

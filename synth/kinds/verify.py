@@ -17,7 +17,6 @@ from synth.kinds.asked import (
     fronts_in,
     is_comparison,
     json_record,
-    question_record,
     read_json,
     records_of,
 )
@@ -67,7 +66,7 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
         found = verify(front, catalogs=catalogs_of(front.frame.restated.get("catalogs"), sources), time_limit=limit)
         found = _with_kept(found, records, of.family)
     content = {**asdict(found), "verdict": found.verdict.value, "holds": found.holds, "sentence": found.sentence()}
-    return by_name(json_record(MAIN, content), question_record("verify", request, sources))
+    return by_name(json_record(MAIN, content))
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

@@ -14,17 +14,14 @@ from synth.errors import InputError, gathered
 from synth.kinds.asked import (
     by_name,
     catalogs_of,
-    digests,
     json_record,
     of_files,
     problem_of,
     question_of,
-    question_record,
     read_json,
     spec_of,
     stated_spec,
     titled,
-    told,
     words,
 )
 from synth.kinds.settings import KIND_SETTINGS
@@ -68,7 +65,6 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         families=(asked.problem.name,),
         bulk=count > KIND_SETTINGS.interactive_steps,
         steps=count,
-        tables=digests(stated.get("catalogs"), sources),
     )
 
 
@@ -118,9 +114,8 @@ def work(request: Mapping[str, object], sources: Sources, tell: ReportProgress) 
     spec, own = spec_of(request, sources, (VARY, BREAKS))
     beyond = WhatIfRequest.read(own, in_request)
     question = question_of(spec, sources, points=POINTS)
-    study = study_of(*question, beyond.vary, told(tell), beyond.breaks)
-    main = json_record(MAIN, study_record(study))
-    return {**of_files(study.files()), **by_name(main, question_record("whatif", request, sources))}
+    study = study_of(*question, beyond.vary, tell, beyond.breaks)
+    return {**of_files(study.files()), **by_name(json_record(MAIN, study_record(study)))}
 
 
 def summary(records: Mapping[str, bytes]) -> dict[str, Any]:

@@ -87,8 +87,6 @@ class CheckedRequest:
         The names of those that are asked.
     bulk : bool
         Whether it waits behind what somebody waits for.
-    tables : mapping
-        Reference of every table of the user's own that it reads -> SHA-256 of its text.
     fingerprint : str
         What tells it from other requests of its kind, where the request does not: a batch is known by its rows.
     kept : tuple of Record
@@ -101,7 +99,6 @@ class CheckedRequest:
     title: str
     families: tuple[str, ...]
     bulk: bool = False
-    tables: Mapping[str, str] = field(default_factory=dict)
     fingerprint: str = ""
     kept: tuple[Record, ...] = ()
     steps: int = 0

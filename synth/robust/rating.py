@@ -33,6 +33,7 @@ from synth.robust.limit_bounds import LimitBounds, MonotoneLimit, MovingInput
 from synth.robust.settings import ROBUST, RobustLimits
 from synth.robust.uncertainty import Member, check_values, scattered
 from synth.robust.worst_points import stretched, worst_point
+from synth.system.deadline import INTERRUPTED
 from synth.text.row_cells import cell_value
 
 PROVEN, BOUNDED = "proven", "bounded"
@@ -109,7 +110,7 @@ class Rater:
                     break
                 done.append(self.one(design))
         except KeyboardInterrupt:
-            reason = "interrupted"
+            reason = INTERRUPTED
         return done, reason
 
     def one(self, design: Design) -> DesignRating:

@@ -20,6 +20,7 @@ from synth.results.ratings import DesignRating, RatingCounts
 from synth.robust.rating import Rater
 from synth.robust.settings import RobustLimits
 from synth.robust.uncertainty import check_rows
+from synth.system.deadline import INTERRUPTED
 
 GRACE = 2.0  # s, in which known designs are rated although time is over
 NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
@@ -105,7 +106,7 @@ def robust_front(
         try:
             better = ask(got.uncertainty.with_scenarios(got.scenarios()), got.front.designs)
         except KeyboardInterrupt:
-            got = replace(got, stopped="interrupted")
+            got = replace(got, stopped=INTERRUPTED)
             break
         searches += 1
         # A search that was not finished counts only where it brought more designs that hold.

@@ -21,8 +21,7 @@ from synth.search.stages.first_designs import bound_everything, find_first_desig
 from synth.search.stages.one_best import find_extremes
 from synth.search.stages.stopping import stop_early
 from synth.search.starting_front import starting_front
-from synth.system import deadline
-from synth.system.deadline import Stopped
+from synth.system.deadline import stoppable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,25 +62,20 @@ class FrontSearch:
 
     def run(self, report: Report) -> ParetoFront:
         """Search, and return the front; what stops the search early leaves what is known by then."""
-        state, interrupted = self.state, ""
+        state = self.state
         frame = make_frame(state.task.instance, state.task.chosen)
         designs: list[Design] = []
         explanation: LeastInfeasible | None = None
-        try:
-            with deadline.until(state.clock.deadline):
-                find_designs(state)
-                if len(state.form.archive):
-                    designs = choose_and_report(state, frame, report.weights)
-                elif report.explained:
-                    explanation = explain(state)
-        except Stopped as stop:
-            interrupted = stop.reason
-        except KeyboardInterrupt:
-            interrupted = "interrupted"
-        if interrupted:
+        with stoppable(state.clock.deadline) as ending:
+            find_designs(state)
+            if len(state.form.archive):
+                designs = choose_and_report(state, frame, report.weights)
+            elif report.explained:
+                explanation = explain(state)
+        if ending.reason:
             stop_early(state)
             designs = designs_at_stop(state, frame, report.weights) if state.front else []
-        return front_result(state, frame, designs, report.settings, explanation, interrupted)
+        return front_result(state, frame, designs, report.settings, explanation, ending.reason)
 
 
 def find_designs(state: FrontState) -> None:

@@ -44,7 +44,7 @@ from synth.search.polishing import polish_discrete, polish_variables
 from synth.search.primal_heuristics import PrimalHeuristics, roundings
 from synth.search.pruning import EpsilonCover
 from synth.studies.settings import NEAR, NearLimits
-from synth.system.deadline import Stopped, until
+from synth.system.deadline import INTERRUPTED, Stopped, stoppable
 from synth.text.input_limits import INPUT_LIMITS
 from synth.text.numbers import percent, thousands, typed_number
 from synth.units import parse_quantity
@@ -341,14 +341,10 @@ class _Enumeration:
     # -- the run -------------------------------------------------------------------------------
 
     def run(self, count: int) -> NearEquals:
-        interrupted, complete = "", False
-        try:
-            with until(self.clock.deadline):
-                complete = self._enumerate()
-        except Stopped as stop:
-            interrupted = stop.reason
-        except KeyboardInterrupt:
-            interrupted = "interrupted"
+        complete = False
+        with stoppable(self.clock.deadline) as ending:
+            complete = self._enumerate()
+        interrupted = ending.reason
         self.stage = "settle"
         members = self._members()
         picked = self._spread(members, count)
@@ -357,7 +353,7 @@ class _Enumeration:
             try:
                 designs.append(self._settled(combination, members[combination][1], hurried=bool(interrupted)))
             except (Stopped, KeyboardInterrupt) as stop:
-                interrupted = interrupted or (stop.reason if isinstance(stop, Stopped) else "interrupted")
+                interrupted = interrupted or (stop.reason if isinstance(stop, Stopped) else INTERRUPTED)
                 designs.append(members[combination][1])
         return self._result(designs, len(members), complete and not interrupted, interrupted)
 

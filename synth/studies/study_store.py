@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
-from synth.folders.files import read_bytes, read_json, write_atomically
-from synth.folders.output_folder import settle
+from synth.folders.files import read_bytes, read_json
+from synth.folders.output_folder import save_file, settle
 from synth.results import ParetoFront
 from synth.results.front_record import record_text
 from synth.results.loading import load_front
@@ -78,7 +78,7 @@ class StudyStore:
         if self.folder is None:
             return
         name = f"{STEPS}/step_{number:04d}.json"
-        self._write(self.folder / name, record_text(record))
+        save_file(self.folder / name, record_text(record))
         self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": record["digest"]})
 
     def value(self, key: str, fingerprint: str) -> Any:
@@ -102,12 +102,4 @@ class StudyStore:
         assert self.folder is not None
         self.record[key] = entry
         text = json.dumps({"format": STUDY_FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
-        self._write(self.folder / RECORD, text)
-
-    @staticmethod
-    def _write(path: Path, text: str) -> None:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomically(path, text)
-        except OSError as error:
-            raise InputError("output", str(path.parent), f"a folder that can be written ({error.strerror})") from error
+        save_file(self.folder / RECORD, text)

@@ -1,6 +1,7 @@
 """Until when the work that is being done may go on, known to all code below without being handed down.
 
-Whoever answers a question sets the end with :func:`until`; loops that may take long ask :func:`check` at every turn.
+Whoever answers a question sets the end with :func:`until`, or with :func:`stoppable` where he returns what is known by
+then; loops that may take long ask :func:`check` at every turn.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 
 NEEDLESS = "needless"  # the reason of what nobody waits for any more
+INTERRUPTED = "interrupted"  # that of what Ctrl-C has ended
 
 
 class Stopped(Exception):
@@ -65,6 +67,26 @@ def until(end: float, needless: Callable[[], bool] | None = None) -> Iterator[No
         yield
     finally:
         _end.reset(before)
+
+
+@dataclass
+class EarlyEnd:
+    """Why some work ended early; nothing where it came to its end."""
+
+    reason: str = ""
+
+
+@contextmanager
+def stoppable(end: float) -> Iterator[EarlyEnd]:
+    """Let the block stop at a time, as :func:`until`, or by Ctrl-C, and go on behind it; the ending tells why."""
+    ending = EarlyEnd()
+    try:
+        with until(end):
+            yield ending
+    except Stopped as stop:
+        ending.reason = stop.reason
+    except KeyboardInterrupt:
+        ending.reason = INTERRUPTED
 
 
 def check() -> None:

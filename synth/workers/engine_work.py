@@ -8,7 +8,7 @@ from typing import Any
 from synth.batches.solve import solve_unit
 from synth.errors import InputError
 from synth.kinds import kind
-from synth.kinds.asked import catalogs_of
+from synth.kinds.asked import catalogs_of, digests, question_record, told
 from synth.model.registry import every_family
 from synth.queue.records import Sources
 from synth.results.provenance import computing_digest, hash_of, problem_digest
@@ -41,8 +41,9 @@ def rows(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, dict[s
 
 def work(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
     """Do what a job of one unit asks for: its records, and the facts of them."""
-    module = kind(payload["kind"]).load()
-    records = module.work(payload["request"], _sources(payload), report)
+    module, request, sources = kind(payload["kind"]).load(), payload["request"], _sources(payload)
+    asked = question_record(payload["kind"], request, sources)
+    records = {**module.work(request, sources, told(report)), asked.name: asked}
     facts = module.summary({name: record.content for name, record in records.items()})
     return {"records": list(records.values()), "summary": facts}
 
@@ -66,15 +67,16 @@ def read(payload: Mapping[str, Any], report: ReportProgress) -> dict[str, Any]:
 
         spec, more = module.beside(request, sources) if chosen.keys else (request, [])
         raise all_faults(spec, sources, fault, chosen.keys, more) from fault
+    tables = digests(checked.request.get("catalogs"), sources)
     return {
         "request": dict(checked.request),
         "title": checked.title,
         "families": list(checked.families),
         "bulk": checked.bulk,
-        "tables": dict(checked.tables),
+        "tables": tables,
         "text": checked.text,
         "code": program_fingerprint(),
-        "fingerprint": checked.fingerprint or hash_of([payload["kind"], checked.text, dict(checked.tables)]),
+        "fingerprint": checked.fingerprint or hash_of([payload["kind"], checked.text, tables]),
         "kept": list(checked.kept),
         "steps": checked.steps,
         "rows": checked.rows,

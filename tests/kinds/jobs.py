@@ -9,6 +9,7 @@ from typing import Any
 
 from synth.kinds import Sources, kind
 from synth.question.examples import examples
+from synth.workers.engine_work import work
 
 SPECS: dict[str, dict[str, Any]] = {one.name: one.spec for one in examples()}
 DISC = {**SPECS["automobile_disc"], "points": 4}
@@ -31,14 +32,15 @@ def done(name: str, request: Mapping[str, Any], sources: Sources | None = None) 
     sources = sources or Sources()
     one = kind(name)
     posed = one.load().read(request, sources)
+    asked = json.loads(posed.text)
     told: list[str] = []
-    records = one.load().work(json.loads(posed.text), sources, lambda state: told.append(json.dumps(state)))
+    payload = {"kind": name, "request": asked, "sources": sources}
+    answer = work(payload, lambda state: told.append(json.dumps(state)))
     assert told, "nothing was told on the way"
-    assert all(name == record.name for name, record in records.items())
-    assert {one.record, "question.json"} <= set(records)
-    kept = {name: record.content for name, record in records.items()}
-    assert json.loads(kept["question.json"])["request"] == json.loads(posed.text)
-    json.dumps(one.load().summary(kept), allow_nan=False)
+    kept = {record.name: record.content for record in answer["records"]}
+    assert {one.record, "question.json"} <= set(kept)
+    assert json.loads(kept["question.json"])["request"] == asked
+    json.dumps(answer["summary"], allow_nan=False)
     return kept
 
 

@@ -242,7 +242,9 @@ def test_own_tables_are_used_and_their_digests_kept() -> None:
     sources = Sources(tables={"pairs@2": text})
     request = {**DISC, "catalogs": {"friction_materials": "pairs@2"}}
     found = posed("synthesis", request, sources)
-    assert found.tables == {"pairs@2": text.digest}
+    assert read({"kind": "synthesis", "request": request, "sources": sources}, print)["tables"] == {
+        "pairs@2": text.digest
+    }
     assert found.request["catalogs"] == {"friction_materials": "pairs@2"}
     records = done("synthesis", request, sources)
     front = json.loads(records["front.json"])

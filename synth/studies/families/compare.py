@@ -42,7 +42,7 @@ from synth.studies.families.requirement_sheet import (
     sheet_of,
 )
 from synth.studies.settings import COMPARING, ComparisonLimits
-from synth.system.deadline import Stopped, until
+from synth.system.deadline import INTERRUPTED, stoppable
 from synth.tables.catalogs import Catalogs
 
 KINDS = ("heuristic", "exhaustive", "global")
@@ -161,13 +161,10 @@ class _Comparing:
         self._search_all(serving, finished)
         if len(self.faults) == len(serving):
             raise next(iter(self.faults.values()))
-        try:
-            with until(self.deadline):
-                self._challenge_all()
-        except Stopped as stop:
-            self._stop(stop.reason)
-        except KeyboardInterrupt:
-            self._stop("interrupted")
+        with stoppable(self.deadline) as ending:
+            self._challenge_all()
+        if ending.reason:
+            self._stop(ending.reason)
         return self._compared()
 
     def _stop(self, reason: str) -> None:
@@ -191,13 +188,13 @@ class _Comparing:
                     self.faults[one.label] = error
                     continue
                 except KeyboardInterrupt:
-                    self._stop("interrupted")
+                    self._stop(INTERRUPTED)
                     break
                 members[one.label] = member.with_what_it_had(members.get(one.label))
                 if finished is not None:
                     finished(one.label, members[one.label].front)
-                if member.front.interrupted == "interrupted":
-                    self._stop("interrupted")
+                if member.front.interrupted == INTERRUPTED:
+                    self._stop(INTERRUPTED)
         self.front.members += [members[one.label] for one in self.candidates if one.label in members]
         if not self.interrupted and not all(map(_done, self.front.members)):
             self._stop("time limit")

@@ -18,7 +18,7 @@ from synth.studies.infeasibility.least_amount import Giving, RelaxedSearch
 from synth.studies.infeasibility.patches import Patches
 from synth.studies.infeasibility.relaxation import COLUMN, LIMIT
 from synth.studies.infeasibility.single_ways import CHOICE, SingleWays, trials
-from synth.system.deadline import Stopped, until
+from synth.system.deadline import stoppable
 
 
 def explain(
@@ -79,13 +79,9 @@ def explanation_of(
     deadline = math.inf if settings.time_limit is None else begin + settings.time_limit
     search = RelaxedSearch(ExplainedQuestion(request), settings, deadline, progress)
     result = Explanation(guards=tuple(search.question.guards))
-    try:
-        with until(deadline):
-            _explain(search, result, physics)
-    except Stopped as stop:
-        result.interrupted = stop.reason
-    except KeyboardInterrupt:
-        result.interrupted = "interrupted"
+    with stoppable(deadline) as ending:
+        _explain(search, result, physics)
+    result.interrupted = ending.reason
     result.single.sort(key=lambda w: w.amount)
     result.parts.sort(key=lambda w: w.amount)
     result.seconds = time.monotonic() - begin

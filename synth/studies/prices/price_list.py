@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.errors import InputError
 from synth.folders.csv_style import ENGLISH, CsvStyle
-from synth.folders.files import csv_text, read_json, table_frame, write_atomically
-from synth.folders.output_folder import PRICES, loses_nothing, save_files, save_result, settle
+from synth.folders.files import csv_text, read_json, table_frame
+from synth.folders.output_folder import PRICES, loses_nothing, save_file, save_files, save_result, settle
 from synth.results import Frame
 from synth.studies.settings import PRICES as LIMITS
 from synth.text.numbers import percent
@@ -47,19 +46,7 @@ class Price:
     sentence: str
 
 
-COLUMNS = (
-    "design",
-    "objective",
-    "quantity",
-    "kind",
-    "elasticity",
-    "up",
-    "down",
-    "status",
-    "reason",
-    "compared",
-    "sentence",
-)
+COLUMNS = tuple(column.name for column in fields(Price))
 
 
 @dataclass(frozen=True)
@@ -101,11 +88,11 @@ class Prices:
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per price."""
-        return table_frame(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
+        return table_frame(COLUMNS, [astuple(row) for row in self.rows])
 
     def files(self) -> dict[str, str]:
         """Files that ``save`` writes: file name -> text."""
-        table = csv_text(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
+        table = csv_text(COLUMNS, [astuple(row) for row in self.rows])
         store = PriceStore(None, self.fingerprint, self.front)
         self._enter(store)
         return {"prices.csv": table, RECORD: store.text()}
@@ -182,16 +169,7 @@ class PriceStore:
         """Keep the prices of a design."""
         self.known[design] = [asdict(row) for row in rows]
         if self.folder is not None:
-            self.write(RECORD, self.text())
-
-    def write(self, name: str, text: str) -> None:
-        """Write a file into the folder, whole or not at all."""
-        assert self.folder is not None
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            write_atomically(self.folder / name, text)
-        except OSError as error:
-            raise InputError("output", str(self.folder), f"a folder that can be written ({error.strerror})") from error
+            save_file(self.folder / RECORD, self.text())
 
 
 def price_sentence(

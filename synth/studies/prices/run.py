@@ -42,7 +42,7 @@ from synth.studies.prices.price_list import (
 )
 from synth.studies.prices.resolve import Move, Resolver
 from synth.studies.settings import PRICES, PriceLimits
-from synth.system.deadline import Stopped, until
+from synth.system.deadline import Stopped, stoppable
 from synth.text.numbers import more_or_less, number_text, percent
 from synth.units import parse_quantity
 from synth.verbs.requests import PricesRequest
@@ -168,22 +168,17 @@ class _Pricing:
 
     def run(self, designs: Sequence[Design], store: PriceStore) -> Prices:
         """Price the designs one after the other; what is finished when time is over is kept."""
-        rows: list[Price] = []
-        interrupted, kept = "", 0
-        try:
-            with until(self.deadline):
-                for number, design in enumerate(designs):
-                    rank = int(design.rank or 0)
-                    known = store.get(rank)
-                    kept += known is not None
-                    if known is None:
-                        known = self._design(design, number, len(designs))
-                        store.put(rank, known)
-                    rows += known
-        except Stopped as stop:
-            interrupted = stop.reason
-        except KeyboardInterrupt:
-            interrupted = "interrupted"
+        rows: tuple[Price, ...] = ()
+        kept = 0
+        with stoppable(self.deadline) as ending:
+            for number, design in enumerate(designs):
+                rank = int(design.rank or 0)
+                known = store.get(rank)
+                kept += known is not None
+                if known is None:
+                    known = self._design(design, number, len(designs))
+                    store.put(rank, known)
+                rows += tuple(known)
         statistics = {
             "combinations": self.instance.combinations.count,
             "nlp_solves": self.again.form.counters.nlp_solves,
@@ -192,7 +187,7 @@ class _Pricing:
         }
         ranks, makeable = tuple(int(d.rank or 0) for d in designs), bool(self.again.form.gridded.any())
         return Prices(
-            self.frame, ranks, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted, store.front
+            self.frame, ranks, self.step, rows, makeable, store.fingerprint, statistics, ending.reason, store.front
         )
 
     def _say(self, number: int, of: int, share: float) -> None:

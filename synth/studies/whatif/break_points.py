@@ -25,12 +25,11 @@ from synth.studies.settings import BREAKS, BreakLimits
 from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.studies.whatif.vary import Value
-from synth.system.deadline import Stopped
+from synth.system.deadline import INTERRUPTED, Stopped
 from synth.text.numbers import typed_number
 
 UNPROVEN = "the search on one side did not finish"
 NOT_ROBUST = "the design on one side is not shown to keep all limits over the whole range"
-INTERRUPTED = "interrupted"
 
 Remaining = Callable[[], float | None]
 

@@ -43,9 +43,8 @@ from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study import Study
 from synth.studies.whatif.study_answers import Break, StudyStep
 from synth.studies.whatif.weight_breaks import weight_breaks
-from synth.system.deadline import Stopped, until
+from synth.system.deadline import Stopped, stoppable
 
-INTERRUPTED = "interrupted"
 POINTS = 3  # of every step: the best in each objective and, of two, one between
 
 
@@ -176,21 +175,16 @@ class _Run:
 
     def study(self, breaks: bool) -> Study:
         """Answer the steps, then find the breaks; what is finished when time is over is kept."""
-        stopped, bends = "", list[Break]()
+        bends = list[Break]()
         self.share_of_steps = 0.5 if breaks else 1.0
-        try:
-            with until(self.deadline):
-                self._search_together()
-                for position in range(len(self.steps)):
-                    self.answered.append(self._answer(position))
-                if breaks:
-                    self._find_breaks(bends)
-        except Stopped as stop:
-            stopped = stop.reason
-        except KeyboardInterrupt:
-            stopped = INTERRUPTED
+        with stoppable(self.deadline) as ending:
+            self._search_together()
+            for position in range(len(self.steps)):
+                self.answered.append(self._answer(position))
+            if breaks:
+                self._find_breaks(bends)
         unanswered = [
-            StudyStep(k + 1, values, None, stopped=stopped)
+            StudyStep(k + 1, values, None, stopped=ending.reason)
             for k, values in enumerate(self.steps.values)
             if k >= len(self.answered)
         ]
@@ -201,7 +195,7 @@ class _Run:
             (*self.answered, *unanswered),
             tuple(bends),
             self._along(),
-            stopped,
+            ending.reason,
             {**statistics, **seconds},
             self.store,
         )
