@@ -22,14 +22,6 @@ from .flyweights import (
 )
 from .lining import Lining, advise_release_gap, declare_lining, declare_wear
 from .rules import LeverRules, Rules
-from .springs import (
-    SpringSet,
-    advise_springs,
-    declare_springs,
-    limit_share_of_force,
-    limit_spring_force,
-    name_spring_lengths,
-)
 
 __all__ = [
     "COMMON",
@@ -41,23 +33,17 @@ __all__ = [
     "LeverRules",
     "Lining",
     "Rules",
-    "SpringSet",
     "Weights",
     "advise_gravity",
     "advise_release_gap",
-    "advise_springs",
     "declare_band",
     "declare_clamp",
     "declare_contact",
     "declare_full_clamp",
     "declare_lining",
     "declare_rest_radius",
-    "declare_springs",
     "declare_stop_force",
     "declare_wear",
     "declare_weights",
-    "limit_share_of_force",
-    "limit_spring_force",
     "limit_weight_room",
-    "name_spring_lengths",
 ]

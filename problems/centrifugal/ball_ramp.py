@@ -10,6 +10,7 @@ from synth.declaration import Declaration
 
 from .. import centrifugal as blocks
 from .. import practice
+from ..components.springs import model as spring_sets
 from ..mechanics import ball_ramp, centrifugal
 from ..sources import NOT_IN_S4, S4
 from . import balls as ball_blocks
@@ -61,7 +62,7 @@ class CentrifugalBallRamp(DesignProblem):
             source=f"{S4}, F_R0/s",
         )
         balls = ball_blocks.declare_balls(d, duty=duty, rest_radius=rest)
-        springs = blocks.declare_springs(
+        springs = spring_sets.declare_springs(
             d, slot="return_spring", symbol="sp", count_symbol="N_s", text="they push the pressure plate back"
         )
         # All four make the spring force at contact, and hardly anything else.
@@ -130,16 +131,11 @@ class CentrifugalBallRamp(DesignProblem):
             text="The plate moves gradually: a larger speed for every further travel, no jump",
             source=NOT_IN_S4,
         )
-        blocks.limit_spring_force(
-            d,
-            name="spring_force",
-            springs=springs,
-            deflection=deflection + gap,
-            text="The return springs stand their deflection at contact",
+        fitted = spring_sets.Fitted(springs, deflection, gap)
+        spring_sets.limit_spring_force(
+            d, fitted, name="spring_force", text="The return springs stand their deflection at contact"
         )
-        blocks.name_spring_lengths(
-            d, springs=springs, rest=deflection, most=deflection + gap, symbol="L_rs", when="at contact"
-        )
+        spring_sets.name_spring_lengths(d, fitted)
         ball_blocks.declare_ball_pressure(d, duty=duty, balls=balls, end_radius=end)
         ball_blocks.limit_circle_room(d, wants=wants, rest_radius=rest, balls=balls, springs=[springs])
         layer.declare_size(
@@ -155,13 +151,11 @@ class CentrifugalBallRamp(DesignProblem):
                 ball=balls.part,
             ),
         )
-        layer.limit_set(d, springs=springs, deflection=deflection)
+        layer.limit_set(d, fitted)
         start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
         blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
         blocks.advise_release_gap(d, gap=gap, lining=lining)
-        blocks.advise_springs(
-            d, duty=duty, springs=springs, radius=rest, preload=deflection, travel=gap, what="the return springs"
-        )
+        layer.advise_springs(d, fitted, radius=rest)
         layer.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> dict[str, pd.DataFrame]:
@@ -213,8 +207,8 @@ class CentrifugalBallRamp(DesignProblem):
             The design.
         """
         # Costly to import; searches do without.
+        from ..components.springs.drawing import return_spring
         from . import ramp_drawing
-        from .spring_drawing import return_spring
 
         return ramp_drawing.ramp_drawing(
             spec, design, travel="plate_gap", pushed="pressure plate", springs=[return_spring("plate_gap")]

@@ -10,10 +10,11 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Part, Requirement
 
+from ..components.springs.model import SpringSet
 from ..mechanics import centrifugal
 from ..mechanics.contact import contact_modulus
 from ..sources import DRIVE, NOT_IN_S4, S4, TYPICAL
-from . import Duty, SpringSet
+from . import Duty
 
 # Least share of the axial force that friction must leave when the balls come back; at 0 the ramp locks.
 RETURN_SHARE_MIN = 0.2

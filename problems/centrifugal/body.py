@@ -19,15 +19,14 @@ if TYPE_CHECKING:
 
     from synth.declaration import Declaration, Part
 
+    from ..components.springs.model import SpringSet
     from .duty import WholeDuty
     from .flyweights import Flyweights
     from .lining import Lining
     from .rules import Rules
     from .size import Parts
-    from .springs import SpringSet
 
 LEAST_WORK = 1e-3  # friction work with which a driven side without inertia counts [J]
-TOLERANCES = 10  # least preload over the tolerance to which it is set
 THIN = 0.95  # of the hub that the shaft needs: one of a round size may lie a little below it
 NARROW_RING = 0.75  # remarks only: inner over outer radius of a lining that spreads little heat
 DISC_PLATES = 2  # flywheel and pressure plate
@@ -209,46 +208,3 @@ def limit_discs(d: Declaration, *, rules: Rules, lining: Lining, travel: Any) ->
             "this friction pair is not allowed in new designs; use it only to re-compute an old machine",
             source="table friction_materials",
         )
-
-
-def limit_set(d: Declaration, *, rules: Rules, springs: SpringSet, deflection: Any, prefix: str = "") -> None:
-    """Declare the limits that an engineer adds to a set of springs.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    rules : Rules
-        What the limits go by.
-    springs : SpringSet
-        The set.
-    deflection : symbol
-        Deflection at rest [m].
-    prefix : str
-        What the names of the limits begin with where there is another set.
-    """
-    which = f"{springs.part.slot}s".replace("_", " ")
-    d.at_least(
-        f"{prefix}springs_per_set",
-        springs.count,
-        rules.springs_per_set_min,
-        "-",
-        text=f"So many {which} do not tilt what they push",
-        source=UNSOURCED,
-    )
-    d.at_least(
-        f"{prefix}preload_min",
-        deflection,
-        TOLERANCES * rules.setting_tolerance,
-        "mm",
-        text=f"The deflection of {which} at rest is more than what it can be set to",
-        source=UNSOURCED,
-    )
-    d.at_least(
-        f"{prefix}wire_min",
-        springs.part.wire_diameter_d,
-        rules.wire_diameter_min,
-        "mm",
-        text=f"The {which} stand turning with the clutch",
-        source=UNSOURCED,
-    )

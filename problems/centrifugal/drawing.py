@@ -28,12 +28,11 @@ from synth.drawing import (
     Weight,
     disc,
 )
-from synth.text.numbers import typed_number
 
 from ..components.shaft.drawing import drawn_shaft
+from ..components.springs.drawing import Spring, spring_view
 from ..drawing_parts import Sizes, envelope
 from .places import FIRST_SPRING, FLYWEIGHT, TOP, Placed, at, even, places
-from .spring_drawing import Spring, spring_view
 
 PLATES, LINING = 1, 2
 FRONT = "Front view"
@@ -127,10 +126,7 @@ def clutch_drawing(
         Item(LINING, "Lining", size.count("friction_surfaces"), size.part("friction_pair"), "behind the plate"),
         Item(FLYWEIGHT, flyweight.name, size.count(flyweight.counted), flyweight.material, flyweight.note),
     ]
-    for k, spring in enumerate(springs):
-        coils = size.number(f"{spring.slot}.total_coils_nt")
-        note = f"{typed_number(coils)} coils, two of them closed ends"
-        items.append(Item(FIRST_SPRING + k, spring.name, size.count(spring.counted), size.part(spring.slot), note))
+    items += [spring.item(size, FIRST_SPRING + k) for k, spring in enumerate(springs)]
     weights = [
         Weight((PLATES,), ("plates_mass",), "steel_density"),
         Weight((FLYWEIGHT,), ("flyweight_mass",), flyweight.density, FRONT),
@@ -169,7 +165,7 @@ def _with_room(size: Sizes, boss: int) -> Along:
 
 def _crowded(size: Sizes, springs: Sequence[Spring], flyweights: Sequence[Flyweight]) -> tuple[str, ...]:
     """Return the remark on springs that are drawn over each other, where they have no room on their circle."""
-    taken = sum(size.count(spring.counted) * spring.outside(size) for spring in springs)
+    taken = sum(spring.count(size) * spring.outside(size) for spring in springs)
     taken += sum(size.count(one.counted) * size(one.size) for one in flyweights)
     if taken <= 2 * math.pi * size("rest_radius"):
         return ()

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from ..components.lining import wear
+from ..components.springs.model import Fitted, advise_springs, limit_set
 from ..practice import by_scope, current_linings
 from . import body, size
 from .body import Built
@@ -15,7 +16,6 @@ from .engagement import advise_high_stop_force, advise_stop_load
 from .lining import declare_wear
 from .rules import Rules
 from .size import Parts
-from .springs import SpringSet
 
 
 class Sources:
@@ -47,8 +47,12 @@ class Sources:
         """Declare the mass that counts."""
         d.derive("mass", "kg", parts.mass, symbol="m", text=self.mass_of, source="geometry")
 
-    def limit_set(self, d: Declaration, *, springs: SpringSet, deflection: Any, prefix: str = "") -> None:
+    def limit_set(self, d: Declaration, fitted: Fitted, prefix: str = "") -> None:
         """Declare limits of a set of springs by rules."""
+
+    def advise_springs(self, d: Declaration, fitted: Fitted, *, radius: Any) -> None:
+        """Remark springs on a radius [m] that bow outwards at top speed, or that tire."""
+        advise_springs(d, fitted, radius=radius, density=self.duty.steel_density, top_speed=self.duty.top_speed)
 
     def declare_objectives(self, d: Declaration) -> None:
         """Declare the objectives of all centrifugal clutches."""
@@ -129,9 +133,9 @@ class Ruled(WithBody):
         body.limit_discs(d, rules=self._rules, lining=built.lining, travel=built.gap)
         self._rules.limit_circle(d, built)
 
-    def limit_set(self, d: Declaration, *, springs: SpringSet, deflection: Any, prefix: str = "") -> None:
+    def limit_set(self, d: Declaration, fitted: Fitted, prefix: str = "") -> None:
         """Declare limits of a set of springs by the rules."""
-        body.limit_set(d, rules=self._rules, springs=springs, deflection=deflection, prefix=prefix)
+        limit_set(d, fitted, rules=self._rules.springs, prefix=prefix)
 
 
 class RuledComplete(Ruled, Complete):

@@ -9,6 +9,7 @@ from synth.declaration import Block, Declaration, Requirement, Variable
 
 from .. import centrifugal as blocks
 from .. import practice
+from ..components.springs import model as spring_sets
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4, S4
 from . import levers as lever_blocks
@@ -89,7 +90,7 @@ class CentrifugalLever(LeverClutch):
         duty = layer.duty
         lever = lever_blocks.declare_lever(d, duty=duty, stop_text="beyond contact, so that the clamp force is capped")
         rods = d.block(Rods)
-        springs = blocks.declare_springs(
+        springs = spring_sets.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
         )
         lining = blocks.declare_lining(d, duty=duty, linings=layer.linings(d))
@@ -110,26 +111,14 @@ class CentrifugalLever(LeverClutch):
             source=RECONSTRUCTED,
         )
         self._declare_retraction(d, lever=lever, rods=rods, springs=springs)
-        blocks.limit_spring_force(
-            d,
-            name="spring_force",
-            springs=springs,
-            deflection=lever.deflection + travel,
-            text="The clamp springs stand the stop",
-        )
-        blocks.name_spring_lengths(
-            d,
-            springs=springs,
-            rest=lever.deflection,
-            most=lever.deflection + travel,
-            symbol="L_cs",
-            when="at the stop",
-        )
+        fitted = spring_sets.Fitted(springs, lever.deflection, travel)
+        spring_sets.limit_spring_force(d, fitted, name="spring_force", text="The clamp springs stand the stop")
+        spring_sets.name_spring_lengths(d, fitted)
         blocks.limit_weight_room(
             d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=rods.spring_arm
         )
         layer.declare_size(d, lever_blocks.built(lining, lever, [springs]))
-        layer.limit_set(d, springs=springs, deflection=lever.deflection)
+        layer.limit_set(d, fitted)
         at_stop = formulas.clamp_flyweight_force(full, rods.spring_arm, lever.weights.arm)
         at_start = formulas.travel_flyweight_force(
             springs.force(lever.deflection), rods.spring_arm, rods.rod_arm, lever.weights.arm
@@ -143,15 +132,7 @@ class CentrifugalLever(LeverClutch):
             stop_pull=at_stop,
         )
         layer.judge_stop(d, stop_force=stop_force, clamp_force=full)
-        blocks.advise_springs(
-            d,
-            duty=duty,
-            springs=springs,
-            radius=lever.rest_radius,
-            preload=lever.deflection,
-            travel=travel,
-            what="the clamp springs",
-        )
+        layer.advise_springs(d, fitted, radius=lever.rest_radius)
         layer.declare_objectives(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
@@ -165,8 +146,8 @@ class CentrifugalLever(LeverClutch):
             The design.
         """
         # Costly to import; searches do without.
+        from ..components.springs.drawing import CLAMP
         from . import lever_drawing
-        from .spring_drawing import CLAMP
 
         arms = lever_drawing.Leg("rod_arm", "contact_travel"), lever_drawing.Leg("spring_arm")
         return lever_drawing.lever_drawing(spec, design, arms=arms, pushed="pressure plate", springs=(CLAMP,))
@@ -192,7 +173,7 @@ class CentrifugalLever(LeverClutch):
         lining: blocks.Lining,
         lever: lever_blocks.Lever,
         rods: Rods,
-        springs: blocks.SpringSet,
+        springs: spring_sets.SpringSet,
         full: Any,
     ) -> None:
         """Declare the speeds, and that no phase of the motion snaps."""
@@ -259,7 +240,7 @@ class CentrifugalLever(LeverClutch):
             d.step(name, unit, value, symbol=symbol, text=text, source=RECONSTRUCTED)
 
     def _declare_retraction(
-        self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet
+        self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, springs: spring_sets.SpringSet
     ) -> None:
         d.at_most(
             "retraction_arm",

@@ -23,10 +23,10 @@ from synth.drawing import (
     rectangle,
 )
 
+from ..components.springs.drawing import Spring, told_of_springs
 from ..drawing_parts import Sizes
 from .drawing import Flyweight, clutch_drawing
 from .places import FLYWEIGHT
-from .spring_drawing import Spring, told_of_springs
 
 JOINT = 0.025  # of the longest arm: circles at pivot and joints, which are no sizes
 

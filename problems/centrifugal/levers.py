@@ -10,6 +10,7 @@ import numpy as np
 from synth.text.numbers import typed_number
 
 from .. import centrifugal as blocks
+from ..components.springs.model import SpringSet
 from ..mechanics import centrifugal
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4, S4, TYPICAL
@@ -242,7 +243,7 @@ def refuse_room(d: Declaration, *, duty: blocks.Duty, least_leg: Any, name: str)
         )
 
 
-def built(lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet], discs: int = 0) -> blocks.Built:
+def built(lining: blocks.Lining, lever: Lever, springs: Sequence[SpringSet], discs: int = 0) -> blocks.Built:
     """Parts of a clutch with levers, and a number of plates beside flywheel and pressure plate."""
     weights = lever.weights
     return blocks.Built(

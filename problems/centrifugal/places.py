@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 from synth.drawing import XY
 
+from ..components.springs.drawing import Spring
 from ..drawing_parts import Sizes
-from .spring_drawing import Spring
 
 FLYWEIGHT, FIRST_SPRING = 3, 4  # numbers in the parts list
 TOP = math.pi / 2  # where the first flyweight stands [rad]
@@ -64,8 +64,8 @@ def _in_order(size: Sizes, springs: Sequence[Spring]) -> list[Placed]:
     """Return the springs of all sets, spread evenly among each other."""
     found = []
     for k, spring in enumerate(springs):
-        one = Placed(FIRST_SPRING + k, spring.outside(size) / 2, size(f"{spring.slot}.wire_diameter_d"))
-        count = size.count(spring.counted)
+        one = Placed(FIRST_SPRING + k, spring.outside(size) / 2, spring.wire(size))
+        count = spring.count(size)
         found += [((j + 0.5) / count, one.item, one) for j in range(count)]
     return [one for _, _, one in sorted(found, key=lambda x: x[:2])]
 

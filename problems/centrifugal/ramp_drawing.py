@@ -9,10 +9,10 @@ from typing import Any
 from synth import Design
 from synth.drawing import Angle, Area, Circle, Dimension, Drawable, Drawing, Line, LineKind, View, disc
 
+from ..components.springs.drawing import Spring, told_of_springs
 from ..drawing_parts import Sizes
 from .drawing import Flyweight, clutch_drawing
 from .places import FLYWEIGHT
-from .spring_drawing import Spring, told_of_springs
 
 OVER = 0.5  # of a ball: how far ramp and face are drawn beyond it
 

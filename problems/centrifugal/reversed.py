@@ -11,6 +11,7 @@ from synth import Design
 
 from .. import centrifugal as blocks
 from .. import practice
+from ..components.springs import model as spring_sets
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4
 from . import levers as lever_blocks
@@ -35,7 +36,7 @@ class Leg:
     """Short leg of the lever and the springs that draw the plate back, all in SI."""
 
     arm: Any
-    springs: blocks.SpringSet
+    springs: spring_sets.SpringSet
     deflection: Any
 
     def force(self, travel: Any) -> Any:
@@ -61,7 +62,7 @@ class CentrifugalReversed(LeverClutch):
         lever = lever_blocks.declare_lever(
             d, duty=duty, stop_text="the window of disc 1, so that the clamp force is capped"
         )
-        springs = blocks.declare_springs(
+        springs = spring_sets.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between disc 1 and the housing"
         )
         leg = self._declare_leg(d)
@@ -92,18 +93,15 @@ class CentrifugalReversed(LeverClutch):
             text="Clamp force from full clamp speed on, with new linings",
             source=RECONSTRUCTED,
         )
-        self._declare_springs(d, lever=lever, leg=leg, springs=springs, lift=lift)
-        for one, deflection, most, symbol, when in (
-            (springs, lever.deflection, lift, "L_cs", "at the stop"),
-            (leg.springs, leg.deflection, lever.contact_travel, "L_rs", "at contact"),
-        ):
-            blocks.name_spring_lengths(
-                d, springs=one, rest=deflection, most=deflection + most, symbol=symbol, when=when
-            )
+        fitted = spring_sets.Fitted(springs, lever.deflection, lift)
+        back = spring_sets.Fitted(leg.springs, leg.deflection, lever.contact_travel)
+        self._limit_springs(d, fitted, back)
+        for one in (fitted, back):
+            spring_sets.name_spring_lengths(d, one)
         blocks.limit_weight_room(d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=leg.arm)
         layer.declare_size(d, lever_blocks.built(lining, lever, [springs, leg.springs], DISC_1))
-        layer.limit_set(d, springs=springs, deflection=lever.deflection)
-        layer.limit_set(d, springs=leg.springs, deflection=leg.deflection, prefix="return_")
+        layer.limit_set(d, fitted)
+        layer.limit_set(d, back, prefix="return_")
         at_stop, at_start = (
             formulas.clamp_flyweight_force(force, leg.arm, lever.weights.arm) for force in (push, leg.force(0.0))
         )
@@ -116,24 +114,8 @@ class CentrifugalReversed(LeverClutch):
             stop_pull=at_stop,
         )
         layer.judge_stop(d, stop_force=stop_force, clamp_force=clamp)
-        blocks.advise_springs(
-            d,
-            duty=duty,
-            springs=springs,
-            radius=lever.rest_radius,
-            preload=lever.deflection,
-            travel=lift,
-            what="the clamp springs",
-        )
-        blocks.advise_springs(
-            d,
-            duty=duty,
-            springs=leg.springs,
-            radius=lever.rest_radius,
-            preload=leg.deflection,
-            travel=lever.contact_travel,
-            what="the return springs",
-        )
+        for one in (fitted, back):
+            layer.advise_springs(d, one, radius=lever.rest_radius)
         layer.declare_objectives(d)
 
     def drawing(self, spec: Mapping[str, Any], design: Design) -> Drawing:
@@ -147,8 +129,8 @@ class CentrifugalReversed(LeverClutch):
             The design.
         """
         # Costly to import; searches do without.
+        from ..components.springs.drawing import CLAMP, return_spring
         from . import lever_drawing
-        from .spring_drawing import CLAMP, return_spring
 
         arms = (lever_drawing.Leg("plate_arm", "contact_travel"),)
         springs = (CLAMP, return_spring("contact_travel"))
@@ -167,7 +149,7 @@ class CentrifugalReversed(LeverClutch):
                 text="Short leg of the lever, which pushes the plate",
                 source=RECONSTRUCTED,
             ),
-            springs=blocks.declare_springs(
+            springs=spring_sets.declare_springs(
                 d, slot="return_spring", symbol="spr", count_symbol="N_r", text="draw the plate off the friction disc"
             ),
             deflection=d.variable(
@@ -190,7 +172,7 @@ class CentrifugalReversed(LeverClutch):
         lining: blocks.Lining,
         lever: lever_blocks.Lever,
         leg: Leg,
-        springs: blocks.SpringSet,
+        springs: spring_sets.SpringSet,
         push: Any,
     ) -> None:
         """Declare the speeds, and that no phase of the motion snaps."""
@@ -238,28 +220,17 @@ class CentrifugalReversed(LeverClutch):
             source=NOT_IN_S4,
         )
 
-    def _declare_springs(
-        self, d: Declaration, *, lever: lever_blocks.Lever, leg: Leg, springs: blocks.SpringSet, lift: Any
-    ) -> None:
+    def _limit_springs(self, d: Declaration, fitted: spring_sets.Fitted, back: spring_sets.Fitted) -> None:
+        """Declare the limits of clamp and return springs."""
         d.at_most(
             "preload_order",
-            leg.force(lever.contact_travel),
-            springs.force(lever.deflection),
+            back.springs.force(back.most),
+            fitted.springs.force(fitted.preload),
             "N",
             text="The plate is on the friction disc before disc 1 lifts",
             source=NOT_IN_S4,
         )
-        blocks.limit_spring_force(
-            d,
-            name="spring_force",
-            springs=springs,
-            deflection=lever.deflection + lift,
-            text="The clamp springs stand the stop",
-        )
-        blocks.limit_spring_force(
-            d,
-            name="return_spring_force",
-            springs=leg.springs,
-            deflection=leg.deflection + lever.contact_travel,
-            text="The return springs stand the travel to contact",
-        )
+        text = "The clamp springs stand the stop"
+        spring_sets.limit_spring_force(d, fitted, name="spring_force", text=text)
+        text = "The return springs stand the travel to contact"
+        spring_sets.limit_spring_force(d, back, name="return_spring_force", text=text)

@@ -10,6 +10,7 @@ import numpy as np
 from synth.declaration import Block, Requirement
 
 from ..components.lining import wear
+from ..components.springs.model import SpringRules
 from ..friction.duty import Duty as FrictionDuty
 from ..practice import UNSOURCED
 
@@ -76,6 +77,11 @@ class Rules(Block):
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
+
+    @property
+    def springs(self) -> SpringRules:
+        """What they ask of springs."""
+        return SpringRules(self.springs_per_set_min, self.setting_tolerance, self.wire_diameter_min)
 
     def limit_circle(self, d: Declaration, built: Built) -> None:
         """Declare limits of the circle on which springs stand, beside those of the formulas."""

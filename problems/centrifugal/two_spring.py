@@ -11,6 +11,7 @@ from synth.declaration import Declaration
 
 from .. import centrifugal as blocks
 from .. import practice
+from ..components.springs import model as spring_sets
 from ..mechanics import centrifugal, two_spring
 from ..sources import NOT_IN_S4, S4, TYPICAL
 from . import balls as ball_blocks
@@ -52,8 +53,8 @@ class Way:
 
     plate_travel: Any
     stop_travel: Any
-    returning: blocks.SpringSet
-    clamping: blocks.SpringSet
+    returning: spring_sets.SpringSet
+    clamping: spring_sets.SpringSet
     clamp_preload: Any
     return_preload: Any
     contact_force: Any
@@ -62,6 +63,16 @@ class Way:
     contact_travel: Any
     return_deflection: Any
     clamp_deflection: Any
+
+    @property
+    def fitted_return(self) -> spring_sets.Fitted:
+        """The return springs, which are shortest at contact."""
+        return spring_sets.Fitted(self.returning, self.return_deflection, self.plate_travel)
+
+    @property
+    def fitted_clamp(self) -> spring_sets.Fitted:
+        """The clamp springs, which are shortest at the stop."""
+        return spring_sets.Fitted(self.clamping, self.clamp_deflection, self.stop_travel - self.plate_travel)
 
     @property
     def return_rate(self) -> Any:
@@ -131,27 +142,22 @@ class CentrifugalTwoSpring(DesignProblem):
         self._limit_order(
             d, way=way, wear=wear, rest=rest, at_contact=at_contact, at_start=radius(way.start_travel), band=band
         )
-        blocks.limit_share_of_force(
+        spring_sets.limit_share_of_force(
             d,
             name="spring1_force",
             springs=way.returning,
             force=way.contact_force,
             text="The return springs stand their deflection at contact",
         )
-        blocks.limit_share_of_force(
+        spring_sets.limit_share_of_force(
             d,
             name="spring2_force",
             springs=way.clamping,
             force=way.stop_force,
             text="The clamp springs stand their deflection at the stop",
         )
-        for springs, rest_deflection, most, symbol, when in (
-            (way.returning, way.return_deflection, way.plate_travel, "L_rs", "at contact"),
-            (way.clamping, way.clamp_deflection, way.stop_travel - way.plate_travel, "L_cs", "at the stop"),
-        ):
-            blocks.name_spring_lengths(
-                d, springs=springs, rest=rest_deflection, most=rest_deflection + most, symbol=symbol, when=when
-            )
+        for fitted in (way.fitted_return, way.fitted_clamp):
+            spring_sets.name_spring_lengths(d, fitted)
         if drive.balls is not None:
             ball_blocks.declare_ball_pressure(d, duty=duty, balls=drive.balls, end_radius=end)
         ball_blocks.limit_circle_room(
@@ -178,9 +184,13 @@ class CentrifugalTwoSpring(DesignProblem):
                 discs=TENSION_DISC,
             ),
         )
-        layer.limit_set(d, springs=way.clamping, deflection=way.clamp_deflection)
-        layer.limit_set(d, springs=way.returning, deflection=way.return_deflection, prefix="return_")
-        self._declare_remarks(d, duty=duty, drive=drive, way=way, lining=lining, rest=rest)
+        layer.limit_set(d, way.fitted_clamp)
+        layer.limit_set(d, way.fitted_return, prefix="return_")
+        start = centrifugal.speed_for_force(way.clamp_preload, drive.mass, rest, drive.push)
+        blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
+        blocks.advise_release_gap(d, gap=way.plate_travel, lining=lining)
+        for fitted in (way.fitted_return, way.fitted_clamp):
+            layer.advise_springs(d, fitted, radius=rest)
         layer.judge_stop(d, stop_force=load, clamp_force=clamp)
         layer.declare_objectives(d)
 
@@ -232,8 +242,8 @@ class CentrifugalTwoSpring(DesignProblem):
             The design.
         """
         # Costly to import; searches do without.
+        from ..components.springs.drawing import CLAMP, return_spring
         from . import lever_drawing, ramp_drawing
-        from .spring_drawing import CLAMP, return_spring
 
         pushed, springs = "tension disc", (return_spring("plate_travel"), CLAMP)
         if self.option("mechanism") == "ball_ramp":
@@ -282,7 +292,7 @@ class CentrifugalTwoSpring(DesignProblem):
             text="Deflection of the clamp springs at rest",
             source=f"{S4}, F_R20/s2",
         )
-        returning = blocks.declare_springs(
+        returning = spring_sets.declare_springs(
             d,
             slot="return_spring",
             symbol="sp1",
@@ -296,7 +306,7 @@ class CentrifugalTwoSpring(DesignProblem):
             "return_preload_deflection",
             unless=("engagement_band", "idle_margin"),
         )
-        clamping = blocks.declare_springs(
+        clamping = spring_sets.declare_springs(
             d,
             slot="clamp_spring",
             symbol="sp2",
@@ -471,29 +481,4 @@ class CentrifugalTwoSpring(DesignProblem):
             "-",
             text="The clamp force rises gradually: full clamp speed over contact speed",
             source=NOT_IN_S4,
-        )
-
-    def _declare_remarks(
-        self, d: Declaration, *, duty: blocks.Duty, drive: Drive, way: Way, lining: blocks.Lining, rest: Any
-    ) -> None:
-        start = centrifugal.speed_for_force(way.clamp_preload, drive.mass, rest, drive.push)
-        blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
-        blocks.advise_release_gap(d, gap=way.plate_travel, lining=lining)
-        blocks.advise_springs(
-            d,
-            duty=duty,
-            springs=way.returning,
-            radius=rest,
-            preload=way.return_deflection,
-            travel=way.plate_travel,
-            what="the return springs",
-        )
-        blocks.advise_springs(
-            d,
-            duty=duty,
-            springs=way.clamping,
-            radius=rest,
-            preload=way.clamp_deflection,
-            travel=way.stop_travel - way.plate_travel,
-            what="the clamp springs",
         )

@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from .. import cost
+from ..components.coil.model import Winding
 from ..components.discs import layers as disc_layers
+from ..components.magnet import model as magnet_blocks
+from ..components.magnet.model import Magnet, MagnetSize, Pressed, Pull
 from ..components.pack import layers as plate_layers
 from ..components.shaft.model import ShaftRequirements
-from ..magnet.coil import Winding
 from ..practice import by_scope
-from . import magnet as magnet_blocks
-from .magnet import Magnet, MagnetSize, Pressed, Pull
 
 MAGNET_PARTS = 3  # pot, armature and coil
 

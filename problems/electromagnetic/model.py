@@ -14,6 +14,9 @@ from ..components.discs import model as disc_pack
 from ..components.discs.body import DiscHousing
 from ..components.lining import wear
 from ..components.lining.model import declare_friction_pair
+from ..components.magnet import curves as magnet_curves
+from ..components.magnet import model as magnet_blocks
+from ..components.magnet.model import Magnet, MagnetSize, Pressed
 from ..components.pack import curves as pack_curves
 from ..components.pack import model as plate_pack
 from ..components.pack.body import PackHousing
@@ -33,10 +36,7 @@ from ..sources import (
     SHAFT,
     SHIGLEY_DISC,
 )
-from . import curves as magnet_curves
-from . import magnet as magnet_blocks
 from .layers import LAYERS, Sources
-from .magnet import Magnet, MagnetSize, Pressed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -255,9 +255,9 @@ class ElectromagneticClutch(DesignProblem):
         for name, value, symbol, text in (
             ("pack_diameter", pack.diameter, "D_pk", "Outside of the pack"),
             ("pack_room", pack.length, "L_room", "Length without the magnet"),
-            ("magnet_length", magnet.shape.length, "L_mag", "Engaged magnet: pot, gap and armature"),
         ):
             d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
+        magnet_blocks.name_length(d, magnet)
         size = friction.Size(
             mass=pack.mass + built.mass,
             diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),

@@ -10,8 +10,8 @@ import numpy as np
 
 from synth.text.numbers import number_text
 
-from ..magnet import coil_curves
-from ..magnet.coil_curves import POINTS, CoilDrawings
+from ..components.coil import curves as coil_curves
+from ..components.coil.curves import POINTS, CoilDrawings
 from ..sources import S4
 from . import formulas as powder
 

@@ -28,6 +28,7 @@ from synth.drawing import (
 )
 from synth.text.numbers import number_text
 
+from ..components.coil.drawing import drawn_coil
 from ..components.shaft.drawing import SHAFT_OUT, shaft_end
 from ..drawing_parts import Sizes, ring
 
@@ -40,14 +41,15 @@ class _Places:
     def __init__(self, size: Sizes, length: str) -> None:
         self.length = size(length)
         self.rotor = ((self.length - size("face_length")) / 2, (self.length + size("face_length")) / 2)
-        self.window = ((self.length - size("coil_length")) / 2, (self.length + size("coil_length")) / 2)
+        self.winding = drawn_coil(size)
+        self.window = ((self.length - self.winding.length) / 2, (self.length + self.winding.length) / 2)
         half_web = size("rotor_web_thickness") / 2
         self.web = (self.length / 2 - half_web, self.length / 2 + half_web)
         self.shaft, self.rim = size("shaft_radius"), size("rim_radius")
         self.gap_inside = size("gap_radius")
         self.gap_outside = self.gap_inside + size("powder_gap")
         self.drum, self.bore, self.outside = size("drum_radius"), size("body_bore"), size("outer_radius")
-        self.coil = self.bore + size("coil_height")
+        self.coil = self.bore + self.winding.height
 
 
 @dataclass
@@ -82,10 +84,10 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, scope: str) -> Dr
     x0, between = at.rotor[0], at.shaft + 0.6 * (at.rim - at.shaft)
     dimensions: list[Measured] = [
         Dimension((0.0, at.outside), (at.length, at.outside), length, "top"),
-        Dimension((at.window[0], at.outside), (at.window[1], at.outside), "coil_length", "top"),
+        at.winding.along(*at.window, at.outside),
         Dimension((x0, at.outside), (at.window[0], at.outside), "pole_length", "top", times=2),
-        Dimension((at.window[1], at.bore), (at.window[1], at.coil), "coil_height", "right"),
-        Dimension((at.window[1], at.coil), (at.length, at.outside), "yoke_thickness", "right"),
+        at.winding.across(at.window[1], at.bore, at.coil),
+        at.winding.around((at.window[1], at.coil), (at.length, at.outside), "right"),
         Slant((at.web[0], between), (at.web[1], between), "rotor_web_thickness", apart=0.0),
         diameter(at.length, at.outside, "outer_radius", factor=2.0),
         diameter(at.length, at.bore, "body_bore", factor=2.0),
@@ -96,7 +98,7 @@ def powder_drawing(spec: Mapping[str, Any], design: Design, *, scope: str) -> Dr
         Weight((ROTOR,), ("rotor_mass",), "steel_density"),
         Weight((POWDER,), ("powder_mass",), "powder.bulk_density", times=size.number("fill_factor")),
         Weight((BODY,), ("body_mass",), "steel_density"),
-        Weight((COIL,), ("copper_mass",), "coil_density"),
+        at.winding.weight(COIL),
     ]
     if still:
         weights.append(Weight((DRUM,), ("drum_mass",), "steel_density"))
@@ -192,13 +194,13 @@ def _parts(size: Sizes, at: _Places, *, still: bool) -> tuple[list[Drawable], li
         Item(ROTOR, "Rotor", 1, "steel", "place of the web assumed", Hatch.RIGHT),
         Item(POWDER, "Powder", 1, size.part("powder"), hatch=Hatch.DOTS),
         Item(BODY, "Body: yoke and poles", 1, "steel", hatch=Hatch.RIGHT),
-        Item(COIL, "Coil", 1, size.part("winding_wire"), f"{size.count('turns')} turns", Hatch.CROSS),
+        at.winding.item(COIL),
     ]
     mid = at.length / 2
     balloons = [
         Balloon((x0 + 0.4 * size("pole_length"), -(at.rim + 0.4 * (at.gap_inside - at.rim))), ROTOR, "bottom"),
-        Balloon((at.window[0] + 0.2 * size("coil_length"), -(at.bore + at.coil) / 2), COIL, "bottom"),
-        Balloon((mid + 0.25 * size("coil_length"), -(at.gap_inside + at.gap_outside) / 2), POWDER, "bottom"),
+        Balloon((at.window[0] + 0.2 * at.winding.length, -(at.bore + at.coil) / 2), COIL, "bottom"),
+        Balloon((mid + 0.25 * at.winding.length, -(at.gap_inside + at.gap_outside) / 2), POWDER, "bottom"),
         Balloon((at.length - 0.3 * at.window[0], -(at.coil + at.outside) / 2), BODY, "bottom"),
     ]
     if still:

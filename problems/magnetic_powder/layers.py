@@ -10,8 +10,8 @@ import numpy as np
 from synth.declaration import Block, Declaration, Part, Requirement
 
 from .. import cost
+from ..components.coil import model as coil_blocks
 from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
-from ..magnet import coil as coil_blocks
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
 from . import formulas as powder

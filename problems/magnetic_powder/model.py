@@ -11,7 +11,7 @@ from synth import Design, DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
 
 from .. import practice
-from ..magnet import coil as coil_blocks
+from ..components.coil import model as coil_blocks
 from ..mechanics import magnetics
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -498,15 +498,14 @@ def _declare_size(
     body = powder.body_mass(
         density, layout.bore, layout.coil_height, layout.coil_length, layout.thickness, layout.length
     )
-    copper = magnetics.copper_mass(layout.coil_radius, copper_section)
     rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.rotor_web_thickness)
     for name, value, symbol, text in (
         ("rotor_mass", rotor, "m_rot", "Rotor, a rim with a web inside, without hub and shaft"),
         ("drum_mass", drum, "m_drum", "Drum of a stationary coil"),
         ("body_mass", body, "m_body", "Iron around the coil: a yoke tube, two pole rings with their flanges"),
-        ("copper_mass", copper, "m_cu", "Copper of the coil"),
     ):
         d.step(name, "kg", value, symbol=symbol, text=text, source=f"{S4} [P10]")
+    copper = coil_blocks.declare_copper(d, section=copper_section, radius=layout.coil_radius, source=f"{S4} [P10]")
     inertia = powder.ring_inertia(drum, layout.drum_radius, inner)
     d.step("drum_inertia", "kg*m2", inertia, symbol="J_drum", text="Inertia of the drum", source=f"{S4} [P10]")
     d.derive(

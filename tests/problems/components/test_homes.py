@@ -103,8 +103,21 @@ def test_a_component_with_a_mass_has_its_drawing() -> None:
     heavy = set()
     for family, cases in CASES.items():
         for options in cases.option_sets.values():
-            for name, unit, _ in synth.load(family, **options).declaration(frozenset(), as_catalogs(None)).quantities():
-                heavy |= {homes(family)[name]} if unit == "kg" else set()
+            d = synth.load(family, **options).declaration(frozenset(), as_catalogs(None))
+            masses = (one.name for one in (*d.derived.values(), *d.steps.values()) if one.unit == "kg")
+            heavy |= {homes(family)[name] for name in masses}
     heavy = {home for home in heavy if home.startswith(COMPONENTS)}
-    assert heavy
+    assert {f"{COMPONENTS}{name}" for name in ("coil", "magnet")} <= heavy
     assert {home for home in heavy if (ROOT / "problems" / home / "drawing.py") in drawing_modules(home)} == heavy
+
+
+def test_a_family_takes_from_components_and_never_from_another_family() -> None:
+    families = {folder_of(type(synth.load(family)).__module__) for family in CASES}
+    found = {
+        f"{path.relative_to(ROOT / 'problems')}: {name}"
+        for folder in ("components", *sorted(families))
+        for path in sorted((ROOT / "problems" / folder).rglob("*.py"))
+        for name in imported_by(path)
+        if folder_of(f"{name}.") in families - {folder}
+    }
+    assert found == set()

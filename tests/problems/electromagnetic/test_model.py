@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from synth.problems.electromagnetic import formulas as pot_magnet
+from synth.problems.components.magnet import formulas as pot_magnet
 from synth.problems.mechanics import magnetics
 
 import synth

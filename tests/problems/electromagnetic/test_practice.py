@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from synth.problems.electromagnetic import formulas as pot_magnet
+from synth.problems.components.magnet import formulas as pot_magnet
 from synth.problems.mechanics import magnetics, plates
 
 import synth

@@ -9,10 +9,11 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 
-from ..mechanics import magnetics
-from ..practice import UNSOURCED
-from ..sources import S4, TYPICAL
+from ...mechanics import magnetics
+from ...practice import UNSOURCED
+from ...sources import S4, TYPICAL
 
+SATURATION, STABILITY = "iron_saturation", "thermal_stability"  # guards
 WHOLE = 1e-9  # of a turn: what lacks no more to a whole number is rounding
 
 
@@ -215,7 +216,7 @@ def refuse_bad_window(d: Declaration, rules: CoilRules) -> None:
 def declare_saturation(d: Declaration, *, wants: CoilRequirements, iron_flux_density: Any) -> None:
     """Declare the guard of the iron: its field exists only below saturation."""
     d.at_most(
-        "iron_saturation",
+        SATURATION,
         iron_flux_density,
         wants.iron_saturation,
         "T",
@@ -257,68 +258,106 @@ def declare_winding(
         Copper and its loss.
     """
     wire = unknowns.winding_wire
-    needs = "iron_saturation"
-    window = unknowns.coil_length * unknowns.coil_height
     # Of one row of the table alone, so that it is known per wire.
     copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
+    coil = _Coil(wants, unknowns, bore_radius, copper_share, unknowns.coil_length * unknowns.coil_height)
+    wound = _declare_turns(d, coil, ampere_turns)
+    hot = _declare_heat(d, coil, wound, around)
+    _declare_supply(d, coil, wound, hot, around)
+    return Winding(hot.section, coil.cold_loss(1.0) * hot.hot_ratio)
+
+
+@dataclass(frozen=True)
+class _Coil:
+    """A coil: requirements, window and wire, inside [m], copper over the window, and area of the window [m2]."""
+
+    wants: CoilRequirements
+    unknowns: CoilUnknowns
+    bore_radius: Any
+    copper_share: Any
+    window: Any
+
+    @property
+    def mean_radius(self) -> Any:
+        """Mean radius of the turns [m]."""
+        return self.bore_radius + self.unknowns.coil_height / 2
+
+    def cold_loss(self, ampere_turns: Any) -> Any:
+        """Copper loss of ampere-turns at 20 degC [W]."""
+        height, length = self.unknowns.coil_height, self.unknowns.coil_length
+        return magnetics.cold_copper_loss(ampere_turns, self.bore_radius, height, length, self.copper_share)
+
+
+@dataclass(frozen=True)
+class _Wound:
+    """Turns that fill the window, turns to wind, and ampere-turns [A]."""
+
+    filled: Any
+    turns: Any
+    ampere_turns: Any
+
+
+@dataclass(frozen=True)
+class _Hot:
+    """The hot coil: copper of all turns [m2], cold and runaway loss [W], heat and that of brushes [W], resistance.
+
+    ``ratio`` is the resistance at ambient temperature over that at 20 degC, ``rise`` what heating adds to it.
+    """
+
+    section: Any
+    cold: Any
+    runaway: Any
+    brushes: Any
+    heat: Any
+    ratio: Any
+    rise: Any
+
+    @property
+    def hot_ratio(self) -> Any:
+        """Resistance over that at 20 degC."""
+        return self.ratio + self.rise
+
+
+def _declare_turns(d: Declaration, coil: _Coil, ampere_turns: Any) -> _Wound:
+    """Declare turns, ampere-turns, current and current density."""
+    wants, source = coil.wants, f"{S4} [P6]"
     filled = d.step(
         "window_turns",
         "-",
-        magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
+        magnetics.turns(wants.winding_factor, coil.window, coil.unknowns.winding_wire.overall_diameter),
         symbol="N_fill",
         text="Turns that fill the window, as its heat is computed with them",
-        source=f"{S4} [P6]",
+        source=source,
     )
-    turns = d.derive(
-        "turns",
-        "-",
-        np.maximum(np.floor(filled + WHOLE), 1.0),
-        symbol="N_t",
-        text="Turns to wind: whole ones that the window holds",
-        source=f"{S4} [P6]",
-    )
+    floor, text = np.maximum(np.floor(filled + WHOLE), 1.0), "Turns to wind: whole ones that the window holds"
+    turns = d.derive("turns", "-", floor, symbol="N_t", text=text, source=source)
+    text = "Ampere-turns of the circuit: gaps and iron"
     ampere_turns = d.derive(
-        "ampere_turns",
-        "A",
-        ampere_turns,
-        symbol="NI",
-        needs=needs,
-        text="Ampere-turns of the circuit: gaps and iron",
-        source=f"{S4} [P4]",
+        "ampere_turns", "A", ampere_turns, symbol="NI", needs=SATURATION, text=text, source=f"{S4} [P4]"
     )
-    d.derive(
-        "current",
-        "A",
-        ampere_turns / turns,
-        symbol="I_c",
-        needs=needs,
-        text="Current of the coil",
-        source=f"{S4} [P6]",
-    )
-    density = d.derive(
-        "current_density",
-        "A/mm2",
-        ampere_turns / (copper_share * window),
-        symbol="J_c",
-        needs=needs,
-        text="Current per copper area",
-        source=f"{S4} [P6]",
-    )
-    cold = magnetics.cold_copper_loss(
-        ampere_turns, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
-    )
+    current, text = ampere_turns / turns, "Current of the coil"
+    d.derive("current", "A", current, symbol="I_c", needs=SATURATION, text=text, source=source)
+    density, text = ampere_turns / (coil.copper_share * coil.window), "Current per copper area"
+    density = d.derive("current_density", "A/mm2", density, symbol="J_c", needs=SATURATION, text=text, source=source)
+    return _Wound(filled, turns, ampere_turns)
+
+
+def _declare_heat(d: Declaration, coil: _Coil, wound: _Wound, around: Surroundings) -> _Hot:
+    """Name losses and resistance of the coil, and declare that it does not heat up without end."""
+    cold = coil.cold_loss(wound.ampere_turns)
     runaway = magnetics.runaway_loss(around.heat_transfer, around.surface)
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
     # As all heat by the turns that fill the window: whole ones jump from size to size, and proofs take much longer.
-    brushes = around.brush_drop * ampere_turns / filled
+    brushes = around.brush_drop * wound.ampere_turns / wound.filled
     heat = around.other_heat + brushes
-    _name_heat(d, wants=wants, unknowns=unknowns, turns=turns, bore_radius=bore_radius, around=around)
+    _name_constants(d)
+    _name_body(d, coil, wound.turns, around)
     if not isinstance(around.brush_drop, float):
         d.step("brush_loss", "W", brushes, symbol="P_br", text="Loss of both brushes", source=f"{S4} [P8]")
         text = "What heats the body beside its copper"
         d.step("body_heat", "W", heat, symbol="Q_body", text=text, source=f"{S4} [P7]")
     d.at_most(
-        "thermal_stability",
+        STABILITY,
         cold / runaway,
         0.9,
         "-",
@@ -326,102 +365,87 @@ def declare_winding(
         text="A hotter coil has more resistance; at 1 it heats up without end under constant current",
         source=f"{S4} [P7]",
     )
-    resistance_rise = magnetics.resistance_rise(cold, runaway, ratio, heat)
-    section = copper_share * window
+    hot = _Hot(
+        section=coil.copper_share * coil.window,
+        cold=cold,
+        runaway=runaway,
+        brushes=brushes,
+        heat=heat,
+        ratio=ratio,
+        rise=magnetics.resistance_rise(cold, runaway, ratio, heat),
+    )
+    _name_copper(d, coil, hot)
+    return hot
+
+
+def _name_copper(d: Declaration, coil: _Coil, hot: _Hot) -> None:
+    """Name the copper, what it loses and its resistance."""
+    density = magnetics.COPPER_DENSITY * coil.copper_share
     for name, unit, value, symbol, text in (
-        ("copper_share", "-", copper_share, "k_cu", "Copper over the area of the window"),
-        ("copper_section", "mm2", section, "A_cu", "Copper of all turns"),
-        ("coil_density", "kg/m3", magnetics.COPPER_DENSITY * copper_share, "rho_coil", "Copper over room of the coil"),
-        ("cold_copper_loss", "W", cold, "P_20", "Copper loss at 20 degC"),
-        ("runaway_loss", "W", runaway, "P_run", "Copper loss at 20 degC at which the coil heats up without end"),
-        ("ambient_ratio", "-", ratio, "k_amb", "Resistance at ambient temperature over that at 20 degC"),
-        ("resistance_rise", "-", resistance_rise, "k_rise", "Rise of the resistance by heating, over that at 20 degC"),
-        ("hot_ratio", "-", ratio + resistance_rise, "k_hot", "Resistance of the hot coil over that at 20 degC"),
+        ("copper_share", "-", coil.copper_share, "k_cu", "Copper over the area of the window"),
+        ("copper_section", "mm2", hot.section, "A_cu", "Copper of all turns"),
+        ("coil_density", "kg/m3", density, "rho_coil", "Copper over room of the coil"),
+        ("cold_copper_loss", "W", hot.cold, "P_20", "Copper loss at 20 degC"),
+        ("runaway_loss", "W", hot.runaway, "P_run", "Copper loss at 20 degC at which the coil heats up without end"),
+        ("ambient_ratio", "-", hot.ratio, "k_amb", "Resistance at ambient temperature over that at 20 degC"),
+        ("resistance_rise", "-", hot.rise, "k_rise", "Rise of the resistance by heating, over that at 20 degC"),
+        ("hot_ratio", "-", hot.hot_ratio, "k_hot", "Resistance of the hot coil over that at 20 degC"),
     ):
         d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4} [P6], [P7]")
+
+
+def _declare_supply(d: Declaration, coil: _Coil, wound: _Wound, hot: _Hot, around: Surroundings) -> None:
+    """Declare temperature, voltage and power of the hot coil, and the limits of all that it is fed with."""
+    wants, ambient = coil.wants, around.ambient_temperature
+    needs = (SATURATION, STABILITY)
     rise = d.derive(
         "coil_temperature_rise",
         "K",
-        resistance_rise / magnetics.COPPER_COEFFICIENT,
+        hot.rise / magnetics.COPPER_COEFFICIENT,
         symbol="dT_c",
-        needs=(needs, "thermal_stability"),
+        needs=needs,
         text="Coil and body over ambient, steady",
         source=f"{S4} [P7]",
     )
-    d.step(
-        "coil_temperature",
-        "degC",
-        around.ambient_temperature + rise,
-        symbol="T_c",
-        text="Coil and body, steady",
-        source=f"{S4} [P7]",
-    )
+    text = "Coil and body, steady"
+    d.step("coil_temperature", "degC", ambient + rise, symbol="T_c", text=text, source=f"{S4} [P7]")
     # R20 I with the turns cancelled, so that bounds use the ampere-turns once.
-    cold_voltage = (
-        magnetics.coil_resistance(bore_radius + unknowns.coil_height / 2, 1.0, wire.copper_area) * ampere_turns
-    )
-    voltage = d.derive(
-        "coil_voltage",
-        "V",
-        cold_voltage * (ratio + resistance_rise) + around.brush_drop,
-        symbol="U",
-        needs=(needs, "thermal_stability"),
-        text="Voltage of the hot coil, with brushes where there are any",
-        source=f"{S4} [P8]",
-    )
-    power = d.derive(
+    resistance = magnetics.coil_resistance(coil.mean_radius, 1.0, coil.unknowns.winding_wire.copper_area)
+    voltage = resistance * wound.ampere_turns * hot.hot_ratio + around.brush_drop
+    text = "Voltage of the hot coil, with brushes where there are any"
+    d.derive("coil_voltage", "V", voltage, symbol="U", needs=needs, text=text, source=f"{S4} [P8]")
+    d.derive(
         "coil_power",
         "W",
-        magnetics.hot_copper_loss(cold, runaway, ratio, heat) + brushes,
+        magnetics.hot_copper_loss(hot.cold, hot.runaway, hot.ratio, hot.heat) + hot.brushes,
         symbol="P_coil",
-        needs=(needs, "thermal_stability"),
+        needs=needs,
         text="Loss of the hot copper and of brushes where there are any",
         source=f"{S4} [P7], [P8]",
     )
-    d.at_most(
-        "coil_temperature",
-        rise,
-        around.temperature_limit - around.ambient_temperature,
-        "K",
-        text="Nothing in the body gets too hot",
-        source=f"{S4} [P7]",
-    )
-    d.at_most(
-        "coil_power",
-        power,
-        wants.coil_power_limit,
-        "W",
-        text="The supply gives the power",
-        source="requirement of the drive",
-    )
-    d.at_most(
-        "coil_voltage",
-        voltage,
-        wants.coil_voltage_limit,
-        "V",
-        text="The supply gives the voltage, also for the hot coil",
-        source="requirement of the drive",
-    )
-    d.at_most(
-        "current_density",
-        density,
-        wants.current_density_limit,
-        "A/mm2",
-        text="The copper is not loaded too much",
-        source=f"{S4}, section 6.1",
-    )
-    d.at_least(
-        "turns",
-        filled,
-        1.0,
-        "-",
-        text="The window holds the wire at least once",
-        source=f"{S4}, section 9",
-    )
-    unit_loss = magnetics.cold_copper_loss(
-        1.0, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
-    ) * (ratio + resistance_rise)
-    return Winding(copper_section=section, unit_loss=unit_loss)
+    _limit_supply(d, wants, around.temperature_limit - ambient)
+    text = "The window holds the wire at least once"
+    d.at_least("turns", wound.filled, 1.0, "-", text=text, source=f"{S4}, section 9")
+
+
+def _limit_supply(d: Declaration, wants: CoilRequirements, hottest: Any) -> None:
+    """Declare the limits of the hot coil, whose rise has a limit [K], and of its supply."""
+    drive, voltage = "requirement of the drive", "The supply gives the voltage, also for the hot coil"
+    loaded, source = "The copper is not loaded too much", f"{S4}, section 6.1"
+    for name, of, most, unit, text, reason in (
+        ("coil_temperature", "coil_temperature_rise", hottest, "K", "Nothing in the body gets too hot", f"{S4} [P7]"),
+        ("coil_power", "coil_power", wants.coil_power_limit, "W", "The supply gives the power", drive),
+        ("coil_voltage", "coil_voltage", wants.coil_voltage_limit, "V", voltage, drive),
+        ("current_density", "current_density", wants.current_density_limit, "A/mm2", loaded, source),
+    ):
+        d.at_most(name, d.derived[of].sx, most, unit, text=text, source=reason)
+
+
+def declare_copper(d: Declaration, *, section: Any, radius: Any, source: str) -> Any:
+    """Name the mass of the copper of all turns, of a section [m2] on a mean radius [m], and return it [kg]."""
+    mass = magnetics.copper_mass(radius, section)
+    d.step("copper_mass", "kg", mass, symbol="m_cu", text="Copper of the coil", source=source)
+    return mass
 
 
 def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, linkage: Any) -> Any:
@@ -459,7 +483,7 @@ def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, lin
         "s",
         magnetics.current_rise_time(magnetics.time_constant(linkage, winding.unit_loss), rules.over_excitation),
         symbol="t_rise",
-        needs=("iron_saturation", "thermal_stability"),
+        needs=(SATURATION, STABILITY),
         text="Current of the hot coil up to its steady value, with over excitation",
         source="L/R of the circuit; derived",
     )
@@ -508,75 +532,41 @@ def limit_coil(d: Declaration, *, rules: CoilRules, wants: CoilRequirements, unk
     )
 
 
-def _name_heat(
-    d: Declaration,
-    *,
-    wants: CoilRequirements,
-    unknowns: CoilUnknowns,
-    turns: Any,
-    bore_radius: Any,
-    around: Surroundings,
-) -> None:
-    """Name what heats and cools the body of the coil, and constants; curves over current and temperature read them."""
+def _name_constants(d: Declaration) -> None:
+    """Name the constants of copper and of the field."""
+    cold = magnetics.COPPER_REFERENCE - 273.15
     for name, unit, number, symbol, text, source in (
         ("magnetic_constant", "T*m/A", magnetics.MU_0, "mu_0", "Magnetic constant", "4 pi 1e-7"),
         ("copper_resistivity", "ohm*m", magnetics.COPPER_RESISTIVITY, "rho_e", "Copper at 20 degC", f"{S4} [P6]"),
         ("copper_coefficient", "1/K", magnetics.COPPER_COEFFICIENT, "alpha_cu", "Of its resistance", f"{S4} [P6]"),
         ("copper_density", "kg/m3", magnetics.COPPER_DENSITY, "rho_cu", "Density of copper", "material constant"),
+        ("copper_reference", "degC", cold, "T_20", "Temperature of the figures for copper", f"{S4} [P6]"),
     ):
         d.constant(name, unit, number, symbol=symbol, text=text, source=source)
-    text = "Temperature of the figures for copper"
-    cold = magnetics.COPPER_REFERENCE - 273.15
-    d.constant("copper_reference", "degC", cold, symbol="T_20", text=text, source=f"{S4} [P6]")
-    text = "Outside that gives off the heat of the body"
-    d.step("coil_surface", "cm2", around.surface, symbol="S_c", text=text, source=f"{S4} [P7]")
-    d.step(
-        "coil_conductance",
-        "W/K",
-        around.heat_transfer * around.surface,
-        symbol="G_c",
-        text="Heat that the body gives off per kelvin over ambient",
-        source=f"{S4} [P7]",
-    )
-    d.step(
-        "coil_temperature_limit",
-        "degC",
-        around.temperature_limit,
-        symbol="T_c_allow",
-        text="The least of the temperatures that its parts stand",
-        source=f"{S4} [P7]",
-    )
-    d.step(
-        "coil_other_heat",
-        "W",
-        around.other_heat,
-        symbol="P_other",
-        text="What heats the body beside its copper and its brushes",
-        source=f"{S4} [P7]",
-    )
-    d.step(
-        "coil_brush_drop",
-        "V",
-        around.brush_drop,
-        symbol="U_brushes",
-        text="Voltage of both brushes, 0 without slip rings",
-        source=f"{S4} [P8]",
-    )
-    d.step(
-        "wire_current_limit",
-        "A",
-        wants.current_density_limit * unknowns.winding_wire.copper_area,
-        symbol="I_max",
-        text="Current at current density limit",
-        source=f"{S4}, section 6.1",
-    )
-    mean_radius = bore_radius + unknowns.coil_height / 2
-    d.step("coil_radius", "mm", mean_radius, symbol="r_c", text="Mean radius of the coil", source="geometry")
-    d.step(
-        "coil_resistance",
-        "ohm",
-        magnetics.coil_resistance(mean_radius, turns, unknowns.winding_wire.copper_area),
-        symbol="R_20",
-        text="Resistance of the coil at 20 degC",
-        source=f"{S4} [P6]",
-    )
+
+
+def _name_body(d: Declaration, coil: _Coil, turns: Any, around: Surroundings) -> None:
+    """Name what heats and cools the body of the coil; curves over current and temperature read it."""
+    area, mean_radius = coil.unknowns.winding_wire.copper_area, coil.mean_radius
+    conductance, most = around.heat_transfer * around.surface, coil.wants.current_density_limit * area
+    resistance = magnetics.coil_resistance(mean_radius, turns, area)
+    limit, other, drop = around.temperature_limit, around.other_heat, around.brush_drop
+    warm, wire = f"{S4} [P7]", f"{S4} [P6]"
+    for name, unit, value, symbol, text, source in (
+        ("coil_surface", "cm2", around.surface, "S_c", "Outside that gives off the heat of the body", warm),
+        ("coil_conductance", "W/K", conductance, "G_c", "Heat that the body gives off per kelvin over ambient", warm),
+        (
+            "coil_temperature_limit",
+            "degC",
+            limit,
+            "T_c_allow",
+            "The least of the temperatures that its parts stand",
+            warm,
+        ),
+        ("coil_other_heat", "W", other, "P_other", "What heats the body beside its copper and its brushes", warm),
+        ("coil_brush_drop", "V", drop, "U_brushes", "Voltage of both brushes, 0 without slip rings", f"{S4} [P8]"),
+        ("wire_current_limit", "A", most, "I_max", "Current at current density limit", f"{S4}, section 6.1"),
+        ("coil_radius", "mm", mean_radius, "r_c", "Mean radius of the coil", "geometry"),
+        ("coil_resistance", "ohm", resistance, "R_20", "Resistance of the coil at 20 degC", wire),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=source)

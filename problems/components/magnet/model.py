@@ -7,13 +7,13 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
-from ..components.lining.model import Pair
-from ..friction.duty import Duty, Size
-from ..friction.engagement import Startup
-from ..magnet import coil as coil_blocks
-from ..mechanics import heat, magnetics, plates
-from ..practice import UNSOURCED
-from ..sources import S0, S4, TYPICAL
+from ...friction.duty import Duty, Size
+from ...friction.engagement import Startup
+from ...mechanics import heat, magnetics, plates
+from ...practice import UNSOURCED
+from ...sources import S0, S4, TYPICAL
+from ..coil import model as coil_blocks
+from ..lining.model import Pair
 from . import formulas as pot_magnet
 
 HOLDS = "magnet_overcomes_springs"
@@ -231,6 +231,13 @@ def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Mag
         thickness=unknowns.yoke_thickness,
         residual_gap=wants.residual_gap,
     )
+    return Magnet(wants, iron, unknowns, shape, _declare_force(d, wants, unknowns, shape), sticking_gap)
+
+
+def _declare_force(
+    d: Declaration, wants: MagnetRequirements, unknowns: coil_blocks.CoilUnknowns, shape: pot_magnet.PotMagnet
+) -> Any:
+    """Declare the pull on the engaged armature; what the springs leave of it for the pack [N]."""
     pull = d.derive(
         "magnet_force",
         "N",
@@ -248,7 +255,7 @@ def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Mag
         text="The engaged magnet is stronger than the return springs; otherwise nothing presses the pack",
         source=f"{S4}, section 6.6",
     )
-    force = d.derive(
+    return d.derive(
         "actuation_force",
         "N",
         pull - wants.return_spring_force,
@@ -257,7 +264,6 @@ def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Mag
         text="Axial force on the pack: magnet less return springs",
         source=f"{S4}, section 6.6",
     )
-    return Magnet(wants, iron, unknowns, shape, force, sticking_gap)
 
 
 def declare_pull(d: Declaration, pressed: Pressed, magnet: Magnet) -> Pull:
@@ -343,14 +349,20 @@ def declare_magnet_size(
 ) -> MagnetSize:
     """Declare the masses of the magnet, and name its shape."""
     unknowns, shape, density = magnet.unknowns, magnet.shape, pressed.duty.steel_density
-    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, winding.copper_section)
     _name_shape(d, shape=shape, circuit=pull.circuit, flux_density=unknowns.flux_density)
+    radius = shape.inner_pole_radius + unknowns.coil_height / 2
+    copper = coil_blocks.declare_copper(d, section=winding.copper_section, radius=radius, source="geometry")
     mass = pot_magnet.magnet_mass(density, shape, copper)
-    d.step("copper_mass", "kg", copper, symbol="m_cu", text="Copper of the coil", source="geometry")
     iron_mass = pot_magnet.magnet_mass(density, shape, 0.0)
     d.step("magnet_iron_mass", "kg", iron_mass, symbol="m_fe", text="Pot and armature", source="geometry")
     d.step("magnet_mass", "kg", mass, symbol="m_mag", text="Pot, armature and coil", source="geometry")
     return MagnetSize(mass=mass, copper=copper)
+
+
+def name_length(d: Declaration, magnet: Magnet) -> None:
+    """Name the length of the engaged magnet."""
+    text = "Engaged magnet: pot, gap and armature"
+    d.step("magnet_length", "mm", magnet.shape.length, symbol="L_mag", text=text, source="geometry")
 
 
 def _name_shape(d: Declaration, *, shape: pot_magnet.PotMagnet, circuit: pot_magnet.Circuit, flux_density: Any) -> None:
@@ -387,24 +399,7 @@ def limit_magnet(
     coil_blocks.limit_coil(d, rules=rules, wants=magnet.iron, unknowns=unknowns)
     linkage = pull.circuit.linkage(unknowns.flux_density)
     rise = coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage)
-    worn_gap = wants.residual_gap + plates.stroke(pressed.surfaces, pressed.gap, pressed.wear_depth)
-    d.step(
-        "worn_gap",
-        "mm",
-        worn_gap,
-        symbol="g_worn",
-        text="Gap at each pole of the released magnet over worn linings",
-        source="the armature follows the wear; derived",
-    )
-    worn_pull = d.derive(
-        "worn_pull_in_force",
-        "N",
-        pot_magnet.pull_in_force(pull.ampere_turns, worn_gap, magnet.shape.pole_area),
-        symbol="F_in_worn",
-        needs="iron_saturation",
-        text="Pull on the released armature over worn linings",
-        source=f"{S4}, section 6.6; the armature follows the wear",
-    )
+    worn_pull = _declare_worn_pull(d, pressed, magnet, pull)
     if rules.wear_adjust == "no":
         d.at_least(
             "pull_in_worn",
@@ -429,6 +424,28 @@ def limit_magnet(
         "s",
         text="An armature needs its time",
         source=UNSOURCED,
+    )
+
+
+def _declare_worn_pull(d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull) -> Any:
+    """Declare the pull on the released armature over worn linings [N]."""
+    worn_gap = magnet.wants.residual_gap + plates.stroke(pressed.surfaces, pressed.gap, pressed.wear_depth)
+    d.step(
+        "worn_gap",
+        "mm",
+        worn_gap,
+        symbol="g_worn",
+        text="Gap at each pole of the released magnet over worn linings",
+        source="the armature follows the wear; derived",
+    )
+    return d.derive(
+        "worn_pull_in_force",
+        "N",
+        pot_magnet.pull_in_force(pull.ampere_turns, worn_gap, magnet.shape.pole_area),
+        symbol="F_in_worn",
+        needs="iron_saturation",
+        text="Pull on the released armature over worn linings",
+        source=f"{S4}, section 6.6; the armature follows the wear",
     )
 
 

@@ -1,4 +1,4 @@
-"""Springs in the drawings of centrifugal clutches: one of each set, with its lengths."""
+"""Sets of springs in a drawing: one of each, with its lengths."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synth.drawing import Area, Dimension, Drawable, Line, LineKind, View
+from synth.drawing import Area, Dimension, Drawable, Item, Line, LineKind, View
+from synth.text.numbers import typed_number
 
-from ..drawing_parts import Sizes
+from ...drawing_parts import Sizes
 
 
 @dataclass(frozen=True)
@@ -20,14 +21,23 @@ class Spring:
     shortest: str
     travel: str = ""
 
-    @property
-    def counted(self) -> str:
-        """What their number is called."""
-        return f"{self.slot}s"
+    def count(self, size: Sizes) -> int:
+        """Springs of the set."""
+        return size.count(f"{self.slot}s")
+
+    def wire(self, size: Sizes) -> float:
+        """Diameter of the wire [mm]."""
+        return size(f"{self.slot}.wire_diameter_d")
+
+    def item(self, size: Sizes, number: int) -> Item:
+        """Line of the set in the parts list."""
+        coils = typed_number(size.number(f"{self.slot}.total_coils_nt"))
+        note = f"{coils} coils, two of them closed ends"
+        return Item(number, self.name, self.count(size), size.part(self.slot), note)
 
     def outside(self, size: Sizes) -> float:
         """Outside diameter of the coils [mm]."""
-        return size(f"{self.slot}.mean_diameter_D") + size(f"{self.slot}.wire_diameter_d")
+        return size(f"{self.slot}.mean_diameter_D") + self.wire(size)
 
 
 CLAMP = Spring("clamp_spring", "Clamp spring", "at the stop")
@@ -36,7 +46,7 @@ CLAMP = Spring("clamp_spring", "Clamp spring", "at the stop")
 def spring_view(size: Sizes, spring: Spring, item: int) -> View:
     """Return one spring at rest, with its free length and its least length."""
     slot = spring.slot
-    wire, mean = size(f"{slot}.wire_diameter_d"), size(f"{slot}.mean_diameter_D")
+    wire, mean = spring.wire(size), size(f"{slot}.mean_diameter_D")
     free, rest, least = (size(f"{slot}{x}") for x in (".free_length_L0", "_rest_length", "_least_length"))
     coils = size.number(f"{slot}.active_coils_n")
     pitch = (rest - 2 * wire) / coils

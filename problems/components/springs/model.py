@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..mechanics import centrifugal
-from ..sources import NOT_IN_S4, S4
+from ...mechanics import centrifugal
+from ...practice import UNSOURCED
+from ...sources import NOT_IN_S4, S4
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
 
-    from .duty import Duty
-
+TOLERANCES = 10  # least preload over the tolerance to which it is set
+# When springs of a slot are shortest, and what the symbols of their lengths begin with.
+SHORTEST = {"return_spring": ("at contact", "L_rs"), "clamp_spring": ("at the stop", "L_cs")}
 # Remarks only.
 ZIMMERLI_AMPLITUDE = 241e6  # shear stress amplitude that unpeened spring wire lasts at [Pa]
 
@@ -23,6 +25,11 @@ class SpringSet:
 
     part: Part
     count: Any
+
+    @property
+    def name(self) -> str:
+        """What people call them."""
+        return f"{self.part.slot}s".replace("_", " ")
 
     @property
     def rate(self) -> Any:
@@ -81,55 +88,64 @@ def declare_springs(d: Declaration, *, slot: str, symbol: str, count_symbol: str
     return SpringSet(part, count)
 
 
-def name_spring_lengths(d: Declaration, *, springs: SpringSet, rest: Any, most: Any, symbol: str, when: str) -> None:
-    """Name the lengths of the springs of a set, at rest and at their largest deflection.
+@dataclass(frozen=True)
+class Fitted:
+    """A set at its place: its deflection at rest, and what is added to it until it is shortest [m]."""
 
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    springs : SpringSet
-        The set; the names of the lengths begin with its slot.
-    rest, most : symbol
-        Deflections from the free length [m].
-    symbol : str
-        What the symbols begin with.
-    when : str
-        When the deflection is the largest.
-    """
-    free, what = springs.part.free_length_L0, springs.part.slot.replace("_", " ")
-    for name, value, ending, text in (
-        ("rest_length", free - rest, "0", "at rest"),
-        ("least_length", free - most, "1", when),
+    springs: SpringSet
+    preload: Any
+    travel: Any
+
+    @property
+    def most(self) -> Any:
+        """Largest deflection from the free length [m]."""
+        return self.preload + self.travel
+
+
+@dataclass(frozen=True)
+class SpringRules:
+    """What rules of practice ask of a set: least springs, tolerance of their preload and least wire [m]."""
+
+    count: Any
+    tolerance: Any
+    wire: Any
+
+
+def name_spring_lengths(d: Declaration, fitted: Fitted) -> None:
+    """Name the lengths of the springs of a set, at rest and at their largest deflection."""
+    part = fitted.springs.part
+    when, symbol = SHORTEST[part.slot]
+    for name, deflection, ending, text in (
+        ("rest_length", fitted.preload, "0", "at rest"),
+        ("least_length", fitted.most, "1", when),
     ):
-        d.step(
-            f"{springs.part.slot}_{name}",
+        text = f"Length of a {part.slot.replace('_', ' ')} {text}"
+        length = part.free_length_L0 - deflection
+        d.step(f"{part.slot}_{name}", "mm", length, symbol=f"{symbol}{ending}", text=text, source="geometry")
+
+
+def limit_spring_force(d: Declaration, fitted: Fitted, *, name: str, text: str) -> None:
+    """Declare the limit of a name, of the force on one spring at its largest deflection."""
+    part = fitted.springs.part
+    force = centrifugal.spring_force(part.rate_R, fitted.most)
+    d.at_most(name, force, part.max_force_Fn, "N", text=text, source="EN 13906-1")
+
+
+def limit_set(d: Declaration, fitted: Fitted, *, rules: SpringRules, prefix: str = "") -> None:
+    """Declare the limits that an engineer adds to a set; names begin with a prefix where there is another set."""
+    springs = fitted.springs
+    for name, value, least, unit, text in (
+        ("springs_per_set", springs.count, rules.count, "-", "So many {} do not tilt what they push"),
+        (
+            "preload_min",
+            fitted.preload,
+            TOLERANCES * rules.tolerance,
             "mm",
-            value,
-            symbol=f"{symbol}{ending}",
-            text=f"Length of a {what} {text}",
-            source="geometry",
-        )
-
-
-def limit_spring_force(d: Declaration, *, name: str, springs: SpringSet, deflection: Any, text: str) -> None:
-    """Declare the limit of the force on one spring at its largest deflection.
-
-    Parameters
-    ----------
-    d : Declaration
-        Takes the declarations.
-    name : str
-        Name of the limit.
-    springs : SpringSet
-        The set.
-    deflection : symbol
-        Largest deflection from the free length [m].
-    text : str
-        What the limit says.
-    """
-    force = centrifugal.spring_force(springs.part.rate_R, deflection)
-    d.at_most(name, force, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
+            "The deflection of {} at rest is more than what it can be set to",
+        ),
+        ("wire_min", springs.part.wire_diameter_d, rules.wire, "mm", "The {} stand turning with the clutch"),
+    ):
+        d.at_least(f"{prefix}{name}", value, least, unit, text=text.format(springs.name), source=UNSOURCED)
 
 
 def limit_share_of_force(d: Declaration, *, name: str, springs: SpringSet, force: Any, text: str) -> None:
@@ -151,33 +167,29 @@ def limit_share_of_force(d: Declaration, *, name: str, springs: SpringSet, force
     d.at_most(name, force / springs.count, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
 
 
-def advise_springs(
-    d: Declaration, *, duty: Duty, springs: SpringSet, radius: Any, preload: Any, travel: Any, what: str
-) -> None:
+def advise_springs(d: Declaration, fitted: Fitted, *, radius: Any, density: Any, top_speed: Any) -> None:
     """Remark springs that bow outwards at top speed, or that tire from engaging again and again.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    duty : Duty
-        Requirements.
-    springs : SpringSet
+    fitted : Fitted
         The set; the codes of the remarks begin with its slot.
     radius : symbol
         Radius on which they stand [m].
-    preload, travel : symbol
-        Deflection at rest, and what is added to it in an engagement [m].
-    what : str
-        Which springs they are.
+    density : symbol
+        Of their wire [kg/m3].
+    top_speed : symbol
+        Of the clutch [rad/s].
     """
-    part = springs.part
+    part, what = fitted.springs.part, f"the {fitted.springs.name}"
     load = centrifugal.spring_bow_load(
-        duty.steel_density, part.wire_diameter_d, part.mean_diameter_D, part.active_coils_n, radius, duty.top_speed
+        density, part.wire_diameter_d, part.mean_diameter_D, part.active_coils_n, radius, top_speed
     )
     d.advise(
         f"{part.slot}_bows",
-        load > centrifugal.spring_force(part.rate_R, preload + travel),
+        load > centrifugal.spring_force(part.rate_R, fitted.most),
         f"at top speed the centrifugal force of the coils of {what} is larger than their spring force: they bow "
         "outwards and rub unless they sit in pockets or on guides",
         source=NOT_IN_S4,
@@ -191,7 +203,7 @@ def advise_springs(
             text="Amplitude of the shear stress that unpeened spring wire lasts at",
             source="Zimmerli",
         )
-    amplitude = part.optional("tau_k_n_corrected") * part.rate_R * travel / (2 * part.max_force_Fn)
+    amplitude = part.optional("tau_k_n_corrected") * part.rate_R * fitted.travel / (2 * part.max_force_Fn)
     d.advise(
         f"{part.slot}_tires",
         amplitude > ZIMMERLI_AMPLITUDE,

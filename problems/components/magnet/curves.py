@@ -10,9 +10,9 @@ import numpy as np
 
 from synth.text.numbers import number_text
 
-from ..magnet import coil_curves
-from ..magnet.coil_curves import POINTS, CoilDrawings
-from ..sources import S4
+from ...sources import S4
+from ..coil import curves as coil_curves
+from ..coil.curves import POINTS, CoilDrawings
 from . import formulas as pot_magnet
 
 if TYPE_CHECKING:

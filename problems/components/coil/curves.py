@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.text.numbers import number_text
 
-from ..mechanics import magnetics
+from ...mechanics import magnetics
 
 if TYPE_CHECKING:
     import pandas as pd

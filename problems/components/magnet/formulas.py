@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mechanics import Quantity, magnetics
+from ...mechanics import Quantity, magnetics
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,1 @@
+"""Pot magnet that presses a pack: circuit, force, coil and mass."""

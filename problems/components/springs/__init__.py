@@ -1,0 +1,1 @@
+"""Sets of compression springs around a shaft."""

@@ -1,1 +1,0 @@
-"""Blocks that clutches with a coil share: coil, winding, curves over temperature."""
