@@ -10,7 +10,7 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 # What systems do differently: its types are checked for each of them, a second for one.
 DIFFERENT := synth/system/operating_system.py
 
-.PHONY: demo check test thorough lint javascript kernels mechanics schema answers picture gallery lists lock clean
+.PHONY: demo check test thorough lint javascript kernels mechanics schema answers picture gallery lists screens lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -83,6 +83,10 @@ picture: $(RUNTIME)
 # Lists of families in README, docs and examples, from the registry and the families' pages; a test compares them.
 lists: $(DEV)
 	$(BIN)/python -m tests.docs.lists
+
+# Screens and results on the pages, by running their commands; tests compare structure and marked figures.
+screens: $(DEV)
+	$(BIN)/python -m tests.docs.redraw
 
 # The gallery of drawings: the first design of an example of each family; a test compares one of them.
 gallery: $(DEV)

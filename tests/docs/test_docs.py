@@ -125,16 +125,20 @@ class Reader:
         if command == "echo $?":
             assert shown.strip() == str(self.code), f"{where}: the exit code is {self.code}"
             return
+        got = self.screen(command, may_fail, where)
+        if shown:
+            marked = marked_figures(marks) if shows_a_search(shown) else []
+            equal = alike(shown, got, marked) if marked else same(shown, got)
+            assert equal, f"{where}: $ {command}\nshown:\n{shown}\ngot:\n{got}"
+
+    def screen(self, command: str, may_fail: bool, where: str) -> str:
+        """Screen that a command shows."""
         if command.startswith("make "):
             command = recipe(command.removeprefix("make "))
         done = self.done(command)
         self.code = done.returncode
         assert may_fail or self.code == 0, f"{where}: $ {command}\nended with {self.code}\n{done.stderr}"
-        got = done.stdout if self.code in (0, 3) else done.stdout + done.stderr
-        if shown:
-            marked = marked_figures(marks) if shows_a_search(shown) else []
-            equal = alike(shown, got, marked) if marked else same(shown, got)
-            assert equal, f"{where}: $ {command}\nshown:\n{shown}\ngot:\n{got}"
+        return done.stdout if self.code in (0, 3) else done.stdout + done.stderr
 
     def done(self, command: str) -> subprocess.CompletedProcess[str]:
         """Do a command: what needs a shell in one, of the program itself all else in this process, which is faster."""
