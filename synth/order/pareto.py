@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,8 @@ import numpy as np
 
 NEAR = 0.005  # how much worse than the best in an objective is as good, when it is told what the others cost at most
 DEAR = 0.1  # of a scale: an end that costs more than so much beyond it, for no more than that share, is told to
+LEAST_RATIO = 1e-9  # of the smaller end of a scale to the larger: below it the smaller one is as good as zero
+FACTOR = math.log(2.0)  # what the nadir is from the ideal, where there are no ratios: one factor of two
 SAME = 12  # digits of scores
 DIGITS = 9  # of phi, to which designs are the same: solvers differ beyond them
 
@@ -67,17 +70,16 @@ def _distances(columns: np.ndarray, row: int) -> np.ndarray:
     for column in columns:
         apart = column - column[row]
         square += apart * apart
-    distances: np.ndarray = np.sqrt(square, out=square)
-    return distances
+    return np.asarray(np.sqrt(square, out=square))
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What objectives are measured by where designs are ranked: 0 at the ideal, 1 at the nadir.
+    """What objectives are measured by where designs are ranked: logarithms of ratios to the ideal.
 
     The ideal is what is best in each objective. The nadir of an objective is the most that it must cost for another
     one to be as good as it can be but for ``NEAR``, and at least what is as good as the ideal: an end of the front
-    that costs much for next to nothing does not stretch the scale.
+    that costs much for next to nothing does not stretch the scale. Only where there are no ratios it counts.
 
     Parameters
     ----------
@@ -126,11 +128,29 @@ class Scale:
         """Positions of designs (designs, objectives) on the scale; an objective without a span does not count."""
         return np.where(self.nadir > self.ideal, np.maximum(signed - self.ideal, 0.0) / self.span, 0.0)
 
+    @property
+    def has_ratios(self) -> np.ndarray:
+        """Mask of the objectives whose ends have the same sign, and neither is next to nothing beside the other."""
+        ends = np.abs([self.ideal, self.nadir])
+        near = ends.min(axis=0) >= LEAST_RATIO * ends.max(axis=0)
+        return np.asarray(near & (np.sign(self.ideal) * np.sign(self.nadir) > 0))
+
+    def distances(self, signed: np.ndarray) -> np.ndarray:
+        """Distances of designs (designs, objectives) from the ideal, per objective."""
+        ratios = np.maximum(signed / np.where(self.has_ratios, self.ideal, np.inf), LEAST_RATIO)
+        logarithms = np.maximum(np.sign(self.ideal) * np.log(ratios), 0.0)
+        return np.where(self.has_ratios, logarithms, FACTOR * self.units(signed))
+
+    def at(self, distances: np.ndarray) -> np.ndarray:
+        """Signed values of designs (designs, objectives) that are so far from the ideal."""
+        ratios = np.exp(np.sign(self.ideal) * distances)
+        values = np.where(self.has_ratios, self.ideal * ratios, self.ideal + self.span * distances / FACTOR)
+        return np.asarray(values)
+
     def scores(self, signed: np.ndarray, weights: Sequence[float] | np.ndarray) -> np.ndarray:
-        """Return the weighted distances of designs from the ideal."""
+        """Weighted distances of designs from the ideal over all objectives."""
         share = np.asarray(weights, dtype=float) / np.sum(weights)
-        scores: np.ndarray = np.sqrt(np.sum(share * self.units(signed) ** 2, axis=1))
-        return scores
+        return np.asarray(np.sqrt(np.sum(share * self.distances(signed) ** 2, axis=1)))
 
 
 def as_good(signed: np.ndarray) -> np.ndarray:
@@ -148,8 +168,7 @@ def as_good(signed: np.ndarray) -> np.ndarray:
 def _worst_at_ends(signed: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Return the most that each objective must be, for another one to be as good as its end."""
     columns = range(signed.shape[1])
-    worst: np.ndarray = np.max([signed[signed[:, k] <= ends[k]].min(axis=0) for k in columns], axis=0)
-    return worst
+    return np.asarray(np.max([signed[signed[:, k] <= ends[k]].min(axis=0) for k in columns], axis=0))
 
 
 def nearly(best: np.ndarray, worst: np.ndarray) -> np.ndarray:

@@ -65,6 +65,8 @@ class ProofLimits:
         Relative. How much worse than the best a design may be in an objective to tell what the others must cost then.
     costly : float
         On the scale of a ranking. An end of a front beyond it is told to cost much for little.
+    least_ratio : float
+        Of the smaller end of a scale to the larger. Below it an objective is not ranked by ratios.
     noise : float
         In SI. The same of numbers that are zero but for rounding.
     rounding : float
@@ -100,6 +102,7 @@ class ProofLimits:
     same: float = 1e-9
     nearly: float = 0.005
     costly: float = 1.1
+    least_ratio: float = 1e-9
     noise: float = 1e-15
     rounding: float = 1e-13
     widest_gap: float = 0.5

@@ -59,10 +59,9 @@ class NearestIdeal:
         phi = known.phi[:, :m]
         first = scored.best(phi)
         self._share, self._least = share, float(scored.scores(phi)[first])
-        # A step along each objective is the same part of its scale.
-        step = share * scored.scale.span
-        values = scored.objectives.values_of(phi[first][None, :])
-        self.tolerance = (scored.objectives.phi_of(values + step) - phi[first])[0]
+        # A step along each objective takes the same part of the score.
+        farther = scored.scale.distances(scored.objectives.values_of(phi[first][None, :])) + share * self._least
+        self.tolerance = (scored.objectives.phi_of(scored.scale.at(farther)) - phi[first])[0]
 
     @property
     def least(self) -> float:
@@ -78,12 +77,12 @@ class NearestIdeal:
         """Return, per box with these lower bounds of phi, what a design must keep to come before the first one."""
         scale, objectives = self.scored.scale, self.scored.objectives
         share = self.scored.weights / self.scored.weights.sum()
-        counts = (share > 0) & (scale.nadir > scale.ideal)
-        parts = share * scale.units(np.nan_to_num(objectives.values_of(lower[:, self.columns]), nan=-np.inf)) ** 2
-        slack = self.enough**2 - (parts.sum(axis=1, keepdims=True) - parts)
+        counts = (share > 0) & (scale.has_ratios | (scale.nadir > scale.ideal))
+        values = np.nan_to_num(objectives.values_of(lower[:, self.columns]), nan=-np.inf)
         with np.errstate(all="ignore"):
-            unit = np.sqrt(slack / share)
-            ends = objectives.phi_of(scale.ideal + scale.span * unit)
+            parts = share * scale.distances(values) ** 2
+            slack = self.enough**2 - (parts.sum(axis=1, keepdims=True) - parts)
+            ends = objectives.phi_of(scale.at(np.sqrt(slack / share)))
         cutoffs = np.full(lower.shape, np.inf)
         cutoffs[:, self.columns] = np.where(slack <= 0, -np.inf, np.where(counts, ends, np.inf))
         return cutoffs

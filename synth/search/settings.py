@@ -190,7 +190,8 @@ class TreeLimits:
         Boxes for the best in the other objectives among designs that are as good as an end in its own: what such a
         sliver of everything holds is harder to find.
     first_share : float
-        Of its score, by which a design must come nearer to the ideal to be looked for.
+        Of its score, by which a design must come nearer to the ideal to be looked for: a score is flat where it is
+        least, and objectives move by the root of twice so much.
     first_gap : float
         Within which the ends are found that it is measured by: much less than what ends may give away.
     tie : int
@@ -243,7 +244,7 @@ class TreeLimits:
     fill: int = 100_000
     first_nodes: int = 100_000
     end_nodes: int = 200_000
-    first_share: float = 1e-3
+    first_share: float = 1e-7
     first_gap: float = 1e-4
     tie: int = 2_000
     choices: int = 4

@@ -17,7 +17,7 @@ DEARLY = ", whose last 0.5 % costs much"
 
 
 def ranking_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -> Iterator[str]:
-    """Yield what is wrong with the ranking: a weighted distance to the ideal in objectives from ideal to nadir.
+    """Yield what is wrong with the ranking: a weighted distance to the ideal in logarithms of objectives.
 
     Parameters
     ----------
@@ -38,13 +38,22 @@ def ranking_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) 
         high = front.scale.nadir
     span = high - low
     unit = np.where(span > 0, (signed - low) / np.where(span > 0, span, 1.0), 0.0)
-    scores = np.sqrt((unit**2 * shares).sum(axis=1) / shares.sum())
+    apart = unit if front.scale is None else _apart(signed, low, high, unit, limits)
+    scores = np.sqrt((apart**2 * shares).sum(axis=1) / shares.sum())
     for design, score in zip(designs, scores, strict=True):
         if design.score is None or abs(design.score - score) > limits.same:
             yield f"design {design.rank}: score {design.score}, ranked again it is {score}"
     if np.any(np.diff(scores) < -limits.same):
         yield "the designs are not in the order of their scores"
     yield from _note_faults(front, signed, unit, limits)
+
+
+def _apart(signed: np.ndarray, low: np.ndarray, high: np.ndarray, unit: np.ndarray, limits: ProofLimits) -> np.ndarray:
+    """Distances from the best in each objective: by ratio, or ln 2 from end to end of a scale that has none."""
+    smaller, larger = np.sort(np.abs([low, high]), axis=0)
+    by_ratio = ((low > 0) | (high < 0)) & (smaller >= limits.least_ratio * larger)
+    ratios = np.maximum(np.where(by_ratio, signed, 1.0) / np.where(by_ratio, low, 1.0), limits.least_ratio)
+    return np.where(by_ratio, np.abs(np.log(ratios)), np.log(2.0) * unit)
 
 
 def _scale_faults(front: ParetoFront, signed: np.ndarray, limits: ProofLimits) -> Iterator[str]:

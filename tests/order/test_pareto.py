@@ -70,8 +70,8 @@ SENSES = {"mass": "min", "force": "min"}
 def test_rank_orders_by_distance_to_the_ideal():
     values = np.array([[1.0, 10.0], [2.0, 2.0], [5.0, 1.0]])
     ranking = rank(SENSES, values, [1, 1])
-    assert ranking.order == [1, 0, 2]
-    assert ranking.scores == pytest.approx([np.sqrt(0.5), np.sqrt((1 / 16 + 1 / 81) / 2), np.sqrt(0.5)])
+    assert ranking.order == [1, 2, 0]
+    assert ranking.scores == pytest.approx([np.log(10) / np.sqrt(2), np.log(2), np.log(5) / np.sqrt(2)])
     assert ranking.notes == ["smallest mass", "knee", "smallest force"]
 
 
@@ -79,7 +79,7 @@ def test_weights_tilt_the_rank():
     values = np.array([[1.0, 10.0], [2.0, 2.0], [5.0, 1.0]])
     assert rank(SENSES, values, [1, 0]).order == [0, 1, 2]
     assert rank(SENSES, values, [0, 1]).order == [2, 1, 0]
-    assert rank(SENSES, values, [1, 0]).scores == pytest.approx([0, 0.25, 1])
+    assert rank(SENSES, values, [1, 0]).scores == pytest.approx([0, np.log(2), np.log(5)])
 
 
 def test_equal_scores_are_ordered_by_the_objectives():
@@ -92,8 +92,8 @@ def test_what_is_to_be_large_is_ideal_when_large():
     ranking = rank({"mass": "min", "margin": "max"}, values, [1, 3])
     assert ranking.notes[2].startswith("largest margin")
     assert ranking.notes[0].startswith("smallest mass")
-    assert ranking.scores[0] == pytest.approx(np.sqrt(0.75))
-    assert ranking.scores[2] == pytest.approx(0.5)
+    assert ranking.scores[0] == pytest.approx(np.log(3) * np.sqrt(0.75))
+    assert ranking.scores[2] == pytest.approx(np.log(3) * 0.5)
 
 
 def test_a_single_design_is_ideal():
@@ -113,9 +113,50 @@ def test_scores_tell_how_far_from_the_ideal_designs_are(seed, objectives, count)
     assert sorted(ranking.order) == list(range(count))
     assert np.all(np.diff(ranking.scores[ranking.order]) >= 0)
     signed = values * senses_of(senses)
-    within = np.all(signed <= ranking.scale.nadir, axis=1)
-    assert np.all((ranking.scores[within] >= 0) & (ranking.scores[within] <= 1))
-    assert np.all((ranking.scores == 0) == np.all(ranking.scale.units(signed) == 0, axis=1))
+    linear = ~ranking.scale.has_ratios
+    within = np.all((signed <= ranking.scale.nadir)[:, linear], axis=1)
+    distances = ranking.scale.distances(signed)
+    assert np.all((distances[within][:, linear] >= 0) & (distances[within][:, linear] <= np.log(2) * (1 + 1e-12)))
+    best = signed.min(axis=0)
+    ratios = np.maximum(signed / best, 1e-9)  # what has changed its sign is as far as can be
+    assert distances[:, ~linear] == pytest.approx(np.abs(np.log(ratios))[:, ~linear])
+    assert np.all((ranking.scores == 0) == np.all(distances == 0, axis=1))
+    told = (ranking.scale.nadir > ranking.scale.ideal) & (linear | (ratios > 1e-9))
+    assert ranking.scale.at(distances)[told] == pytest.approx(signed[told])
+
+
+def test_scores_are_distances_of_logarithms():
+    values = np.array([[40.85, 0.005677], [6.594, 0.001706], [4.77, 0.0035]])
+    ranking = rank({"mass": "min", "inertia": "min"}, values, [1, 1])
+    assert ranking.scores == pytest.approx([1.74032653, 0.228970960, 0.508135080], rel=1e-8)
+    assert ranking.order == [1, 2, 0]
+    # The reciprocal of what is to be small is as far from the ideal where it is to be large.
+    larger = rank({"mass": "max", "inertia": "min"}, values ** [-1, 1], [1, 1])
+    assert larger.scores == pytest.approx(ranking.scores)
+
+
+def test_what_has_no_ratios_is_half_as_good_at_the_nadir():
+    for best, sense in ((0.0, "min"), (-1.0, "min"), (1e-10, "min"), (1.0, "max")):
+        worst = -1.0 if sense == "max" else 1.0
+        values = np.array([[1.0, worst], [2.0, best]])
+        ranking = rank({"mass": "min", "margin": sense}, values, [1, 1])
+        assert ranking.scale.has_ratios.tolist() == [True, False]
+        assert ranking.scores == pytest.approx([np.log(2) / np.sqrt(2)] * 2)
+
+
+@given(st.integers(0, 10**6), st.integers(2, 3), st.integers(4, 20))
+@settings(deadline=None, derandomize=True, max_examples=100)
+def test_designs_listed_beside_the_best_keep_their_order_and_scores(seed, objectives, count):
+    rng = np.random.default_rng(seed)
+    senses = {f"o{k}": rng.choice(["min", "max"]) for k in range(objectives)}
+    values, weights = np.exp(rng.normal(size=(count, objectives))), rng.random(objectives) + 0.1
+    every = rank(senses, values, weights)
+    bests = np.argmin(values * senses_of(senses), axis=0)
+    kept = np.unique(np.concatenate([bests, np.flatnonzero(rng.random(count) < 0.5)]))
+    for scale in (None, every.scale):
+        listed = rank(senses, values[kept], weights, scale=scale)
+        assert listed.scores == pytest.approx(every.scores[kept], abs=1e-12)
+        assert [int(kept[k]) for k in listed.order] == [k for k in every.order if k in kept]
 
 
 def test_an_end_that_costs_much_for_little_stretches_no_scale():
@@ -125,7 +166,6 @@ def test_an_end_that_costs_much_for_little_stretches_no_scale():
     assert ranking.scale.nadir.tolist() == [1.5, 7.0]
     assert ranking.notes == ["smallest diameter, whose last 0.5 % costs much", "", "knee", "smallest mass"]
     assert (ranking.order[0], ranking.order[-1]) == (2, 0)
-    assert ranking.scores[0] > 1.0 > ranking.scores[1:].max()
     # A front all of which is as good in an objective is ranked by what else it has.
     flat = rank(chosen, np.array([[1.0, 40.0], [1.004, 7.0]]), [1.0, 1.0])
     assert flat.order == [1, 0]

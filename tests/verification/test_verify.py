@@ -261,11 +261,9 @@ def worse(front):
     design = synth.evaluate(STRUT, ASKED, values={**values, **first.choices}, parts=parts, catalogs=RODS_TABLE)
     assert design.status is synth.order.feasibility.Status.FEASIBLE
     settings = {**front.settings, "points": 6}
-    low, high = (
-        pick([[d.objectives[n] for n in d.objectives] for d in front.designs], axis=0) for pick in (np.min, np.max)
-    )
+    low = np.min([[d.objectives[n] for n in d.objectives] for d in front.designs], axis=0)
     own = np.array([design.objectives[n] for n in design.objectives])
-    score = float(np.sqrt(np.mean(((own - low) / (high - low)) ** 2)))
+    score = float(np.sqrt(np.mean(np.log(own / low) ** 2)))
     more = dataclasses.replace(design, rank=6, score=score, status=first.status, gap=first.gap)
     return dataclasses.replace(front, designs=[*front.designs, more], settings=settings)
 
