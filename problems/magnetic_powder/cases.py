@@ -64,6 +64,7 @@ CASES = {
                         "yoke_thickness": "14 mm",
                     },
                     "limits": {"gap_radius": "60 mm .. 90 mm"},
+                    "objectives": ["mass", "input_inertia"],
                 },
                 tighten={
                     "required_torque": "32 N*m",

@@ -186,8 +186,8 @@ class Complete(WithBody):
 class Ruled(WithBody):
     """The powder clutch by rules of practice."""
 
-    # Least power asks for ever larger bodies; with the rules of practice the supply limits it, and mass counts.
-    objectives = ("input_inertia", "mass")
+    # Least power and least inertia ask for ever larger bodies; with the rules of practice the supply limits power.
+    objectives = ("mass", "outer_diameter")
 
     def declare_bore(self, d: Declaration) -> Bore:
         """The bore of the rotor, by default for a shaft that stands the torque."""
