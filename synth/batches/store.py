@@ -95,12 +95,10 @@ class Store(JobQueue):
             "fingerprint": name,
             "priority": 0,
             "request": {},
-            "pinned": False,
         }
         try:
             with self.engine.begin() as connection:
-                written = {**usual, **job, "rows": 0, "state": OPEN}
-                connection.execute(sa.insert(Job).values(**written, created=moment(), updated=moment()))
+                connection.execute(sa.insert(Job).values(**{**usual, **job, "state": OPEN}))
                 self._fill_on(connection, name, rows, rows_per_unit)
         except IntegrityError:
             if self.job(name) is None and self.job_like(BATCH, str(job.get("fingerprint", name))) is None:
@@ -258,7 +256,7 @@ class Store(JobQueue):
 
     @staticmethod
     def _add_units(connection: sa.Connection, job: str, units: Sequence[Sequence[str]], attempts: int) -> None:
-        new = {"job": job, "task": ROWS, "state": OPEN, "token": 0, "attempts": attempts}
+        new = {"job": job, "task": ROWS, "state": OPEN, "attempts": attempts}
         numbers = connection.execute(
             sa.insert(WorkUnit).returning(WorkUnit.id, sort_by_parameter_order=True), [new for _ in units]
         ).scalars()
@@ -321,14 +319,7 @@ class Store(JobQueue):
                 connection.execute(
                     self.insert_once(Result),
                     [
-                        {
-                            "job": job,
-                            "key": key,
-                            "status": o.status,
-                            "seconds": o.seconds,
-                            "content": o.content,
-                            "layout": None if o.layout is None else digest(o.layout),
-                        }
+                        {**vars(o), "job": job, "key": key, "layout": None if o.layout is None else digest(o.layout)}
                         for key, o in final.items()
                     ],
                 )

@@ -12,6 +12,7 @@ import numpy as np
 from synth.errors import InputError
 from synth.question.selection import Selection
 from synth.tables.table import Table
+from synth.text.numbers import typed_number
 
 if TYPE_CHECKING:
     from synth.results import Design
@@ -125,6 +126,18 @@ class Combinations(MixedRadix):
             {name: float(values[place[name]]) for name, values in selection.counts.items()},
             {name: self._labels[name][int(own[place[name]])] for name, own in selection.choices.items()},
         )
+
+    def differences(self, number: int, other: int) -> list[tuple[str, str, str]]:
+        """Slots, counts and choices in which two combinations differ: name, what the one has, what the other has."""
+        mine, its = (
+            {
+                **{slot: table.designations[row] for slot, (table, row) in parts.items()},
+                **{name: typed_number(value) for name, value in counts.items()},
+                **choices,
+            }
+            for parts, counts, choices in map(self.describe, (number, other))
+        )
+        return [(name, mine[name], its[name]) for name in mine if mine[name] != its[name]]
 
     @cached_property
     def _places(self) -> list[dict[str, int]]:

@@ -154,7 +154,7 @@ class Accounts:
                 raise InputError("tenant", name, right, ("tenant",))
             try:
                 with self.engine.begin() as connection:
-                    new = {"name": name, "limits": dict(limits), "created": moment()}
+                    new = {"name": name, "limits": dict(limits)}
                     made = connection.execute(sa.insert(Tenant).values(**new).returning(Tenant.id))
                     return int(made.scalar_one())
             except IntegrityError:  # somebody has made it at the same time
@@ -238,7 +238,6 @@ class Accounts:
             "prefix": prefix,
             "hash": _hash(value),
             "scopes": " ".join(scope for scope in SCOPES if scope in requested),
-            "created": moment(),
             "expires": None if days is None else moment() + 86400.0 * days,
         }
         with self.engine.begin() as connection:
@@ -325,7 +324,7 @@ class Accounts:
         value = secrets.token_urlsafe(RANDOM)
         with self.engine.begin() as connection:
             connection.execute(sa.delete(BrowserSession).where(BrowserSession.expires < moment()))
-            new = {"hash": _hash(value), "token": token, "created": moment(), "expires": moment() + 3600.0 * hours}
+            new = {"hash": _hash(value), "token": token, "expires": moment() + 3600.0 * hours}
             connection.execute(sa.insert(BrowserSession).values(**new))
         return value
 

@@ -16,7 +16,7 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, aliased
 
-from synth.queue.database import Database, digest, encoded
+from synth.queue.database import Database, encoded
 from synth.queue.models import (
     Event,
     Job,
@@ -227,27 +227,20 @@ class JobTable(Database):
             "state": OPEN,
             "priority": new.priority,
             "fingerprint": new.fingerprint,
-            "basis": "",
             "code": new.code,
             "idempotency": new.idempotency,
             "parent": new.parent,
             "request": dict(new.request),
             "content": {**new.content, BODY: new.body, **({} if new.keep is None else {KEEP: new.keep})},
-            "rows": 0,
             "seconds_limit": new.seconds_limit,
-            "pinned": False,
             "source": new.source,
-            "folder": "",
             "expires": None if new.keep is None else moment() + new.keep,
-            "created": moment(),
-            "updated": moment(),
         }
         try:
             with self.engine.begin() as connection:
                 self._refuse_beyond(connection, new.tenant)
                 connection.execute(sa.insert(Job).values(**columns))
-                unit = {"job": name, "task": new.task, "state": OPEN, "token": 0, "attempts": 0}
-                connection.execute(sa.insert(WorkUnit).values(**unit))
+                connection.execute(sa.insert(WorkUnit).values(job=name, task=new.task, state=OPEN))
                 for record in new.kept:
                     self._keep_on(connection, name, record)
                 insert_event(connection, name, "created", new.title)
@@ -520,17 +513,12 @@ def _unused(keep: float | None = None) -> sa.ColumnElement[Any]:
     return sa.case((Job.expires.is_(None), None), else_=sa.func.coalesce(stays, Job.expires))
 
 
-def body_digest(body: object) -> str:
-    """Digest that tells two requests with the same idempotency key apart."""
-    return digest(body)
-
-
 def insert_event(
     connection: sa.Connection, job: str, kind: str, text: str, data: Mapping[str, object] | None = None
 ) -> None:
     """Add an event in the transaction of its cause."""
     content = None if data is None else dict(data)
-    connection.execute(sa.insert(Event).values(job=job, time=moment(), kind=kind, text=text, data=content))
+    connection.execute(sa.insert(Event).values(job=job, kind=kind, text=text, data=content))
 
 
 def _of(tenant: int | None) -> tuple[Any, ...]:

@@ -35,6 +35,24 @@ ID = 26  # characters of the id of a job
 OF_TABLES = text("kind IN ('batch', 'size_range')")  # kinds of which the same question is the same job
 
 
+class moment(FunctionElement[float]):  # written as SQL writes functions
+    """Now, on the clock of the database."""
+
+    type = Float()
+    inherit_cache = True
+    name = "moment"
+
+
+@compiles(moment, "sqlite")
+def _moment_of_sqlite(element: object, compiler: object, **context: Any) -> str:
+    return "((julianday('now') - 2440587.5) * 86400.0)"
+
+
+@compiles(moment, "postgresql")
+def _moment_of_postgresql(element: object, compiler: object, **context: Any) -> str:
+    return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"
+
+
 class Base(DeclarativeBase):
     """What all tables share."""
 
@@ -50,7 +68,7 @@ class Tenant(Base):
     id: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
     name: Mapped[str] = mapped_column(String(60), unique=True)
     limits: Mapped[dict[str, Any]] = mapped_column(JSON)
-    created: Mapped[float] = mapped_column(Float)
+    created: Mapped[float] = mapped_column(Float, default=moment())
 
 
 class Token(Base):
@@ -65,7 +83,7 @@ class Token(Base):
     prefix: Mapped[str] = mapped_column(String(8))
     hash: Mapped[str] = mapped_column(String(KEY), unique=True)
     scopes: Mapped[str] = mapped_column(Text)
-    created: Mapped[float] = mapped_column(Float)
+    created: Mapped[float] = mapped_column(Float, default=moment())
     expires: Mapped[float | None] = mapped_column(Float)
     used: Mapped[float | None] = mapped_column(Float)
     revoked: Mapped[float | None] = mapped_column(Float)
@@ -78,7 +96,7 @@ class BrowserSession(Base):
 
     hash: Mapped[str] = mapped_column(String(KEY), primary_key=True)
     token: Mapped[int] = mapped_column(ForeignKey("token.id", ondelete="CASCADE"))
-    created: Mapped[float] = mapped_column(Float)
+    created: Mapped[float] = mapped_column(Float, default=moment())
     expires: Mapped[float] = mapped_column(Float)
 
 
@@ -118,7 +136,7 @@ class Job(Base):
     state: Mapped[str] = mapped_column(String(16))
     priority: Mapped[int] = mapped_column(SmallInteger)
     fingerprint: Mapped[str] = mapped_column(String(KEY))
-    basis: Mapped[str] = mapped_column(String(KEY))
+    basis: Mapped[str] = mapped_column(String(KEY), default="")
     code: Mapped[str | None] = mapped_column(String(KEY))
     idempotency: Mapped[str | None] = mapped_column(String(200))
     parent: Mapped[str | None] = mapped_column(String(KEY))
@@ -126,18 +144,18 @@ class Job(Base):
     content: Mapped[dict[str, Any]] = mapped_column(JSON)
     progress: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     summary: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
-    rows: Mapped[int] = mapped_column(Integer)
+    rows: Mapped[int] = mapped_column(Integer, default=0)
     seconds_limit: Mapped[float | None] = mapped_column(Float)
     outcome: Mapped[str | None] = mapped_column(String(16))
     error: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
-    pinned: Mapped[bool] = mapped_column(Boolean)
+    pinned: Mapped[bool] = mapped_column(Boolean, default=False)
     expires: Mapped[float | None] = mapped_column(Float)
     source: Mapped[str] = mapped_column(Text)
-    folder: Mapped[str] = mapped_column(Text)
-    created: Mapped[float] = mapped_column(Float)
+    folder: Mapped[str] = mapped_column(Text, default="")
+    created: Mapped[float] = mapped_column(Float, default=moment())
     started: Mapped[float | None] = mapped_column(Float)
     served: Mapped[float | None] = mapped_column(Float)
-    updated: Mapped[float] = mapped_column(Float)
+    updated: Mapped[float] = mapped_column(Float, default=moment())
     ended: Mapped[float | None] = mapped_column(Float)
 
 
@@ -162,8 +180,8 @@ class WorkUnit(Base):
     state: Mapped[str] = mapped_column(String(16))
     owner: Mapped[str | None] = mapped_column(String(120))
     lease: Mapped[float | None] = mapped_column(Float)
-    token: Mapped[int] = mapped_column(Integer)
-    attempts: Mapped[int] = mapped_column(Integer)
+    token: Mapped[int] = mapped_column(Integer, default=0)
+    attempts: Mapped[int] = mapped_column(Integer, default=0)
 
 
 class JobRecord(Base):
@@ -247,7 +265,7 @@ class Event(Base):
 
     id: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
     job: Mapped[str] = mapped_column(ForeignKey("job.id", ondelete="CASCADE"))
-    time: Mapped[float] = mapped_column(Float)
+    time: Mapped[float] = mapped_column(Float, default=moment())
     kind: Mapped[str] = mapped_column(String(32))
     text: Mapped[str] = mapped_column(Text)
     data: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
@@ -271,7 +289,7 @@ class Catalogue(Base):
     rows: Mapped[int] = mapped_column(Integer)
     content: Mapped[bytes] = mapped_column(LargeBinary)
     schema: Mapped[bytes] = mapped_column(LargeBinary)
-    created: Mapped[float] = mapped_column(Float)
+    created: Mapped[float] = mapped_column(Float, default=moment())
     note: Mapped[str] = mapped_column(Text)
 
 
@@ -287,7 +305,7 @@ class Upload(Base):
     size: Mapped[int] = mapped_column(Integer)
     digest: Mapped[str] = mapped_column(String(KEY))
     content: Mapped[bytes] = mapped_column(LargeBinary)
-    created: Mapped[float] = mapped_column(Float)
+    created: Mapped[float] = mapped_column(Float, default=moment())
     expires: Mapped[float] = mapped_column(Float)
 
 
@@ -302,21 +320,3 @@ class WorkerSign(Base):
     started: Mapped[float] = mapped_column(Float)
     seen: Mapped[float] = mapped_column(Float)
     slots: Mapped[dict[str, Any]] = mapped_column(JSON)
-
-
-class moment(FunctionElement[float]):  # written as SQL writes functions
-    """Now, on the clock of the database."""
-
-    type = Float()
-    inherit_cache = True
-    name = "moment"
-
-
-@compiles(moment, "sqlite")
-def _moment_of_sqlite(element: object, compiler: object, **context: Any) -> str:
-    return "((julianday('now') - 2440587.5) * 86400.0)"
-
-
-@compiles(moment, "postgresql")
-def _moment_of_postgresql(element: object, compiler: object, **context: Any) -> str:
-    return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"

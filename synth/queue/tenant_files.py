@@ -95,7 +95,6 @@ class TenantFiles:
                 "rows": rows,
                 "content": gzip.compress(csv.encode(), mtime=0),
                 "schema": gzip.compress(schema.encode(), mtime=0),
-                "created": moment(),
                 "note": note,
             }
             try:
@@ -136,7 +135,6 @@ class TenantFiles:
                     size=len(content),
                     digest=record.digest,
                     content=content,
-                    created=moment(),
                     expires=moment() + keep,
                 )
             )

@@ -15,7 +15,6 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.pruning import PruningRule
 from synth.system import deadline
-from synth.text.numbers import typed_number
 
 
 def polish_extremes(form: Formulation, traded: int, tolerance: float) -> None:
@@ -209,13 +208,7 @@ def break_ties(
 
 def _difference(instance: SearchSpace, combination: int, other: int) -> str:
     """Differences of another combination, in words."""
-    here, its = instance.combinations.describe(combination), instance.combinations.describe(other)
-    words = [
-        f"{slot} {table.designations[row]}" for slot, (table, row) in its[0].items() if here[0][slot] != its[0][slot]
-    ]
-    words += [f"{n} {typed_number(its[1][n])}" for n in here[1] if here[1][n] != its[1][n]]
-    words += [f"{n} {its[2][n]}" for n in here[2] if here[2][n] != its[2][n]]
-    return ", ".join(words)
+    return ", ".join(f"{name} {its}" for name, _, its in instance.combinations.differences(combination, other))
 
 
 def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate], traded: int) -> list[list[Candidate]]:

@@ -122,21 +122,17 @@ class RequestLimit:
             await self.app(scope, receive, send)
             return
         asker: Asker = scope["state"]["asker"]
-        try:
-            await self.shares.take(asker, self.settings.queue_wait)
-        except NoPlaceError as error:
-            self.metrics.refused_places.labels("own" if error.own else "all").inc()
-            await refuse(scope, receive, send, no_place(error, "requests", self.settings))
-            return
 
         async def sent(message: Message) -> None:
             async with asyncio.timeout(self.settings.send_timeout):
                 await send(message)
 
         try:
-            await self.app(scope, receive, sent)
-        finally:
-            self.shares.give_back(asker)
+            async with self.shares.place(asker, self.settings.queue_wait):
+                await self.app(scope, receive, sent)
+        except NoPlaceError as error:  # raised before the application is called: it refuses its own
+            self.metrics.refused_places.labels("own" if error.own else "all").inc()
+            await refuse(scope, receive, send, no_place(error, "requests", self.settings))
 
 
 class HostCheck:
@@ -248,14 +244,10 @@ class BodyCheck:
         """Pass a request on that brings a file, when it is its turn: files are held in memory."""
         asker: Asker = scope["state"]["asker"]
         try:
-            await self.uploads.take(asker, self.settings.queue_wait)
+            async with self.uploads.place(asker, self.settings.queue_wait):
+                await self.app(scope, receive, send)
         except NoPlaceError as error:
             await refuse(scope, receive, send, no_place(error, "files", self.settings))
-            return
-        try:
-            await self.app(scope, receive, send)
-        finally:
-            self.uploads.give_back(asker)
 
     def _most(self, media: str, length: str) -> int:
         """Largest size of a body of a kind; one that announces more is refused."""

@@ -46,7 +46,7 @@ from synth.search.pruning import EpsilonCover
 from synth.studies.settings import NEAR, NearLimits
 from synth.system.deadline import INTERRUPTED, Stopped, stoppable
 from synth.text.input_limits import INPUT_LIMITS
-from synth.text.numbers import percent, thousands, typed_number
+from synth.text.numbers import percent, thousands
 from synth.units import parse_quantity
 from synth.verbs.requests import NearEqualsRequest
 
@@ -524,7 +524,8 @@ class _Enumeration:
             )
             designs.append(design)
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})
-            differences.append(self._differences(c.combination))
+            others = self.instance.combinations.differences(self.number, c.combination)
+            differences.append(tuple(f"{name} {its}" for name, _, its in others))
         undecided = (
             None
             if self.looked > self.limits.boxes or count > self.limits.most or interrupted
@@ -555,17 +556,6 @@ class _Enumeration:
         codec = self.instance.combinations
         number = codec.number(design)
         return next((d.rank for d in self.front.designs if codec.number(d) == number and _same(d, design)), None)
-
-    def _differences(self, combination: int) -> tuple[str, ...]:
-        """Differences from the chosen design."""
-        mine, its = (self.instance.combinations.describe(self.number), self.instance.combinations.describe(combination))
-        words = []
-        for slot, (table, row) in its[0].items():
-            if mine[0][slot][1] != row:
-                words.append(f"{slot} {table.designations[row]}")
-        words += [f"{n} {typed_number(v)}" for n, v in its[1].items() if mine[1][n] != v]
-        words += [f"{n} {v}" for n, v in its[2].items() if mine[2][n] != v]
-        return tuple(words)
 
 
 def _same(one: Design, other: Design) -> bool:

@@ -9,7 +9,8 @@ from typing import Any
 from synth.errors import InputError
 from synth.kinds import Kind, kind
 from synth.queue.accounts import Principal
-from synth.queue.job_table import BATCH, JOB_TASK, PLAN, NewJob, body_digest
+from synth.queue.database import digest
+from synth.queue.job_table import BATCH, JOB_TASK, PLAN, NewJob
 from synth.queue.tenant_files import TenantFiles
 from synth.service.api.presenting import FAMILIES, STATED_ROWS
 from synth.service.context import ServiceContext, in_thread
@@ -35,7 +36,7 @@ class Wish:
     def body(self) -> str:
         """Content by which a submission is told from another one with the same key."""
         told = (self.kind, self.request, self.title, self.parent, self.priority, self.seconds_limit)
-        return body_digest(list(told))
+        return digest(list(told))
 
 
 async def submit(context: ServiceContext, principal: Principal, wish: Wish, key: str | None) -> tuple[str, bool]:

@@ -21,7 +21,6 @@ from synth.search.goals import goals_of
 from synth.search.refused_cells import not_refused
 from synth.search.sensitivity import held, requirement_positions, sides
 from synth.studies.settings import PRICES, PriceLimits
-from synth.text.numbers import typed_number
 
 
 @dataclass(frozen=True)
@@ -226,12 +225,5 @@ class Resolver:
 
     def difference(self, reference: int, other: int) -> str:
         """Differences of another combination from the reference, in words."""
-        mine, its = self.instance.combinations.describe(reference), self.instance.combinations.describe(other)
-        words = [
-            f"{slot} {mine[0][slot][0].designations[mine[0][slot][1]]} -> {table.designations[row]}"
-            for slot, (table, row) in its[0].items()
-            if mine[0][slot][1] != row
-        ]
-        words += [f"{n} {typed_number(mine[1][n])} -> {typed_number(v)}" for n, v in its[1].items() if mine[1][n] != v]
-        words += [f"{n} {mine[2][n]} -> {v}" for n, v in its[2].items() if mine[2][n] != v]
-        return ", ".join(words)
+        changes = self.instance.combinations.differences(reference, other)
+        return ", ".join(f"{name} {mine} -> {its}" for name, mine, its in changes)
