@@ -9,10 +9,12 @@ from synth import Design, DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
 from .. import practice
+from ..components.wrap_spring import body, formulas, requirements
+from ..components.wrap_spring.model import Built, Size, WrapSpring, declare_spring
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, TYPICAL
-from . import blocks, body, curves, formulas
-from .layers import Fit, layers_of
+from . import curves
+from .layers import Fit, declare_size, layers_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,15 +22,15 @@ if TYPE_CHECKING:
     from synth.drawing import Drawing
 
 
-class ClearanceDuty(blocks.Duty):
+class ClearanceDuty(requirements.Duty):
     """What the drive asks of a clutch with this fit."""
 
     interference_tolerance = replace(
-        blocks.Duty.interference_tolerance, text="Tolerance of the clearance, +- of wire, bore and hub together"
+        requirements.Duty.interference_tolerance, text="Tolerance of the clearance, +- of wire, bore and hub together"
     )
 
 
-class PracticeClearanceDuty(ClearanceDuty, blocks.PracticeDuty):
+class PracticeClearanceDuty(ClearanceDuty, requirements.PracticeDuty):
     """What the drive asks of a clutch with this fit, by the rules of practice."""
 
 
@@ -122,27 +124,27 @@ class CollarRequirements(body.BodyRequirements):
         source=UNSOURCED,
     )
 
-    def collar_mass(self, built: blocks.Built) -> Any:
+    def collar_mass(self, built: Built) -> Any:
         """Return the mass of the control collar [kg]."""
-        density, spring = built.duty.hub_density, built.spring
+        density, spring = built.spring.duty.hub_density, built.size
         return formulas.collar_mass(density, spring.diameter, built.clearance, self.collar_wall, spring.length)
 
-    def complete_size(self, built: blocks.Built) -> blocks.Size:
+    def complete_size(self, built: Built) -> Size:
         """Return the size of the clutch with its bosses and the collar around the spring."""
         size = super().complete_size(built)
         return replace(
             size,
             mass=size.mass + self.collar_mass(built),
-            diameter=formulas.collar_diameter(built.spring.diameter, built.clearance, self.collar_wall),
+            diameter=formulas.collar_diameter(built.size.diameter, built.clearance, self.collar_wall),
             outside="Outside of the collar",
         )
 
-    def declare(self, d: Declaration, built: blocks.Built) -> None:
+    def declare(self, d: Declaration, built: Built) -> None:
         """Declare the complete clutch and its collar."""
         super().declare(d, built)
         mass, text = self.collar_mass(built), "Control collar around the spring"
         d.derive("collar_mass", "kg", mass, symbol="m_col", text=text, source="geometry")
-        inside = built.spring.diameter
+        inside = built.size.diameter
         for name, value, symbol, text in (
             ("spring_diameter", inside, "D_sp", "Outside of the closed coils"),
             ("collar_bore", inside + 4 * built.clearance, "d_col", "Inside of the control collar"),
@@ -165,14 +167,14 @@ class Rules(body.SpringRules):
         source=UNSOURCED,
     )
 
-    def limit(self, d: Declaration, built: blocks.Built) -> None:
+    def limit(self, d: Declaration, built: Built) -> None:
         """Declare the limits that an engineer adds to this fit."""
         super().limit(d, built)
-        actuator = d.variables["actuator_torque"].sx
+        actuator, spring = d.variables["actuator_torque"].sx, built.spring
         stress = d.derive(
             "tang_stress",
             "N/mm2",
-            formulas.tang_stress(actuator, built.coils.mean_radius, built.wire.thickness, self.tang_length_ratio),
+            formulas.tang_stress(actuator, spring.mean_radius, spring.wire.thickness, self.tang_length_ratio),
             symbol="sigma_t",
             text="Bending stress of the tang under the energising torque",
             source=f"bending of a cantilever; {NOT_IN_S2}",
@@ -180,7 +182,7 @@ class Rules(body.SpringRules):
         d.at_most(
             "tang",
             stress,
-            built.wire.bending_allow,
+            spring.wire.bending_allow,
             "N/mm2",
             text="The tang that holds the free end does not yield",
             source=f"bending of a cantilever; {NOT_IN_S2}",
@@ -199,13 +201,13 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     name = "wrap_spring_actuated"
     title = "Wrap spring clutch, clearance fit"
-    sources = blocks.SOURCES
-    understands = blocks.COMMON
+    sources = requirements.SOURCES
+    understands = requirements.COMMON
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        options = d.block(blocks.Options)
+        options = d.block(requirements.Options)
         layer = layer_of(d)
         duty = layer.declare_duty(d)
         wants: Wants = layer.declare_wants(d, duty)
@@ -227,70 +229,28 @@ class ActuatedWrapSpringClutch(DesignProblem):
             text="Energising torque at the free end of the spring",
             source=NOT_IN_S2,
         )
-        wire = blocks.declare_wire(d, options=options)
-        coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
-        friction = blocks.declare_friction(d, duty=duty, coils=coils)
-
-        tolerance = duty.interference_tolerance
-        widest, narrowest = clearance + tolerance, clearance - tolerance
-
-        def moment(fit: Any) -> Any:
-            free = coils.model.free_radius(-fit, coils.mean_radius)
-            return blocks.fitted_moment(wire, coils, -fit, free)
-
-        loose, tight = moment(widest), moment(narrowest)
-        spinning = blocks.centrifugal_moment(duty, wire, coils)
-        effective = loose - spinning
-        self._name_fit(d, coils=coils, widest=widest, loose=loose, spinning=spinning)
-        d.at_least(
-            "grip",
-            actuator,
-            -effective,
-            "N*m",
-            guard=True,
-            text="The energising torque closes the widest clearance; otherwise nothing grips",
-            source=NOT_IN_S2,
-        )
-        blocks.declare_closing(
-            d, duty=duty, torque=formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
-        )
-        d.at_least(
-            "clearance_kept",
-            narrowest,
-            wants.clearance_min,
-            "mm",
-            text="Released, the coils stand clear of the hub",
-            source=NOT_IN_S2,
-        )
-        load = d.derive(
-            "wire_torque",
-            "N*m",
-            duty.peak_torque,
-            symbol="T_load",
-            text="Torque that the wire sees at overload: peak torque",
-            source=NOT_IN_S2,
-        )
-        bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
-        stress, _ = blocks.declare_load(
-            d, wire=wire, coils=coils, friction=friction, bending_stress=bending, moment=tight, load=load
-        )
-        self._declare_actuation(d, duty=duty, wants=wants, coils=coils, widest=widest, actuator=actuator)
-        d.at_least(
-            "hub_bore",
-            coils.hub_diameter,
-            duty.bore_diameter + 2 * wants.hub_wall_min,
-            "mm",
-            text="The hub has a wall around its bore",
-            source="geometry",
-        )
-        spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils, fixed_coils=wants.fixed_coils)
-        built = blocks.Built(duty, wants, wire, coils, friction, spring, clearance)
-        blocks.declare_size(d, duty=duty, size=layer.size(built))
+        spring = declare_spring(d, options=options, duty=duty)
+        loose, tight, effective = self._declare_moments(d, spring, clearance)
+        text = "The energising torque closes the widest clearance; otherwise nothing grips"
+        d.at_least("grip", actuator, -effective, "N*m", guard=True, text=text, source=NOT_IN_S2)
+        held = formulas.closing_torque(effective, spring.exponent_low, actuator)
+        spring.declare_closing(d, held, needs="grip")
+        narrowest, text = clearance - duty.interference_tolerance, "Released, the coils stand clear of the hub"
+        d.at_least("clearance_kept", narrowest, wants.clearance_min, "mm", text=text, source=NOT_IN_S2)
+        text = "Torque that the wire sees at overload: peak torque"
+        load = d.derive("wire_torque", "N*m", duty.peak_torque, symbol="T_load", text=text, source=NOT_IN_S2)
+        bending = spring.bending_stress(-loose)
+        stress, _ = spring.declare_load(d, bending_stress=bending, moment=tight, load=load)
+        self._declare_actuation(d, spring, wants, widest=clearance + duty.interference_tolerance, actuator=actuator)
+        least, text = duty.bore_diameter + 2 * wants.hub_wall_min, "The hub has a wall around its bore"
+        d.at_least("hub_bore", spring.hub_diameter, least, "mm", text=text, source="geometry")
+        built = Built(spring, wants, spring.declare_size(d, fixed_coils=wants.fixed_coils), clearance)
+        declare_size(d, layer.size(built), duty)
         layer.extend(d, built)
-        tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
+        stands = spring.wire.endurance_amplitude, spring.wire.tensile_strength
         d.advise(
             "fatigue_of_the_wire",
-            tired > 1,
+            formulas.goodman_utilisation(1.0, 0.0, stress, *stands) > 1,
             "engaged again and again up to wire torque the wire tires: its stress swings between 0 and wire stress and "
             "lies above Goodman's line",
             source=f"Goodman; {NOT_IN_S2}",
@@ -318,60 +278,40 @@ class ActuatedWrapSpringClutch(DesignProblem):
         from . import drawing as wrap_spring  # costly to import; searches do without
 
         return wrap_spring.clearance_drawing(
-            spec,
-            design,
-            scope=self.option("mass_scope"),
-            seed=self.option("model") == "seed",
+            spec, design, scope=self.option("mass_scope"), seed=self.option("model") == "seed"
         )
 
-    def _name_fit(self, d: Declaration, *, coils: blocks.Coils, widest: Any, loose: Any, spinning: Any) -> None:
-        """Name what the moment of the widest clearance is made of."""
+    def _declare_moments(self, d: Declaration, spring: WrapSpring, clearance: Any) -> tuple[Any, Any, Any]:
+        """Bending moments of the widest and the narrowest clearance, and the first as it grips at speed [N m]."""
+        tolerance, model, mean = spring.duty.interference_tolerance, spring.model, spring.mean_radius
+        widest, narrowest = clearance + tolerance, clearance - tolerance
+        loose, tight = (spring.fitted_moment(-fit, model.free_radius(-fit, mean)) for fit in (widest, narrowest))
+        spinning = spring.centrifugal_moment()
         text, source = "Clearance at its widest, c + tol", NOT_IN_S2
         d.step("greatest_clearance", "mm", widest, symbol="c_hi", text=text, source=source)
         text = "Bending moment that closes the widest clearance"
         d.step("closing_moment", "N*m", -loose, symbol="M_close", text=text, source=source)
-        free = coils.model.free_radius(-widest, coils.mean_radius)
+        free, text = model.free_radius(-widest, mean), "Mean radius of the free spring, widest clearance"
         named = [
-            ("greatest_free_radius", "mm", free, "r_free_hi", "Mean radius of the free spring, widest clearance"),
+            ("greatest_free_radius", "mm", free, "r_free_hi", text),
             ("centrifugal_moment", "N*m", spinning, "M_cf", "What the spinning wire adds to that moment"),
         ]
-        coils.model.declare_steps(d, named, source)
+        model.declare_steps(d, named, source)
+        return loose, tight, loose - spinning
 
     def _declare_actuation(
-        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any
+        self, d: Declaration, spring: WrapSpring, wants: Wants, *, widest: Any, actuator: Any
     ) -> None:
-        closing = coils.per_hub + duty.gap_coils
-        angle = d.derive(
-            "wrap_angle",
-            "rad",
-            formulas.wrap_angle(closing, widest, coils.mean_radius),
-            symbol="phi",
-            text="Angle until the coils are closed, at the widest clearance",
-            source=NOT_IN_S2,
-        )
-        d.derive(
-            "engagement_time",
-            "s",
-            angle / wants.relative_speed,
-            symbol="t_e",
-            text="Time until the coils are closed when the free end is held",
-            source=NOT_IN_S2,
-        )
-        if wants.wrap_angle_limit is not None:
-            d.at_most(
-                "wrap_angle",
-                angle,
-                wants.wrap_angle_limit,
-                "rad",
-                text="The clutch closes soon enough",
-                source=DRIVE,
-            )
-        if wants.actuator_torque_limit is not None:
-            d.at_most(
-                "actuator_torque",
-                actuator,
-                wants.actuator_torque_limit,
-                "N*m",
-                text="The actuator can apply the energising torque",
-                source=DRIVE,
-            )
+        closing = spring.per_hub + spring.duty.gap_coils
+        angle, text = formulas.wrap_angle(closing, widest, spring.mean_radius), "Angle until the coils are closed"
+        text += ", at the widest clearance"
+        angle = d.derive("wrap_angle", "rad", angle, symbol="phi", text=text, source=NOT_IN_S2)
+        time, text = angle / wants.relative_speed, "Time until the coils are closed when the free end is held"
+        d.derive("engagement_time", "s", time, symbol="t_e", text=text, source=NOT_IN_S2)
+        torque = "The actuator can apply the energising torque"
+        for name, unit, value, most, text in (
+            ("wrap_angle", "rad", angle, wants.wrap_angle_limit, "The clutch closes soon enough"),
+            ("actuator_torque", "N*m", actuator, wants.actuator_torque_limit, torque),
+        ):
+            if most is not None:
+                d.at_most(name, value, most, unit, text=text, source=DRIVE)

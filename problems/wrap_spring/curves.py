@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..components.wrap_spring import formulas
+from ..components.wrap_spring.models import MODELS, Refined
 from ..sources import S2
-from . import formulas
-from .models import MODELS, Refined
 
 if TYPE_CHECKING:
     import pandas as pd

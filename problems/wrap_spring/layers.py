@@ -8,8 +8,11 @@ from typing import Any
 
 from synth.declaration import Block, Declaration
 
+from ..components.wrap_spring import body
+from ..components.wrap_spring.model import Built, Size
+from ..components.wrap_spring.requirements import Duty, declare_duty
 from ..practice import by_scope
-from . import blocks, body
+from ..sources import DRIVE
 
 # Of required_torque: largest drag of an interference fit, largest energising torque of a clearance fit.
 SMALL_SHARE = 0.1
@@ -23,8 +26,8 @@ class Fit:
     """
 
     small_torque: str
-    duty: type[blocks.Duty]
-    ruled_duty: type[blocks.Duty]
+    duty: type[Duty]
+    ruled_duty: type[Duty]
     wants: type[Block]
     ruled_wants: type[Block]
     rules: type[body.SpringRules]
@@ -38,19 +41,19 @@ class Sources:
         """Declare requirements of what is around the spring."""
         self.fit = fit
 
-    def declare_duty(self, d: Declaration) -> blocks.Duty:
+    def declare_duty(self, d: Declaration) -> Duty:
         """Requirements of the drive."""
-        return blocks.declare_duty(d, kind=self.fit.duty)
+        return declare_duty(d, kind=self.fit.duty)
 
-    def declare_wants(self, d: Declaration, duty: blocks.Duty) -> Any:
+    def declare_wants(self, d: Declaration, duty: Duty) -> Any:
         """Requirements of the fit."""
         return d.block(self.fit.wants)
 
-    def size(self, built: blocks.Built) -> blocks.Size:
+    def size(self, built: Built) -> Size:
         """Size that counts."""
-        return built.spring
+        return built.size
 
-    def extend(self, d: Declaration, built: blocks.Built) -> None:
+    def extend(self, d: Declaration, built: Built) -> None:
         """Declare what stands on the spring."""
 
     def declare_objectives(self, d: Declaration, *others: str) -> None:
@@ -68,11 +71,11 @@ class WithBody(Sources):
         super().__init__(fit, d)
         self._body = d.block(fit.body)
 
-    def declare_duty(self, d: Declaration) -> blocks.Duty:
+    def declare_duty(self, d: Declaration) -> Duty:
         """Requirements of the drive, with a bore that stands its torque."""
-        return blocks.declare_duty(d, kind=self.fit.duty, bore=self._body.bore)
+        return declare_duty(d, kind=self.fit.duty, bore=self._body.bore)
 
-    def extend(self, d: Declaration, built: blocks.Built) -> None:
+    def extend(self, d: Declaration, built: Built) -> None:
         """Declare parts of the mass, shaft and cost."""
         self._body.declare(d, built)
 
@@ -80,7 +83,7 @@ class WithBody(Sources):
 class Complete(WithBody):
     """Spring and hubs in a complete clutch, whose mass and length count."""
 
-    def size(self, built: blocks.Built) -> blocks.Size:
+    def size(self, built: Built) -> Size:
         """Size of the clutch."""
         return self._body.complete_size(built)
 
@@ -88,17 +91,17 @@ class Complete(WithBody):
 class Ruled(WithBody):
     """Spring and hubs by rules of practice."""
 
-    def declare_duty(self, d: Declaration) -> blocks.Duty:
+    def declare_duty(self, d: Declaration) -> Duty:
         """Requirements of the drive, of a clutch that can slip."""
-        return blocks.declare_duty(d, kind=self.fit.ruled_duty, bore=self._body.bore)
+        return declare_duty(d, kind=self.fit.ruled_duty, bore=self._body.bore)
 
-    def declare_wants(self, d: Declaration, duty: blocks.Duty) -> Any:
+    def declare_wants(self, d: Declaration, duty: Duty) -> Any:
         """Requirements of the fit, whose small torque is bounded, and of the rules."""
         wants = d.block(self.fit.ruled_wants, **{f"{self.fit.small_torque}_limit": SMALL_SHARE * duty.required_torque})
         self._rules = d.block(self.fit.rules)
         return wants
 
-    def extend(self, d: Declaration, built: blocks.Built) -> None:
+    def extend(self, d: Declaration, built: Built) -> None:
         """Declare the complete clutch, and limits by the rules."""
         super().extend(d, built)
         self._rules.limit(d, built)
@@ -113,6 +116,19 @@ class Ruled(WithBody):
 
 class RuledComplete(Ruled, Complete):
     """Spring and hubs by rules of practice, in a complete clutch whose mass and length count."""
+
+
+def declare_size(d: Declaration, size: Size, duty: Duty) -> None:
+    """Declare length, diameter and mass that count, and the limits of the room there is."""
+    d.derive("length", "mm", size.length, symbol="L", text=size.along, source="geometry")
+    d.derive("outer_diameter", "mm", size.diameter, symbol="D_o", text=size.outside, source="geometry")
+    d.derive("mass", "kg", size.mass, symbol="m", text=size.mass_of, source="geometry")
+    for name, value, most, text in (
+        ("outer_diameter", size.diameter, duty.outer_diameter_limit, "The clutch fits the room across"),
+        ("length", size.length, duty.length_limit, "The clutch fits the room along"),
+    ):
+        if most is not None:
+            d.at_most(name, value, most, "mm", text=text, source=DRIVE)
 
 
 def layers_of(fit: Fit) -> dict[tuple[bool, bool], partial[Sources]]:

@@ -12,10 +12,12 @@ from synth.declaration import Block, Declaration, Requirement
 
 from .. import practice
 from ..components.lining import wear
+from ..components.wrap_spring import body, formulas, requirements
+from ..components.wrap_spring.model import Built, WrapSpring, declare_spring
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
-from . import blocks, body, curves, formulas
-from .layers import Fit, layers_of
+from . import curves
+from .layers import Fit, declare_size, layers_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,15 +30,16 @@ WEAR = "wear volume in proportion to friction work (Archard)"
 OVERLOADS = ("slip_limited", "torque_limited")
 
 
-class InterferenceDuty(blocks.Duty):
+class InterferenceDuty(requirements.Duty):
     """What the drive asks of a clutch with this fit."""
 
     interference_tolerance = replace(
-        blocks.Duty.interference_tolerance, text="Tolerance of the interference, +- of wire, bore and hub together"
+        requirements.Duty.interference_tolerance,
+        text="Tolerance of the interference, +- of wire, bore and hub together",
     )
 
 
-class PracticeInterferenceDuty(InterferenceDuty, blocks.PracticeDuty):
+class PracticeInterferenceDuty(InterferenceDuty, requirements.PracticeDuty):
     """What the drive asks of a clutch with this fit, by the rules of practice."""
 
 
@@ -189,21 +192,21 @@ class Rules(body.SpringRules):
         source=UNSOURCED,
     )
 
-    def limit(self, d: Declaration, built: blocks.Built) -> None:
+    def limit(self, d: Declaration, built: Built) -> None:
         """Declare the limits that an engineer adds to this fit."""
         super().limit(d, built)
         wants: Wants = built.wants
         d.at_least(
             "hub_wall",
-            built.coils.hub_diameter,
-            self.hub_wall_ratio * built.duty.bore_diameter,
+            built.spring.hub_diameter,
+            self.hub_wall_ratio * built.spring.duty.bore_diameter,
             "mm",
             text="The hub has a wall around its bore",
             source=UNSOURCED,
         )
         if wants.overrun_speed is None:
             return
-        pair, needed = built.friction.part, (wear.DEPTH, wear.RATE)
+        pair, needed = built.spring.pair, (wear.DEPTH, wear.RATE)
         if pair.known.issuperset(needed):
             life = d.derive(
                 "overrun_life",
@@ -237,13 +240,13 @@ class WrapSpringClutch(DesignProblem):
 
     name = "wrap_spring"
     title = "Wrap spring clutch, interference fit"
-    sources = blocks.SOURCES
-    understands = (*blocks.COMMON, "drag_torque_limit")
+    sources = requirements.SOURCES
+    understands = (*requirements.COMMON, "drag_torque_limit")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        options = d.block(blocks.Options)
+        options = d.block(requirements.Options)
         overload = d.option(
             "overload",
             OVERLOADS,
@@ -266,48 +269,33 @@ class WrapSpringClutch(DesignProblem):
             text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
             source=f"{S2}, Delta r",
         )
-        wire = blocks.declare_wire(d, options=options)
-        coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
-        friction = blocks.declare_friction(d, duty=duty, coils=coils, lubricated=wants.lubricated)
+        spring = declare_spring(d, options=options, duty=duty, lubricated=wants.lubricated)
         if wants.drag_torque_limit is not None:
-            self._refuse_drag(d, duty=duty, wants=wants, friction=friction)
+            self._refuse_drag(d, spring, wants)
 
-        self._declare_fit(d, duty=duty, wants=wants, coils=coils, interference=interference)
-        low, high = self._fitted_moments(duty, wire, coils, interference)
-        self._name_fit(d, duty=duty, wire=wire, coils=coils, interference=interference)
-        text = "Bending moment of the loosest fit"
-        d.step("least_moment", "N*m", low, symbol="M_lo", text=text, source=f"{S2}, eq. (4)")
-        spinning = blocks.centrifugal_moment(duty, wire, coils)
+        self._declare_fit(d, spring, wants, interference)
+        low, high = self._declare_moments(d, spring, interference)
+        spinning = spring.centrifugal_moment()
         effective = low - spinning
-        guards = coils.model.declare_grip(d, low, spinning)
-        blocks.declare_closing(
-            d, duty=duty, torque=formulas.closing_torque(effective, friction.exponent_low), needs=guards
+        guards = spring.model.declare_grip(d, low, spinning)
+        spring.declare_closing(d, formulas.closing_torque(effective, spring.exponent_low), needs=guards)
+        self._declare_liftoff(d, spring, wants, low)
+        load = self._declare_overload(d, spring, overload=overload, high=high)
+        bending = spring.bending_stress(high)
+        stress, pressure = spring.declare_load(
+            d, bending_stress=bending, moment=high, load=load, needs="interference_positive"
         )
-        self._declare_liftoff(d, duty=duty, wants=wants, wire=wire, coils=coils, low=low)
-        load = self._declare_overload(d, duty=duty, overload=overload, friction=friction, high=high)
-        bending = formulas.bending_stress(high, wire.width, wire.thickness)
-        stress, pressure = blocks.declare_load(
-            d,
-            wire=wire,
-            coils=coils,
-            friction=friction,
-            bending_stress=bending,
-            moment=high,
-            load=load,
-            needs="interference_positive",
-        )
-        self._declare_fatigue(d, duty=duty, wants=wants, wire=wire, coils=coils, bending=bending, high=high)
-        self._declare_hub(d, duty=duty, wants=wants, coils=coils, load=load)
-        spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils)
-        built = blocks.Built(duty, wants, wire, coils, friction, spring)
-        blocks.declare_size(d, duty=duty, size=layer.size(built))
-        drag = self._declare_drag(d, wants=wants, friction=friction, high=high)
+        self._declare_fatigue(d, spring, wants, bending=bending, high=high)
+        self._declare_hub(d, spring, wants, load)
+        built = Built(spring, wants, spring.declare_size(d))
+        declare_size(d, layer.size(built), duty)
+        drag = self._declare_drag(d, spring, wants, high)
         if wants.overrun_speed is not None:
             self._declare_overrun(d, built, high=high, drag=drag)
         layer.extend(d, built)
-        self._declare_windup(d, built, low=low)
-        self._declare_utilisation(d, built, stress=stress, pressure=pressure)
-        self._declare_remarks(d, built, effective=effective, bending=bending, stress=stress)
+        self._declare_windup(d, spring, low)
+        self._declare_utilisation(d, spring, stress=stress, pressure=pressure)
+        self._declare_remarks(d, spring, wants, effective=effective, bending=bending, stress=stress)
         d.headline(
             "mass",
             "outer_diameter",
@@ -333,17 +321,13 @@ class WrapSpringClutch(DesignProblem):
         from . import drawing as wrap_spring  # costly to import; searches do without
 
         return wrap_spring.interference_drawing(
-            spec,
-            design,
-            scope=self.option("mass_scope"),
-            seed=self.option("model") == "seed",
+            spec, design, scope=self.option("mass_scope"), seed=self.option("model") == "seed"
         )
 
-    def _refuse_drag(self, d: Declaration, *, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
+    def _refuse_drag(self, d: Declaration, spring: WrapSpring, wants: Wants) -> None:
         """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""
-        coils = blocks.COILS_RANGE[1]
-        low = formulas.belt_exponent(friction.part.mu_min, coils, 1.0)
-        high = formulas.belt_exponent(friction.part.mu_max, coils, 1.0)
+        coils, pair, duty = requirements.COILS_RANGE[1], spring.pair, spring.duty
+        low, high = (formulas.belt_exponent(mu, coils, 1.0) for mu in (pair.mu_min, pair.mu_max))
         moment = duty.slip_safety * duty.required_torque / formulas.closing_torque(1.0, low)
         d.refuse(
             "drag_limit_unreachable",
@@ -353,33 +337,15 @@ class WrapSpringClutch(DesignProblem):
             "with more friction",
         )
 
-    def _fitted_moments(
-        self, duty: blocks.Duty, wire: blocks.Wire, coils: blocks.Coils, interference: Any
-    ) -> tuple[Any, Any]:
-        """Return the bending moments of the loosest and the tightest fit [N m]."""
-        tolerance, mean = duty.interference_tolerance, coils.mean_radius
+    def _declare_moments(self, d: Declaration, spring: WrapSpring, interference: Any) -> tuple[Any, Any]:
+        """Bending moments of the loosest and the tightest fit [N m]; what they are made of is named."""
+        tolerance, mean = spring.duty.interference_tolerance, spring.mean_radius
         loosest = interference - tolerance
         # The tightest fit is bounded by interference_range; what is built on it is known to be positive.
-        small = coils.model.free_radius(interference + tolerance, mean)
-        large = coils.model.loosened(small, 2 * tolerance)
-        low = blocks.fitted_moment(wire, coils, loosest, large)
-        return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
-
-    def _name_fit(
-        self,
-        d: Declaration,
-        *,
-        duty: blocks.Duty,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        interference: Any,
-    ) -> None:
-        """Name what the moments of the loosest and the tightest fit are made of."""
-        tolerance, mean = duty.interference_tolerance, coils.mean_radius
-        small = coils.model.free_radius(interference + tolerance, mean)
-        large = coils.model.loosened(small, 2 * tolerance)
-        loosest = interference - tolerance
-        inside = coils.hub_diameter - 2 * interference
+        small = spring.model.free_radius(interference + tolerance, mean)
+        large = spring.model.loosened(small, 2 * tolerance)
+        low = spring.fitted_moment(loosest, large)
+        inside = spring.hub_diameter - 2 * interference
         curvature = formulas.curvature_change(loosest, mean, large)
         source = f"{S2}, Delta r; {NOT_IN_S2}"
         for name, unit, value, symbol, text in (
@@ -392,26 +358,20 @@ class WrapSpringClutch(DesignProblem):
         named = [
             ("least_free_radius", "mm", small, "r_free_lo", "Mean radius of the free spring, tightest fit"),
             ("greatest_free_radius", "mm", large, "r_free_hi", "Mean radius of the free spring, loosest fit"),
-            ("centrifugal_moment", "N*m", blocks.centrifugal_moment(duty, wire, coils), "M_cf", text),
+            ("centrifugal_moment", "N*m", spring.centrifugal_moment(), "M_cf", text),
         ]
-        coils.model.declare_steps(d, named, source)
+        spring.model.declare_steps(d, named, source)
+        text = "Bending moment of the loosest fit"
+        d.step("least_moment", "N*m", low, symbol="M_lo", text=text, source=f"{S2}, eq. (4)")
+        return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
 
-    def _declare_fit(
-        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
-    ) -> None:
-        d.at_least(
-            "interference_positive",
-            interference,
-            duty.interference_tolerance,
-            "mm",
-            guard=True,
-            text="The preload survives the tolerance",
-            source=NOT_IN_S2,
-        )
-        most = interference + duty.interference_tolerance
+    def _declare_fit(self, d: Declaration, spring: WrapSpring, wants: Wants, interference: Any) -> None:
+        tolerance, text = spring.duty.interference_tolerance, "The preload survives the tolerance"
+        d.at_least("interference_positive", interference, tolerance, "mm", guard=True, text=text, source=NOT_IN_S2)
+        most = interference + tolerance
         d.at_most(
             "interference_range",
-            most / coils.mean_radius,
+            most / spring.mean_radius,
             wants.interference_ratio_max,
             "-",
             text="The strains stay small; interference with its tolerance over mean coil radius",
@@ -419,19 +379,18 @@ class WrapSpringClutch(DesignProblem):
         )
         d.advise(
             "no_free_radius",
-            most >= coils.mean_radius,
+            most >= spring.mean_radius,
             "the interference is not below the mean coil radius: there is no such spring, and its other figures mean "
             "nothing",
             source=S2,
         )
 
-    def _declare_liftoff(
-        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
-    ) -> None:
+    def _declare_liftoff(self, d: Declaration, spring: WrapSpring, wants: Wants, low: Any) -> None:
+        wire = spring.wire
         speed = d.derive(
             "liftoff_speed",
             "1/min",
-            formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, coils.mean_radius),
+            formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, spring.mean_radius),
             symbol="omega_lift",
             needs="interference_positive",
             text="Speed at which the loosest spring lifts off its hub",
@@ -439,186 +398,111 @@ class WrapSpringClutch(DesignProblem):
         )
         d.at_most(
             "liftoff",
-            duty.spring_speed,
+            spring.duty.spring_speed,
             wants.liftoff_margin * speed,
             "1/min",
             text="The spring stays on its hub at spring speed, also with model seed, which counts torques at rest",
             source=NOT_IN_S2,
         )
 
-    def _declare_overload(
-        self, d: Declaration, *, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
-    ) -> Any:
-        """Declare the largest slip torque and return the torque that the wire sees."""
-        slip = d.derive(
-            "slip_torque",
-            "N*m",
-            formulas.closing_torque(high, friction.exponent_high),
-            symbol="T_cap",
-            text="Largest torque at which the closing clutch slips: highest friction, tightest fit, at rest",
-            source=f"{S2}, eq. (18)-(20)",
-        )
+    def _declare_overload(self, d: Declaration, spring: WrapSpring, *, overload: str, high: Any) -> Any:
+        """Declare the largest slip torque; the torque that the wire sees."""
+        peak, load = spring.duty.peak_torque, "Torque that the wire sees at overload"
+        text = "Largest torque at which the closing clutch slips: highest friction, tightest fit, at rest"
+        slip = formulas.closing_torque(high, spring.exponent_high)
+        slip = d.derive("slip_torque", "N*m", slip, symbol="T_cap", text=text, source=f"{S2}, eq. (18)-(20)")
         limited = overload == "slip_limited"
         if limited:
             d.advise(
                 "slips_below_peak",
-                slip < duty.peak_torque,
+                slip < peak,
                 "the clutch always slips below peak torque: slip torque loads the wire, not the drive",
                 source=NOT_IN_S2,
             )
-        return d.derive(
-            "wire_torque",
-            "N*m",
-            np.minimum(duty.peak_torque, slip) if limited else duty.peak_torque,
-            symbol="T_load",
-            text="Torque that the wire sees at overload",
-            source=NOT_IN_S2,
-        )
+        seen = np.minimum(peak, slip) if limited else peak
+        return d.derive("wire_torque", "N*m", seen, symbol="T_load", text=load, source=NOT_IN_S2)
 
-    def _declare_fatigue(
-        self,
-        d: Declaration,
-        *,
-        duty: blocks.Duty,
-        wants: Wants,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        bending: Any,
-        high: Any,
-    ) -> None:
-        def stress(torque: Any) -> Any:
-            tension = formulas.wire_tension(high + torque, coils.mean_radius)
-            return formulas.wire_stress(bending, tension, wire.width, wire.thickness)
-
-        least, largest = stress(0.0), stress(wants.service_factor * duty.required_torque)
+    def _declare_fatigue(self, d: Declaration, spring: WrapSpring, wants: Wants, *, bending: Any, high: Any) -> None:
+        wire, torque, source = spring.wire, wants.service_factor * spring.duty.required_torque, f"{S2}, eq. (8)"
+        least, largest = spring.wire_stress(bending, high + 0.0), spring.wire_stress(bending, high + torque)
         text = "Stress of the wire without a torque"
-        d.step("least_stress", "N/mm2", least, symbol="sigma_lo", text=text, source=f"{S2}, eq. (8)")
+        d.step("least_stress", "N/mm2", least, symbol="sigma_lo", text=text, source=source)
         text = "Stress of the wire under service factor times required torque"
-        d.step("fatigue_stress", "N/mm2", largest, symbol="sigma_hi", text=text, source=f"{S2}, eq. (8)")
+        d.step("fatigue_stress", "N/mm2", largest, symbol="sigma_hi", text=text, source=source)
+        stands, source = (wire.endurance_amplitude, wire.tensile_strength), f"Goodman; {NOT_IN_S2}"
         used = d.derive(
             "fatigue_utilisation",
             "-",
-            formulas.goodman_utilisation(
-                wants.fatigue_safety,
-                least,
-                largest,
-                wire.endurance_amplitude,
-                wire.tensile_strength,
-            ),
+            formulas.goodman_utilisation(wants.fatigue_safety, least, largest, *stands),
             symbol="u_F",
             text="Fatigue of the wire between no torque and service factor times required torque",
-            source=f"Goodman; {NOT_IN_S2}",
+            source=source,
         )
-        d.at_most(
-            "fatigue",
-            used,
-            1.0,
-            "-",
-            text="The wire does not tire",
-            source=f"Goodman; {NOT_IN_S2}",
-        )
+        d.at_most("fatigue", used, 1.0, "-", text="The wire does not tire", source=source)
 
-    def _declare_hub(self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
-        d.at_least(
-            "hub_bore",
-            coils.hub_diameter,
-            duty.bore_diameter,
-            "mm",
-            guard=True,
-            text="The hub is thicker than its bore",
-            source="geometry",
-        )
+    def _declare_hub(self, d: Declaration, spring: WrapSpring, wants: Wants, load: Any) -> None:
+        hub, bore, source = spring.hub_diameter, spring.duty.bore_diameter, "torsion of a tube"
+        text = "The hub is thicker than its bore"
+        d.at_least("hub_bore", hub, bore, "mm", guard=True, text=text, source="geometry")
         shear = d.derive(
             "hub_shear",
             "N/mm2",
-            formulas.hub_shear_stress(load, coils.hub_diameter, duty.bore_diameter),
+            formulas.hub_shear_stress(load, hub, bore),
             symbol="tau",
             needs="hub_bore",
             text="Shear stress of the hub under wire torque",
-            source="torsion of a tube",
+            source=source,
         )
-        d.at_most(
-            "hub_shear",
-            shear,
-            wants.hub_shear_limit,
-            "N/mm2",
-            text="The hub does not twist off",
-            source="torsion of a tube",
-        )
+        text = "The hub does not twist off"
+        d.at_most("hub_shear", shear, wants.hub_shear_limit, "N/mm2", text=text, source=source)
 
-    def _declare_drag(self, d: Declaration, *, wants: Wants, friction: blocks.Friction, high: Any) -> Any:
-        """Declare the drag when overrunning with its limit, and return it [N m]."""
+    def _declare_drag(self, d: Declaration, spring: WrapSpring, wants: Wants, high: Any) -> Any:
+        """Declare the drag when overrunning with its limit; the drag [N m]."""
         drag = d.derive(
             "drag_torque",
             "N*m",
-            formulas.opening_torque(high, friction.exponent_high),
+            formulas.opening_torque(high, spring.exponent_high),
             symbol="T_open",
             text="Drag when overrunning: highest friction, tightest fit",
             source=f"{S2}, eq. (15), (21)",
         )
         if wants.drag_torque_limit is not None:
-            d.at_most(
-                "drag_torque",
-                drag,
-                wants.drag_torque_limit,
-                "N*m",
-                text="The clutch overruns freely",
-                source=f"{S2}, eq. (21)",
-            )
+            most, text = wants.drag_torque_limit, "The clutch overruns freely"
+            d.at_most("drag_torque", drag, most, "N*m", text=text, source=f"{S2}, eq. (21)")
         return drag
 
-    def _declare_overrun(self, d: Declaration, built: blocks.Built, *, high: Any, drag: Any) -> None:
-        wants, coils, spring = built.wants, built.coils, built.spring
-        preload = formulas.contact_pressure(high, built.wire.width, coils.hub_radius, coils.mean_radius)
+    def _declare_overrun(self, d: Declaration, built: Built, *, high: Any, drag: Any) -> None:
+        wants, spring, size = built.wants, built.spring, built.size
         rubbing = d.derive(
             "overrun_pv",
             "W/mm2",
-            formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius),
+            formulas.overrun_pv(spring.contact_pressure(high), wants.overrun_speed, spring.hub_radius),
             symbol="pv",
             text="Pressure of the preload times sliding speed when overrunning",
             source=NOT_IN_S2,
         )
-        d.at_most(
-            "overrun_pv",
-            rubbing,
-            built.friction.part.pv_allow,
-            "W/mm2",
-            text="Wire and hub stand the rubbing",
-            source=NOT_IN_S2,
-        )
-        rise = d.derive(
+        text = "Wire and hub stand the rubbing"
+        d.at_most("overrun_pv", rubbing, spring.pair.pv_allow, "W/mm2", text=text, source=NOT_IN_S2)
+        rise, source = formulas.overrun_temperature_rise, f"lumped heat balance; {NOT_IN_S2}"
+        hot = d.derive(
             "temperature_rise",
             "K",
-            formulas.overrun_temperature_rise(
-                drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, spring.diameter, spring.length
-            ),
+            rise(drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, size.diameter, size.length),
             symbol="dT",
             text="Steady rise over ambient when overrunning",
-            source=f"lumped heat balance; {NOT_IN_S2}",
+            source=source,
         )
-        d.at_most(
-            "overrun_temperature",
-            rise,
-            wants.temperature_rise_limit,
-            "K",
-            text="The clutch stays cool when overrunning",
-            source=f"lumped heat balance; {NOT_IN_S2}",
-        )
+        text = "The clutch stays cool when overrunning"
+        d.at_most("overrun_temperature", hot, wants.temperature_rise_limit, "K", text=text, source=source)
 
-    def _declare_windup(self, d: Declaration, built: blocks.Built, *, low: Any) -> None:
-        duty, wire, coils = built.duty, built.wire, built.coils
-        slope = built.friction.part.mu_min * coils.radius_ratio
-        stiffness = wire.modulus * wire.thickness * wire.width
-        angle = formulas.windup_angle(duty.required_torque, low, slope, coils.mean_radius, stiffness, duty.gap_coils)
+    def _declare_windup(self, d: Declaration, spring: WrapSpring, low: Any) -> None:
+        wire, torque, mean = spring.wire, spring.duty.required_torque, spring.mean_radius
+        slope, stiffness = spring.pair.mu_min * spring.radius_ratio, wire.modulus * wire.thickness * wire.width
+        angle = formulas.windup_angle(torque, low, slope, mean, stiffness, spring.duty.gap_coils)
+        arc = formulas.slip_arc(torque, low, slope)
         for name, unit, value, symbol, text in (
-            ("excess_tension", "N", duty.required_torque / coils.mean_radius, "N_T", "Tension that carries the torque"),
-            (
-                "slip_arc",
-                "rad",
-                formulas.slip_arc(duty.required_torque, low, slope),
-                "alpha_s",
-                "Arc over which the loaded wire slips",
-            ),
+            ("excess_tension", "N", torque / mean, "N_T", "Tension that carries the torque"),
+            ("slip_arc", "rad", arc, "alpha_s", "Arc over which the loaded wire slips"),
         ):
             d.step(name, unit, value, symbol=symbol, text=text, source=NOT_IN_S2)
         d.derive(
@@ -631,48 +515,37 @@ class WrapSpringClutch(DesignProblem):
             source=NOT_IN_S2,
         )
 
-    def _declare_utilisation(self, d: Declaration, built: blocks.Built, *, stress: Any, pressure: Any) -> None:
-        d.derive(
-            "stress_utilisation",
-            "-",
-            stress / built.wire.bending_allow,
-            symbol="u_s",
-            text="wire stress over its limit",
-            source=f"{S2}, eq. (8) and (18)",
-        )
-        d.derive(
-            "pressure_utilisation",
-            "-",
-            pressure / built.friction.part.p_allow,
-            symbol="u_p",
-            text="contact pressure over its limit",
-            source=f"{S2}, eq. (22), corrected",
-        )
+    def _declare_utilisation(self, d: Declaration, spring: WrapSpring, *, stress: Any, pressure: Any) -> None:
+        stressed, pressed = stress / spring.wire.bending_allow, pressure / spring.pair.p_allow
+        for name, value, symbol, text, source in (
+            ("stress_utilisation", stressed, "u_s", "wire stress over its limit", "eq. (8) and (18)"),
+            ("pressure_utilisation", pressed, "u_p", "contact pressure over its limit", "eq. (22), corrected"),
+        ):
+            d.derive(name, "-", value, symbol=symbol, text=text, source=f"{S2}, {source}")
 
     def _declare_remarks(
-        self, d: Declaration, built: blocks.Built, *, effective: Any, bending: Any, stress: Any
+        self, d: Declaration, spring: WrapSpring, wants: Wants, *, effective: Any, bending: Any, stress: Any
     ) -> None:
-        wants, wire, coils, friction = built.wants, built.wire, built.coils, built.friction
+        wire, pair = spring.wire, spring.pair
         d.advise(
             "weak_belt",
-            friction.exponent_low < 2,
+            spring.exponent_low < 2,
             "at the least friction the belt exponent is below 2: the drag when overrunning is above some 15 % of the "
             "torque held",
             source=NOT_IN_S2,
         )
-        factor = formulas.curved_bar_factor(2 * coils.mean_radius / wire.thickness)
+        factor = formulas.curved_bar_factor(2 * spring.mean_radius / wire.thickness)
         d.advise(
             "curved_wire",
             stress + (factor - 1) * bending > wire.bending_allow,
             "counting the curvature of the wire (Wahl's factor on bending) its inner fibre is above the allowed stress",
             source="Wahl, Mechanical Springs",
         )
-        tips = formulas.belt_exponent(
-            friction.part.mu_min, coils.per_hub - formulas.tip_coil_loss(), coils.radius_ratio
-        )
+        gripping = spring.per_hub - formulas.tip_coil_loss()
+        tips = formulas.belt_exponent(pair.mu_min, gripping, spring.radius_ratio)
         d.advise(
             "tip_lifts_off",
-            formulas.closing_torque(effective, tips) < built.duty.required_torque,
+            formulas.closing_torque(effective, tips) < spring.duty.required_torque,
             "the tip of a free end lifts off and about 0.05 coils there do not grip; counting that, the least closing "
             "torque is below required torque: raise slip safety",
             source=NOT_IN_S2,
@@ -680,7 +553,7 @@ class WrapSpringClutch(DesignProblem):
         if wants.overrun_speed is not None:
             d.advise(
                 "overrun_sliding_speed",
-                wants.overrun_speed * coils.hub_radius > friction.part.optional("v_allow"),
+                wants.overrun_speed * spring.hub_radius > pair.optional("v_allow"),
                 "the sliding speed when overrunning is above what the friction pair stands",
                 source="table friction_materials, allowed speed",
             )

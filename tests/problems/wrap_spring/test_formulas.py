@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
-from synth.problems.wrap_spring import formulas as ws
-from synth.problems.wrap_spring.models import MODELS
+from synth.problems.components.wrap_spring import formulas as ws
+from synth.problems.components.wrap_spring.models import MODELS
 
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of
 

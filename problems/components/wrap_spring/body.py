@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from synth.declaration import Block, Declaration, Requirement
 
-from .. import cost
-from ..components.shaft.model import ShaftRequirements, ShaftStress, declare_shaft
-from ..mechanics import shaft as shaft_formulas
-from ..practice import UNSOURCED
+from ... import cost
+from ...mechanics import shaft as shaft_formulas
+from ...practice import UNSOURCED
+from ..shaft.model import ShaftRequirements, ShaftStress, declare_shaft
 
 if TYPE_CHECKING:
-    from .blocks import Built, Duty, Size
+    from .model import Built, Size
+    from .requirements import Duty
 
 SHAFT_RESERVE = 1.5  # torque that the shaft stands over required_torque
 
@@ -37,7 +38,7 @@ class BodyRequirements(ShaftStress):
 
     def complete_size(self, built: Built) -> Size:
         """Return the size of a clutch whose hubs go on beyond the spring as bosses on their shafts."""
-        duty, spring = built.duty, built.spring
+        duty, spring = built.spring.duty, built.size
         return replace(
             spring,
             mass=spring.mass + 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, self.hub_factor),
@@ -48,7 +49,7 @@ class BodyRequirements(ShaftStress):
 
     def declare(self, d: Declaration, built: Built) -> None:
         """Declare parts of the mass, shaft and cost of a complete clutch."""
-        duty, spring = built.duty, built.spring
+        duty, spring = built.spring.duty, built.size
         d.derive("part_mass", "kg", spring.mass, symbol="m_part", text=spring.mass_of, source="geometry")
         d.derive("spring_length", "mm", spring.length, symbol="L_sp", text=spring.along, source="geometry")
         declare_shaft(d, self, diameter=duty.bore_diameter, torque=SHAFT_RESERVE * duty.required_torque)
@@ -59,7 +60,7 @@ class BodyRequirements(ShaftStress):
             ("boss_length", shaft_formulas.BOSS_LENGTH * duty.bore_diameter, "L_boss", "Length of a boss"),
         ):
             d.step(name, "mm", value, symbol=symbol, text=text, source=UNSOURCED)
-        wire, mass = built.wire.row, spring.spring_mass
+        wire, mass = built.spring.wire.row, spring.spring_mass
         coiled = cost.Special("spring", wire, amount=mass, mass=mass, pieces=1, factor=cost.SPRING_WIRE)
         cost.declare_cost(d, mass=self.complete_size(built).mass, parts=self.parts, special=[coiled])
 
@@ -90,12 +91,12 @@ class SpringRules(Block):
 
     def limit(self, d: Declaration, built: Built) -> None:
         """Declare the limits that an engineer adds to the spring of both fits."""
-        coils = built.coils
+        spring = built.spring
         text, most = "So many coils are built", self.coils_per_hub_max
-        d.at_most("coils_practice", coils.per_hub, most, "-", text=text, source=UNSOURCED)
+        d.at_most("coils_practice", spring.per_hub, most, "-", text=text, source=UNSOURCED)
         d.at_most(
             "spring_index_max",
-            2 * coils.mean_radius / built.wire.thickness,
+            2 * spring.mean_radius / spring.wire.thickness,
             self.spring_index_max,
             "-",
             text="The spring can be coiled and handled",

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 from synth.declaration import Declaration
 
-from ..mechanics import Quantity
-from ..sources import NOT_IN_S2
+from ...mechanics import Quantity
+from ...sources import NOT_IN_S2
 from . import formulas
 
 

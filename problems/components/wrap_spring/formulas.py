@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ..mechanics import Quantity
+from ...mechanics import Quantity
 
 # Beyond this exponent the clutch is locked for any practical purpose, and exp() would sooner or later overflow.
 LOCKED_BELT_EXPONENT = 50.0
