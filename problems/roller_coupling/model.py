@@ -393,7 +393,9 @@ class RollerCoupling(DesignProblem):
         self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)
         loads = self._declare_loads(d, wants=wants, unknowns=unknowns, layer=layer)
         self._declare_clearances(d, wants=wants, unknowns=unknowns, removable=removable)
-        self._declare_strength(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
+        self._declare_contact(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
+        self._declare_pins(d, wants=wants, unknowns=unknowns, loads=loads)
+        self._limit_float(d, wants=wants, unknowns=unknowns, loads=loads)
         layer.declare_rules(d, unknowns, loads.float_radius)
         self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
         d.headline("outer_diameter", "mass", "length", "hertz_pressure", "pin_stress", "efficiency")
@@ -578,41 +580,7 @@ class RollerCoupling(DesignProblem):
             text="Offset seen in the plane of the float",
             source=f"{EXTENDS_S3}",
         )
-        slide = d.derive(
-            "axial_slide",
-            "mm",
-            formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle),
-            symbol="z_ax",
-            text="Slide of the rollers along shaft 2 per turn, peak to peak",
-            source=f"{EXTENDS_S3}; generalises {S3}, eq. (25)",
-        )
-        width = d.derive(
-            "float_width",
-            "mm",
-            formulas.float_width(unknowns.contact_length, slide, wants.axial_play),
-            symbol="b_f",
-            text="Width of the float: contact, slide and play",
-            source=f"{S3}, chapter XII",
-        )
-        section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
-        d.step(
-            "float_section",
-            "cm2",
-            section,
-            symbol="A_f",
-            text="Float without its guides, a completed square",
-            source="geometry",
-        )
-        ends = formulas.float_radius(unknowns.guide_half_length, diameter, 0.0)
-        d.step("guide_end_radius", "mm", ends, symbol="r_K", text="Corners of the guide ends", source="geometry")
-        float_mass = d.derive(
-            "float_mass",
-            "kg",
-            formulas.float_mass(unknowns.material.density, width, section),
-            symbol="m_fl",
-            text="Mass of the float",
-            source="geometry",
-        )
+        width, float_mass = self._declare_float(d, wants=wants, unknowns=unknowns)
         tangential = d.derive(
             "tangential_force",
             "N",
@@ -693,16 +661,8 @@ class RollerCoupling(DesignProblem):
             text="Diameter that the float sweeps about a shaft",
             source="geometry",
         )
-        arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
         d.step("float_radius", "mm", float_radius, symbol="R_f", text="Outside of the float", source="geometry")
-        text = "Both arms, bars of 2 r + 2 d by 2 d by 1.2 d over a bore d"
-        d.step("arms_mass", "kg", arms, symbol="m_arm", text=text, source="geometry")
-        for name, value, symbol, text in (
-            ("arm_length", 2 * radius + 2 * roller.bore, "l_arm", "Bar of an arm along the line of its pins"),
-            ("arm_width", 2 * roller.bore, "b_arm", "Bar of an arm across that line"),
-            ("arm_thickness", formulas.ARM_THICKNESS * roller.bore, "t_arm", "Bar of an arm along its shaft"),
-        ):
-            d.step(name, "mm", value, symbol=symbol, text=text, source="usual proportions")
+        arms = self._declare_arms(d, wants=wants, unknowns=unknowns)
         part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
         built = Built(wants, unknowns, width, counter, float_mass, roller_mass, part_mass)
         bosses = layer.extend(d, built)
@@ -714,27 +674,68 @@ class RollerCoupling(DesignProblem):
             text=f"Float, counter float, rollers with pins, and arms; {layer.mass_of}",
             source="geometry",
         )
-        if wants.outer_diameter_limit is not None:
-            d.at_most(
-                "outer_diameter",
-                outer,
-                wants.outer_diameter_limit,
-                "mm",
-                text="The coupling fits the room",
-                source=DRIVE,
-            )
-        if wants.mass_limit is not None:
-            d.at_most("mass", mass, wants.mass_limit, "kg", text="The coupling is not too heavy", source=DRIVE)
-        if wants.vibration_limit is not None:
-            d.at_most(
-                "vibration",
-                vibration,
-                wants.vibration_limit,
-                "N",
-                text="The shafts do not shake too much",
-                source=DRIVE,
-            )
+        for name, unit, value, most, text in (
+            ("outer_diameter", "mm", outer, wants.outer_diameter_limit, "The coupling fits the room"),
+            ("mass", "kg", mass, wants.mass_limit, "The coupling is not too heavy"),
+            ("vibration", "N", vibration, wants.vibration_limit, "The shafts do not shake too much"),
+        ):
+            if most is not None:
+                d.at_most(name, value, most, unit, text=text, source=DRIVE)
         return Loads(tangential, centrifugal, normal, pin, vibration, float_radius)
+
+    def _declare_float(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> tuple[Any, Any]:
+        """Declare slide and sizes of the float; its width [m] and mass [kg]."""
+        slide = d.derive(
+            "axial_slide",
+            "mm",
+            formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle),
+            symbol="z_ax",
+            text="Slide of the rollers along shaft 2 per turn, peak to peak",
+            source=f"{EXTENDS_S3}; generalises {S3}, eq. (25)",
+        )
+        width = d.derive(
+            "float_width",
+            "mm",
+            formulas.float_width(unknowns.contact_length, slide, wants.axial_play),
+            symbol="b_f",
+            text="Width of the float: contact, slide and play",
+            source=f"{S3}, chapter XII",
+        )
+        diameter = unknowns.roller.outer_diameter
+        section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
+        d.step(
+            "float_section",
+            "cm2",
+            section,
+            symbol="A_f",
+            text="Float without its guides, a completed square",
+            source="geometry",
+        )
+        ends = formulas.float_radius(unknowns.guide_half_length, diameter, 0.0)
+        d.step("guide_end_radius", "mm", ends, symbol="r_K", text="Corners of the guide ends", source="geometry")
+        mass = d.derive(
+            "float_mass",
+            "kg",
+            formulas.float_mass(unknowns.material.density, width, section),
+            symbol="m_fl",
+            text="Mass of the float",
+            source="geometry",
+        )
+        return width, mass
+
+    def _declare_arms(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Any:
+        """Name mass and bars of the arms; mass of both [kg]."""
+        bore = unknowns.roller.bore
+        arms = formulas.arms_mass(wants.steel_density, unknowns.arm_radius, bore)
+        text = "Both arms, bars of 2 r + 2 d by 2 d by 1.2 d over a bore d"
+        d.step("arms_mass", "kg", arms, symbol="m_arm", text=text, source="geometry")
+        for name, value, symbol, text in (
+            ("arm_length", 2 * unknowns.arm_radius + 2 * bore, "l_arm", "Bar of an arm along the line of its pins"),
+            ("arm_width", 2 * bore, "b_arm", "Bar of an arm across that line"),
+            ("arm_thickness", formulas.ARM_THICKNESS * bore, "t_arm", "Bar of an arm along its shaft"),
+        ):
+            d.step(name, "mm", value, symbol=symbol, text=text, source="usual proportions")
+        return arms
 
     def _declare_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, removable: str) -> None:
         radius, capacity = unknowns.arm_radius, unknowns.offset_capacity
@@ -781,9 +782,8 @@ class RollerCoupling(DesignProblem):
                 source=f"{S3}, eq. (21)",
             )
 
-    def _declare_strength(
-        self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str
-    ) -> None:
+    def _declare_contact(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str) -> None:
+        """Declare the pressure between roller and guide, with the limits of both."""
         roller, material = unknowns.roller, unknowns.material
         length, radius = unknowns.contact_length, roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
@@ -841,6 +841,10 @@ class RollerCoupling(DesignProblem):
             text="The unsupported outer ring does not bend too much",
             source="makers' F0r of track rollers",
         )
+
+    def _declare_pins(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads) -> None:
+        """Declare the stresses of the pins, with their limits and that of the bearings on them."""
+        roller = unknowns.roller
         d.at_most(
             "pin_shear",
             formulas.pin_shear_measure(wants.required_torque, unknowns.arm_radius, roller.bore),
@@ -872,11 +876,14 @@ class RollerCoupling(DesignProblem):
             text="The rolling bearing stands the force at rest or oscillating",
             source=f"{S3}, chapter XI",
         )
+
+    def _limit_float(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads) -> None:
+        """Limit what the rim of the float stands, and that no roller loses its guide."""
         width = d.derived["float_width"].sx
         d.at_most(
             "ligament",
             formulas.ligament_stress(wants.ligament_factor, loads.normal, unknowns.rim, width),
-            material.strength_allow,
+            unknowns.material.strength_allow,
             "N/mm2",
             text="The bridges at the guide ends hold",
             source=EXTENDS_S3,
