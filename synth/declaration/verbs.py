@@ -56,13 +56,13 @@ class BlockField(ABC, Generic[Declared]):
     """What may stand in a :class:`Block`: it declares itself under the name of the attribute.
 
     ``default`` counts where the user states nothing; it may be a function of the block for a value that follows from
-    fields above.
+    other fields.
     """
 
     default: Any
 
     @abstractmethod
-    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Declared:
+    def declared(self, block: Block, name: str, default: Any, group: str) -> Declared:
         """Declare the field under a name; return what the attribute of the block is.
 
         ``group`` is that of the block, for a requirement or option that names none.
@@ -73,32 +73,35 @@ class BlockField(ABC, Generic[Declared]):
     @overload
     def __get__(self, block: Block, kind: type[Block]) -> Declared: ...
     def __get__(self, block: Block | None, kind: type[Block]) -> Any:
-        """The field itself on access through the class, where it has no value yet."""
+        """The field itself on access through the class; of a block what it stands for, declared now."""
         if block is None:
             return self
-        raise AttributeError("this field of the block is declared further down")
+        return block._declare(next(name for name, field in block.fields().items() if field is self))
 
 
 @dataclass(frozen=True)
 class Requirement(BlockField[Quantity]):
     """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
 
-    ``default`` may be a function that takes the block and returns the default from fields that stand above.
+    ``default`` may be a function that takes the block and returns the default from other fields, or None; ``optional``
+    one that tells from what is given whether the requirement is in force only where it is stated.
     """
 
     unit: str
     default: Any = None
     lower: float | None = None
     upper: float | None = None
-    optional: bool = False
+    optional: bool | Callable[[Any], bool] = False
     symbol: str | None = None
     text: str = ""
     source: str = ""
     group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
+    def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
-        return d.requirement(name, **{**vars(self), "default": default, "group": self.group or group})
+        optional = self.optional(block) if callable(self.optional) else self.optional
+        record = {**vars(self), "default": default, "optional": optional, "group": self.group or group}
+        return block.declaration.requirement(name, **record)
 
 
 @dataclass(frozen=True)
@@ -116,8 +119,9 @@ class Option(BlockField[str]):
     source: str = ""
     group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: str, group: str) -> str:
+    def declared(self, block: Block, name: str, default: str, group: str) -> str:
         """Declare the option; return the chosen word."""
+        d = block.declaration
         choices = d.designations(self.table) if self.table else self.choices
         return d.option(name, choices, default, self.symbol, self.text, self.source, self.group or group)
 
@@ -136,8 +140,9 @@ class Variable(BlockField[Quantity]):
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
+    def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the variable; return its symbol. What the search decides belongs to no group."""
+        d = block.declaration
         if default is not None:
             raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
         return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
@@ -155,8 +160,9 @@ class Slot(BlockField[Part]):
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Quantity | float | str | None, group: str) -> Part:
+    def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Part:
         """Declare the slot; return the part whose columns are symbols. What the search decides has no group."""
+        d = block.declaration
         if default is not None:
             raise DeclarationError(f"{d.problem}: slot {name} has no default, it is what the search decides")
         return d.part(name, self.table, self.where, self.symbol, self.text, self.source)
@@ -166,7 +172,8 @@ class Block:
     """Quantities that are declared together, each once: its attribute is its field and its public name.
 
     ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
-    the block, whose attributes are then the symbols. Properties may say what follows from them. The attribute
+    the block, whose attributes are then the symbols. A default may be made of any other field, which is declared
+    before: of two words that follow from each other each has the other in its default, where that one is ``given``. Properties may say what follows from them. The attribute
     ``group`` of a class is the group under which its own requirements and options are listed, where they name none.
 
     Parameters
@@ -194,18 +201,34 @@ class Block:
     """
 
     group: ClassVar[str] = ""
+    declaration: Declaration
+    _waiting: dict[str, Any]
 
     def __init__(self, d: Declaration, defaults: Mapping[str, Any]) -> None:
         fields = self.fields()
         for name in defaults:
             if name not in fields:
                 raise DeclarationError(f"{d.problem}: block {type(self).__name__} has no field {name!r}")
-        for name, field in fields.items():
-            default = defaults.get(name, field.default)
-            if callable(default):
-                default = default(self)
-            group = next(getattr(base, "group", "") for base in type(self).__mro__ if name in vars(base))
-            self.__dict__[name] = field.declared(d, name, default, group)
+        self.__dict__.update(declaration=d, _waiting={n: defaults.get(n, f.default) for n, f in fields.items()})
+        for name in fields:
+            if name not in self.__dict__:
+                self._declare(name)
+
+    def _declare(self, name: str) -> Any:
+        """Declare a field, and before it those that its default is made of."""
+        d, waiting = self.declaration, self._waiting
+        if name not in waiting:
+            raise DeclarationError(f"{d.problem}: the default of {name} is made of itself")
+        default = waiting.pop(name)
+        if callable(default):
+            default = default(self)
+        group = next(getattr(base, "group", "") for base in type(self).__mro__ if name in vars(base))
+        self.__dict__[name] = self.fields()[name].declared(self, name, default, group)
+        return self.__dict__[name]
+
+    def given(self, *names: str) -> bool:
+        """Whether the user states one of the requirements of these names."""
+        return not self.declaration.specified.isdisjoint(names)
 
     @classmethod
     def fields(cls) -> dict[str, BlockField[Any]]:
@@ -239,7 +262,7 @@ class Declaration:
         self.problem = problem
         self.catalogs = catalogs
         self._requested_options = dict(options)
-        self._specified = specified
+        self.specified = specified
         self.requirements: dict[str, RequirementRecord] = {}
         self.options: dict[str, OptionRecord] = {}
         self.variables: dict[str, VariableRecord] = {}
@@ -371,7 +394,7 @@ class Declaration:
             default = self._number(f"the default {what}", default, parsed)
         elif default is not None:
             default = self._expression(f"the default {what}", default)
-        specified = name in self._specified
+        specified = name in self.specified
         record = RequirementRecord(
             name=name,
             unit=unit,
@@ -720,7 +743,7 @@ class Declaration:
 
     def key(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
         """Problem, options, specified requirements and tables: declarations with the same are equal."""
-        return self.problem, self._requested_options, self._specified, self.catalogs
+        return self.problem, self._requested_options, self.specified, self.catalogs
 
     def quantities(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, unit, kind) of every numeric quantity, in the order of reports."""

@@ -755,10 +755,29 @@ def test_faults_of_a_block_are_named():
         declaration().block(LoadedRod, rod="thin")
     with pytest.raises(AttributeError, match="cannot be set"):
         declaration().block(Load).force = 3
-    early = type("Early", (Block,), {"first": Requirement("N", lambda own: own.second), "second": Requirement("N")})
-    with pytest.raises(AttributeError, match="further down"):
-        declaration().block(early)
+    round_about = {"first": Requirement("N", lambda own: own.second), "second": Requirement("N", lambda own: own.first)}
+    with pytest.raises(DeclarationError, match="default of first is made of itself"):
+        declaration().block(type("RoundAbout", (Block,), round_about))
     assert Load.force.text == "Pull"
+
+
+class Speeds(Block):
+    """Two words for one thing: each follows from the other."""
+
+    shaft = Requirement("1/min", lambda own: own.motor / 2 if own.given("motor") else None)
+    motor = Requirement("1/min", lambda own: None if own.given("motor") else 2 * own.shaft)
+
+
+@pytest.mark.parametrize(
+    ("stated", "shaft", "motor"),
+    [((), None, "(2.*shaft)"), (("shaft",), None, "(2.*shaft)"), (("motor",), "(motor/2)", None)],
+)
+def test_words_that_follow_from_each_other(stated, shaft, motor):
+    d = declaration(stated)
+    d.block(Speeds)
+    defaults = {name: r.default if r.default is None else str(r.default) for name, r in d.requirements.items()}
+    assert defaults == {"shaft": shaft, "motor": motor}
+    assert list(d.requirements) == (["motor", "shaft"] if "motor" in stated else ["shaft", "motor"])
 
 
 def test_texts_and_numbers_of_a_table_without_a_slot():
