@@ -50,7 +50,7 @@ class ForceLimits(Block):
         lower=1,
         upper=60000,
         symbol="omega_contact_min",
-        text="The plates touch at this speed at the earliest",
+        text="The plates touch at this speed at the earliest; by default idle margin min times idle speed",
         source=DRIVE,
     )
     clamp_force_limit = Requirement(
@@ -90,7 +90,7 @@ def declare_force_limits(d: Declaration, *, duty: Duty) -> ForceLimits:
     ForceLimits
         Symbols of the block.
     """
-    wants = d.block(ForceLimits)
+    wants = d.block(ForceLimits, contact_speed_min=duty.idle_margin_min * duty.idle_speed)
     d.refuse(
         "contact_window_reversed",
         wants.contact_speed_min > duty.contact_speed_max,

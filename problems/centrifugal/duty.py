@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Declaration, Requirement
 
 from ..components.shaft.model import ShaftRequirements, declare_shaft
+from ..duty import Drive, refuse_contradictions
 from ..mechanics import centrifugal
 from ..mechanics.shaft import shaft_diameter
 from ..practice import UNSOURCED
@@ -41,13 +42,25 @@ COMMON = (
 )
 
 
-class Load(Block):
-    """Torque that is asked for, in SI."""
+class Load(Drive):
+    """Speed and torque that are asked for, in SI."""
 
     group = "duty"
 
-    required_torque = Requirement(
-        "N*m", lower=0.1, upper=1e5, symbol="M_req", text="Torque to transmit from full torque speed on", source=DRIVE
+    driver_speed = replace(
+        Drive.driver_speed,
+        default=lambda duty: duty.full_torque_speed if duty.given("full_torque_speed") else None,
+        lower=10,
+        text="Working speed of the driver; idle and other speeds follow from it where they are not given",
+    )
+    full_torque_speed = Requirement(
+        "1/min",
+        lambda duty: None if duty.given("full_torque_speed") else duty.driver_speed,
+        lower=10,
+        upper=60000,
+        symbol="omega_full",
+        text="From this speed of the driver on the clutch carries its full torque",
+        source=DRIVE,
     )
     torque_reserve = Requirement(
         "-",
@@ -72,22 +85,21 @@ class Duty(Load):
 
     idle_speed = Requirement(
         "1/min",
+        lambda duty: 0.5 * duty.driver_speed,
         lower=10,
         upper=60000,
         symbol="omega_idle",
-        text="Idle speed of the driver; the clutch is released",
-        source=DRIVE,
-    )
-    full_torque_speed = Requirement(
-        "1/min",
-        lower=10,
-        upper=60000,
-        symbol="omega_full",
-        text="From this speed of the driver on the clutch carries its full torque",
+        text=f"Idle speed of the driver; the clutch is released; by default half of driver speed ({UNSOURCED})",
         source=DRIVE,
     )
     top_speed = Requirement(
-        "1/min", lower=10, upper=60000, symbol="omega_max", text="Highest speed of the driver", source=DRIVE
+        "1/min",
+        lambda duty: 1.1 * duty.driver_speed,
+        lower=10,
+        upper=60000,
+        symbol="omega_max",
+        text=f"Highest speed of the driver; by default a tenth above driver speed ({UNSOURCED})",
+        source=DRIVE,
     )
     idle_margin_min = Requirement(
         "-",
@@ -100,10 +112,12 @@ class Duty(Load):
     )
     contact_speed_max = Requirement(
         "1/min",
+        lambda duty: 0.75 * duty.driver_speed,
         lower=10,
         upper=60000,
         symbol="omega_contact_max",
-        text="The plates touch at this speed at the latest",
+        text="The plates touch at this speed at the latest; by default at three quarters of driver speed "
+        f"({UNSOURCED})",
         source=DRIVE,
     )
     driven_inertia = Requirement(
@@ -241,6 +255,7 @@ def declare_whole_duty(d: Declaration) -> WholeDuty:
 
 
 def _refuse_contradictions(d: Declaration, *, duty: Duty) -> None:
+    refuse_contradictions(d, duty)
     d.refuse(
         "empty_idle_window",
         duty.idle_margin_min * duty.idle_speed > duty.contact_speed_max,

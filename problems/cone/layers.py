@@ -10,7 +10,7 @@ from synth.declaration import Declaration
 
 from .. import cost, practice
 from ..components.lining.model import Pair
-from ..friction.duty import Duty, Size, sizing_torque
+from ..friction.duty import Duty, Size
 from ..practice import by_scope
 from . import body
 from . import formulas as cone
@@ -27,7 +27,7 @@ class Sources:
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
         """Declare requirements of what is around the cones."""
-        self.required = sizing_torque(duty)
+        self.duty = duty
 
     def judge_angle(self, d: Declaration, shape: Cone) -> None:
         """Remark half angles that are unusual."""
@@ -58,7 +58,7 @@ class WithBody(Sources):
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
         super().__init__(d, duty)
-        self._body = body.declare_body_requirements(d, required=self.required)
+        self._body = body.declare_body_requirements(d, required=self.duty.required_torque)
 
     def complete(self, cones: Cones) -> ConeBody:
         """The parts around the cones."""

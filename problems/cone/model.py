@@ -126,7 +126,7 @@ class ConeClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None)
+        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None, kind=friction.Duty)
         if duty.cooling != COOLING:
             d.advise(
                 "cooling_not_counted",
@@ -164,7 +164,6 @@ class ConeClutch(DesignProblem):
             d,
             duty=duty,
             pair=pair,
-            required=layer.required,
             torque_low=torque(grip_low),
             torque_high=torque(grip_high),
             source=f"{S1}, cone clutch; formula lost in print, derived",
@@ -594,7 +593,7 @@ class ConeClutch(DesignProblem):
             for mu in FRICTION_SHOWN
         }
         frame = pd.DataFrame({"half angle [deg]": degrees, **engaging, **releasing})
-        required = friction.sizing_torque_of(spec)
+        required = spec["required_torque"]
         frame.attrs = {
             "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {number_text(required)} N m)",
             "panels": [

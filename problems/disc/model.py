@@ -71,7 +71,7 @@ class DiscClutch(DesignProblem):
             d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings
         )
         lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
-        start = disc_pack.declare_disc_start(d, lined, required=layer.required, force=force, ramp_time=ramp_time)
+        start = disc_pack.declare_disc_start(d, lined, force=force, ramp_time=ramp_time)
         if facings is not None:
             facing_sets.declare_set_limits(d, facings, pair=pair, pressure=force / ring.area)
         discs = disc_pack.Discs(**vars(lined), start=start, size=disc_pack.disc_size(lined))

@@ -136,19 +136,16 @@ class ElectromagneticClutch(DesignProblem):
 
     def _declare_multi_plate(self, d: Declaration, layer_of: type[Sources]) -> None:
         lubrication = plate_pack.declare_lubrication(d)
+        options = d.block(MadePackOptions)
         duty = friction.declare_duty(
             d,
             cooling_default="oil_bath" if lubrication == "oil" else "still_air",
             lubrication=lubrication,
             kind=layer_of.plates.kind,
         )
-        options = d.block(MadePackOptions)
-        wants = plate_pack.declare_pack_requirements(
-            d, duty=duty, options=options, lubrication=lubrication, kind=layer_of.plates.pack
-        )
-        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        pack_layer = layer_of.plates(d, PackHousing, lubrication, required)
-        layer = layer_of(d, required, pack_layer.shaft)
+        wants = plate_pack.declare_pack_requirements(d, duty=duty, lubrication=lubrication, kind=layer_of.plates.pack)
+        pack_layer = layer_of.plates(d, PackHousing, lubrication, duty.required_torque)
+        layer = layer_of(d, duty.required_torque, pack_layer.shaft)
         ring = declare_ring(d, ratio_min=pack_layer.ratio_min, ratio_max=0.25)
         magnet = layer.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
@@ -156,7 +153,7 @@ class ElectromagneticClutch(DesignProblem):
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         stack = plate_pack.Stack(duty, options, wants, ring, pair, pack)
         torque, torques = plate_pack.declare_pack_torques(
-            d, stack, required=required, force=magnet.actuation_force, needs=(magnet_blocks.HOLDS,)
+            d, stack, force=magnet.actuation_force, needs=(magnet_blocks.HOLDS,)
         )
         built = plate_pack.declare_pack_start(d, stack, torque=torque, torques=torques, ramp_time=ramp_time)
         plate_pack.declare_pack_temperature(d, built)
@@ -184,7 +181,7 @@ class ElectromagneticClutch(DesignProblem):
     def _declare_disc(self, d: Declaration, layer_of: type[Sources]) -> None:
         duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry", kind=layer_of.discs.kind)
         pack_layer = layer_of.discs(d, DiscHousing, duty)
-        layer = layer_of(d, pack_layer.required, pack_layer.shaft)
+        layer = layer_of(d, duty.required_torque, pack_layer.shaft)
         least, most = pack_layer.ring_ratios
         ring = declare_ring(d, ratio_min=least, ratio_max=most)
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=pack_layer.requirements(d))
@@ -195,7 +192,6 @@ class ElectromagneticClutch(DesignProblem):
         start = disc_pack.declare_disc_start(
             d,
             lined,
-            required=pack_layer.required,
             force=magnet.actuation_force,
             ramp_time=ramp_time,
             needs=(magnet_blocks.HOLDS,),

@@ -11,13 +11,12 @@ from .duty import (
     Duty,
     DutyOfDiscs,
     DutyOfPack,
+    DutyOfPlates,
     Size,
     declare_duty,
     declare_envelope,
     declare_ramp_time,
     declare_size,
-    sizing_torque,
-    sizing_torque_of,
 )
 from .engagement import (
     Startup,
@@ -33,6 +32,7 @@ __all__ = [
     "Duty",
     "DutyOfDiscs",
     "DutyOfPack",
+    "DutyOfPlates",
     "Size",
     "Startup",
     "Torques",
@@ -44,6 +44,4 @@ __all__ = [
     "declare_size",
     "declare_startup",
     "declare_torque",
-    "sizing_torque",
-    "sizing_torque_of",
 ]

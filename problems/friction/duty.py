@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
-from synth.declaration import Block, Declaration, Option, Requirement
+from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
+from ..duty import Start, refuse_contradictions
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1, TYPICAL
@@ -34,7 +34,7 @@ COMMON = (
 )
 
 
-class Duty(Block):
+class Duty(Start):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
@@ -69,22 +69,8 @@ class Duty(Block):
         source="table friction_materials",
         group="practice",
     )
-    load_torque = Requirement(
-        "N*m", lower=0.1, upper=1e6, symbol="M_load", text="Torque of the load during start-up", source=f"{S1}, M2"
-    )
-    driver_speed = Requirement(
-        "1/min",
-        lower=0.1,
-        upper=60000,
-        symbol="omega1",
-        text="Speed of the driving side, constant during start-up",
-        source=f"{S1}, omega1",
-    )
     driven_inertia = Requirement(
         "kg*m2", lower=1e-6, upper=1e5, symbol="J2", text="Driven inertia at the clutch shaft", source=f"{S1}, J2"
-    )
-    safety_factor = Requirement(
-        "-", 1.5, lower=1, upper=5, symbol="n", text="Shock factor of the load", source=f"{S1}, n"
     )
     switching_factor = Requirement(
         "-",
@@ -225,8 +211,45 @@ class Duty(Block):
         group="model",
     )
 
+    def required_for(self, load_torque: Any) -> Any:
+        """Sizing torque [N m] for a torque of the load [N m]."""
+        factors = (self.safety_factor, self.switching_factor, self.speed_factor)
+        return ring_formulas.required_torque(load_torque, *factors)
 
-class DutyOfPack(Duty):
+
+AnyDuty = TypeVar("AnyDuty", bound=Duty)
+
+
+class DutyOfPlates(Duty):
+    """A duty of plates in guides, which take a share of the torque."""
+
+    group = "model"
+
+    guide_model = Option(
+        ("series", "cz"),
+        "series",
+        symbol="guide",
+        text="series: friction in the plate guides is computed; cz: the lecture's factor surface factor instead",
+        source=f"{S0}, eq. (2) to (5); {S1}, c_z",
+    )
+    surface_factor = Requirement(
+        "-",
+        0.75,
+        lower=0.3,
+        upper=1,
+        optional=lambda duty: duty.guide_model != "cz",
+        symbol="c_z",
+        text="Surface-count factor, used with guide model cz only; 0.75 belongs to ten surfaces",
+        source=f"{S1}, c_z",
+    )
+
+    def required_for(self, load_torque: Any) -> Any:
+        """Sizing torque [N m] for a torque of the load [N m]; without surface_factor guides take their share."""
+        required = super().required_for(load_torque)
+        return required / self.surface_factor if self.guide_model == "cz" else required
+
+
+class DutyOfPack(DutyOfPlates):
     """A duty whose release gap follows from the pack where it is not given."""
 
     group = "model"
@@ -252,7 +275,9 @@ class DutyOfDiscs(Duty):
     )
 
 
-def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[Duty] = Duty) -> Duty:
+def declare_duty(
+    d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[AnyDuty]
+) -> AnyDuty:
     """Declare the block duty and the refusals that concern it alone.
 
     Parameters
@@ -288,6 +313,7 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
             f"cooling {duty.cooling}",
             f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}",
         )
+    refuse_contradictions(d, duty)
     if duty.startup_torque is not None:
         d.refuse(
             "never_starts",
@@ -328,19 +354,6 @@ def declare_ramp_time(d: Declaration) -> Any:
         text="Ramp of the force: time until the clutch torque is built up; never 0",
         source=f"{S1}, t_max",
     )
-
-
-def sizing_torque(duty: Duty, surface_factor: Any = 1.0) -> Any:
-    """Return M_req = n M_load/(c_m c_v c_z)."""
-    return ring_formulas.required_torque(
-        duty.load_torque, duty.safety_factor, duty.switching_factor, duty.speed_factor, surface_factor
-    )
-
-
-def sizing_torque_of(spec: Mapping[str, Any]) -> float:
-    """Return M_req [N m] of given requirements, in SI by name, as curves show it."""
-    factors = (spec["safety_factor"], spec["switching_factor"], spec["speed_factor"])
-    return float(ring_formulas.required_torque(spec["load_torque"], *factors))
 
 
 def declare_envelope(d: Declaration, *, duty: Duty, force: Any, diameter: Any, length: Any) -> None:

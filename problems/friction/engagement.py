@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 class Torques:
     """Torques of the start-up: with the friction counted on (low) and the friction feared (high)."""
 
-    required: Any
     ramp_low: Any
     ramp_high: Any
 
@@ -29,7 +28,6 @@ def declare_torque(
     *,
     duty: Duty,
     pair: Pair,
-    required: Any,
     torque_low: Any,
     torque_high: Any,
     source: str,
@@ -46,8 +44,6 @@ def declare_torque(
         Block duty.
     pair : Pair
         Slot friction_pair.
-    required : symbol
-        Sizing torque M_req [N m].
     torque_low, torque_high : symbol
         Built capacity M_k with the friction counted on and with the friction feared [N m].
     source : str
@@ -60,16 +56,8 @@ def declare_torque(
     Returns
     -------
     Torques
-        Sizing torque and the torques at the end of the ramp.
+        Torques at the end of the ramp.
     """
-    d.derive(
-        "required_torque",
-        "N*m",
-        required,
-        symbol="M_req",
-        text="Sizing torque",
-        source=f"{S1}, sizing",
-    )
     d.derive(
         "torque",
         "N*m",
@@ -90,9 +78,7 @@ def declare_torque(
         )
     given = duty.startup_torque
     torques = Torques(
-        required=required,
-        ramp_low=torque_low if given is None else given,
-        ramp_high=torque_high if given is None else given,
+        ramp_low=torque_low if given is None else given, ramp_high=torque_high if given is None else given
     )
     d.derive(
         "ramp_torque",
@@ -105,7 +91,7 @@ def declare_torque(
     d.at_least(
         "torque_capacity",
         torque_low,
-        required,
+        duty.required_torque,
         "N*m",
         text="The clutch carries the sizing torque",
         source=f"{S1}, sizing",
@@ -145,7 +131,7 @@ def declare_torque(
         )
         d.refuse(
             "capacity_window_empty",
-            duty.overload_torque < required,
+            duty.overload_torque < duty.required_torque,
             "an overload_torque of at least the sizing torque (load_torque times safety_factor over the other "
             "operating factors); otherwise no torque satisfies both",
         )

@@ -18,7 +18,6 @@ from synth.errors import InputError
 from synth.text.numbers import number_text, typed_number
 
 from ..mechanics import heat, motors, startup
-from ..mechanics import ring as ring_formulas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -219,9 +218,7 @@ def startup_over_torque(problem: DesignProblem, spec: Mapping[str, Any], design:
 
     load, inertia, speed = spec["load_torque"], spec["driven_inertia"], spec["driver_speed"]
     kind = problem.option("load_kind")
-    sizing = ring_formulas.required_torque(
-        load, spec["safety_factor"], spec["switching_factor"], spec["speed_factor"], spec.get("surface_factor") or 1.0
-    )
+    sizing = spec["required_torque"]
     ramps = [float(f"{k * inertia * speed / load:.2g}") for k in RAMPS]
     marks = [{"x": load, "label": "load torque"}, {"x": sizing, "label": "required torque"}]
     if spec.get("startup_torque") is not None:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth import Design, DesignProblem
-from synth.declaration import Block, Choice, Declaration, Part, Requirement
+from synth.declaration import Choice, Declaration, Part, Requirement
 
 from .. import practice
 from ..components.coil import model as coil_blocks
+from ..duty import Drive, refuse_contradictions
 from ..mechanics import magnetics
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -26,11 +28,20 @@ if TYPE_CHECKING:
 SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
 
 
-class Wants(Block):
+class Wants(Drive):
     """Requirements beside those of the coil, all in SI; None where an optional one is not given."""
 
     group = "duty"
 
+    driver_speed = replace(
+        Drive.driver_speed,
+        default=1432.39,
+        lower=1,
+        symbol="omega_in",
+        text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil",
+        source=f"{S4}, section 6.1",
+    )
+    required_torque = replace(Drive.required_torque, text="Torque that the clutch has to carry, slipping or not")
     steel_density = Requirement(
         "kg/m3",
         7850,
@@ -41,14 +52,6 @@ class Wants(Block):
         source="material constant",
         group="material",
     )
-    required_torque = Requirement(
-        "N*m",
-        lower=0.1,
-        upper=1e5,
-        symbol="M_req",
-        text="Torque that the clutch has to carry, slipping or not",
-        source="requirement of the drive",
-    )
     torque_reserve = Requirement(
         "-",
         1.2,
@@ -56,15 +59,6 @@ class Wants(Block):
         upper=5,
         symbol="k_M",
         text="Torque at full current over required torque",
-        source=f"{S4}, section 6.1",
-    )
-    driver_speed = Requirement(
-        "1/min",
-        1432.39,
-        lower=1,
-        upper=60000,
-        symbol="omega_in",
-        text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil",
         source=f"{S4}, section 6.1",
     )
     slip_speed = Requirement(
@@ -216,6 +210,7 @@ class MagneticPowderClutch(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
         wants = d.block(Wants)
+        refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
         iron = coil_blocks.declare_coil_requirements(d)
         radius = d.variable(

@@ -57,19 +57,16 @@ class MultiPlateClutch(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         lubrication = plate_pack.declare_lubrication(d)
         layer_of = LAYERS[practice.declare_scope(d)]
+        plate_set = plate_sets.declare_plate_set(d)
+        options = d.block(MadePackOptions) if plate_set is None else d.block(PackOptions)
         duty = friction.declare_duty(
             d,
             cooling_default="oil_bath" if lubrication == "oil" else "still_air",
             lubrication=lubrication,
             kind=layer_of.kind,
         )
-        plate_set = plate_sets.declare_plate_set(d)
-        options = d.block(MadePackOptions) if plate_set is None else d.block(PackOptions)
-        wants = plate_pack.declare_pack_requirements(
-            d, duty=duty, options=options, lubrication=lubrication, kind=layer_of.pack
-        )
-        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        layer = layer_of(d, PistonHousing, lubrication, required)
+        wants = plate_pack.declare_pack_requirements(d, duty=duty, lubrication=lubrication, kind=layer_of.pack)
+        layer = layer_of(d, PistonHousing, lubrication, duty.required_torque)
         ring = declare_ring(d, ratio_min=layer.ratio_min, ratio_max=0.25, listed=plate_set)
         force = d.variable(
             "actuation_force",
@@ -89,7 +86,7 @@ class MultiPlateClutch(DesignProblem):
             plates = plate_sets.standard_plates(plate_set, wants=wants, ring=ring)
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring, plates=plates)
         stack = plate_pack.Stack(duty, options, wants, ring, pair, pack)
-        torque, torques = plate_pack.declare_pack_torques(d, stack, required=required, force=force)
+        torque, torques = plate_pack.declare_pack_torques(d, stack, force=force)
         if plate_set is not None:
             plate_sets.declare_set_limits(d, plate_set, pair=pair, pack=pack, pressure=torque.pressure)
         built = plate_pack.declare_pack_start(d, stack, torque=torque, torques=torques, ramp_time=ramp_time)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth import Design, DesignProblem
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Declaration, Requirement
 
 from .. import practice
+from ..duty import Drive, refuse_contradictions
 from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
@@ -62,22 +63,16 @@ GUIDES = {
 }
 
 
-class Wants(Block):
+class Wants(Drive):
     """Requirements, all in SI; None where an optional one is not given."""
 
     group = "model"
 
-    required_torque = Requirement(
-        "N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit", source=f"{S3}, M", group="duty"
+    driver_speed = replace(
+        Drive.driver_speed, lower=0, symbol="omega", text="Speed of the driving shaft", source=f"{S3}, n", group="duty"
     )
-    driver_speed = Requirement(
-        "1/min",
-        lower=0,
-        upper=60000,
-        symbol="omega",
-        text="Speed of the driving shaft",
-        source=f"{S3}, n",
-        group="duty",
+    required_torque = replace(
+        Drive.required_torque, symbol="M", text="Torque to transmit", source=f"{S3}, M", group="duty"
     )
     offset = Requirement(
         "mm",
@@ -388,6 +383,7 @@ class RollerCoupling(DesignProblem):
             group="model",
         )
         wants = d.block(Wants, **layer_of.defaults)
+        refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
         unknowns = self._declare_unknowns(d, contact=contact, track=track)
         self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)

@@ -14,6 +14,7 @@ from .. import practice
 from ..components.lining import wear
 from ..components.wrap_spring import body, formulas, requirements
 from ..components.wrap_spring.model import Built, WrapSpring, declare_spring
+from ..duty import sized_by_load
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from . import curves
@@ -50,11 +51,11 @@ class Wants(Block):
 
     service_factor = Requirement(
         "-",
-        1.5,
+        lambda wants: 1 if sized_by_load(wants) else 1.5,
         lower=1,
         upper=5,
         symbol="K_A",
-        text="The wire must stand service factor times required torque again and again",
+        text="The wire must stand service factor times required torque again and again; 1 where safety factor is in it",
         source=MODEL_VALUE,
     )
     overrun_speed = Requirement(

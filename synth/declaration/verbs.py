@@ -173,8 +173,9 @@ class Block:
 
     ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
     the block, whose attributes are then the symbols. A default may be made of any other field, which is declared
-    before: of two words that follow from each other each has the other in its default, where that one is ``given``. Properties may say what follows from them. The attribute
-    ``group`` of a class is the group under which its own requirements and options are listed, where they name none.
+    before: of two words that follow from each other each has the other in its default, where that one is ``given``.
+    Properties may say what follows from them. The attribute ``group`` of a class is the group under which its own
+    requirements and options are listed, where they name none.
 
     Parameters
     ----------

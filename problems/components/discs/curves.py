@@ -9,7 +9,6 @@ import numpy as np
 
 from synth.text.numbers import number_text
 
-from ... import friction
 from ...mechanics import disc
 from ...mechanics import ring as ring_formulas
 from ...sources import S1
@@ -40,7 +39,7 @@ def diameter_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.
     import pandas as pd
 
     grip = np.geomspace(*LININGS_SHOWN, 121) * 1e6
-    required = friction.sizing_torque_of(spec)
+    required = spec["required_torque"]
     columns = {"friction times allowed pressure [N/mm2]": grip / 1e6}
     lines: list[dict[str, Any]] = []
     for discs, words in ((1, "one disc"), (2, "two discs")):
@@ -133,7 +132,7 @@ def torque_over_force(problem: DesignProblem, spec: Mapping[str, Any], design: D
         }
     )
     lines: list[dict[str, Any]] = [
-        {"panel": 0, "y": value["required_torque"], "label": "sizing torque"},
+        {"panel": 0, "y": spec["required_torque"], "label": "sizing torque"},
         {"panel": 0, "y": spec["load_torque"], "label": "load torque"},
         {"panel": 1, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"},
     ]

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from ... import cost, practice
-from ...friction.duty import Duty, DutyOfDiscs, Size, sizing_torque
+from ...friction.duty import Duty, DutyOfDiscs, Size
 from ...practice import by_scope
 from ..shaft.model import ShaftRequirements
 from . import body
@@ -30,7 +30,7 @@ class Sources:
 
     def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
         """Declare requirements of what is around the discs."""
-        self.required = sizing_torque(duty)
+        self.duty = duty
 
     def requirements(self, d: Declaration) -> DiscRequirements:
         """Requirements of the discs."""
@@ -63,7 +63,7 @@ class WithBody(Sources):
 
     def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
         super().__init__(d, housing, duty)
-        self.housing = housing(d, self.required)
+        self.housing = housing(d, self.duty.required_torque)
         self.shaft = self.housing.wants
         self._discs = self.housing.declare_disc_requirements(d)
 

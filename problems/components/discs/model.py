@@ -214,7 +214,7 @@ def declare_disc_pack(
 
 
 def declare_disc_start(
-    d: Declaration, lined: LinedDiscs, *, required: Any, force: Any, ramp_time: Any, needs: tuple[str, ...] = ()
+    d: Declaration, lined: LinedDiscs, *, force: Any, ramp_time: Any, needs: tuple[str, ...] = ()
 ) -> Startup:
     """Declare what discs carry under an axial force, a start with them, and what it does to the linings.
 
@@ -224,8 +224,6 @@ def declare_disc_start(
         Takes the declarations.
     lined : LinedDiscs
         What is asked, and what it is made of.
-    required : symbol
-        Torque that they are sized for [N m].
     force : symbol
         Axial force F0 [N].
     ramp_time : symbol
@@ -242,13 +240,12 @@ def declare_disc_start(
         d,
         duty=duty,
         pair=pair,
-        required=required,
         torque_low=torque(pair.mu_low),
         torque_high=torque(pair.mu_high),
         source=f"{S1}, sizing",
         needs=needs,
     )
-    _declare_worn_torque(d, lined, required=required, force=force)
+    _declare_worn_torque(d, lined, force=force)
     start = declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
     declare_surface_loads(
         d,
@@ -264,7 +261,7 @@ def declare_disc_start(
     return start
 
 
-def _declare_worn_torque(d: Declaration, lined: LinedDiscs, *, required: Any, force: Any) -> None:
+def _declare_worn_torque(d: Declaration, lined: LinedDiscs, *, force: Any) -> None:
     """Declare the capacity with worn-in lining under an axial force [N], and its limit."""
     ring, pair, pack = lined.ring, lined.pair, lined.pack
     worn = d.derive(
@@ -286,7 +283,7 @@ def _declare_worn_torque(d: Declaration, lined: LinedDiscs, *, required: Any, fo
     d.at_least(
         "worn_torque_capacity",
         worn,
-        required,
+        lined.duty.required_torque,
         "N*m",
         text="The worn-in clutch carries the sizing torque",
         source="Shigley, Mechanical Engineering Design",

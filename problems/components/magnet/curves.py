@@ -80,7 +80,7 @@ def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Design) ->
         heat=coil_curves.warmth(spec, design, "insulation"),
         torque_of=lambda ampere_turns: unit * body.force(body.flux_density(ampere_turns)),
         torques=[
-            {"panel": 0, "y": value["required_torque"], "label": "sizing torque"},
+            {"panel": 0, "y": spec["required_torque"], "label": "sizing torque"},
             {"panel": 0, "y": spec["load_torque"], "label": "load_torque"},
         ],
         source=SOURCE,

@@ -77,7 +77,7 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
     data = {"friction_surfaces [-]": surfaces, f"{IDEAL} [N*m]": unit * surfaces}
     for heading, series in SERIES.items():
         data[f"{heading} [N*m]"] = unit * guide_friction.torque_sum_factor(series, surfaces, inner, outer)
-    lines = [{"panel": 0, "y": values["required_torque"], "label": "required torque"}]
+    lines = [{"panel": 0, "y": spec["required_torque"], "label": "required torque"}]
     if guide_number > 0:
         lines.append({"panel": 0, "y": step["torque_bound"], "label": "never more: mu F0 r/S"})
     torques = list(data)[1:]

@@ -9,7 +9,7 @@ import numpy as np
 from synth.declaration import Declaration, Part
 
 from ... import cost, practice
-from ...friction.duty import Duty, DutyOfPack, Size
+from ...friction.duty import DutyOfPack, DutyOfPlates, Size
 from ...practice import by_scope
 from ..shaft.model import ShaftRequirements
 from . import body
@@ -20,7 +20,7 @@ from .requirements import PackRequirements, PracticePackRequirements
 class Sources:
     """The pack by the formulas of its sources, with nothing around it."""
 
-    kind: ClassVar[type[Duty]] = Duty
+    kind: ClassVar[type[DutyOfPlates]] = DutyOfPlates
     pack: ClassVar[type[PackRequirements]] = PackRequirements
     linings = staticmethod(practice.allowed_linings)
     ratio_min: ClassVar[float] = 0.10

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.declaration import Declaration
 
-from ...friction.duty import Duty, Size
+from ...friction.duty import DutyOfPlates, Size
 from ...friction.engagement import (
     Startup,
     Torques,
@@ -104,7 +104,7 @@ class PackSize(Size):
 class Stack:
     """A pack and its lining, with what they are declared for."""
 
-    duty: Duty
+    duty: DutyOfPlates
     options: PackOptions
     wants: PackRequirements
     ring: Ring
@@ -136,7 +136,7 @@ def declare_lubrication(d: Declaration) -> str:
 
 
 def declare_pack_requirements(
-    d: Declaration, *, duty: Duty, options: PackOptions, lubrication: str, kind: type[PackRequirements]
+    d: Declaration, *, duty: DutyOfPlates, lubrication: str, kind: type[PackRequirements]
 ) -> PackRequirements:
     """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
 
@@ -144,10 +144,8 @@ def declare_pack_requirements(
     ----------
     d : Declaration
         Takes the declarations.
-    duty : Duty
+    duty : DutyOfPlates
         Block duty.
-    options : PackOptions
-        Options of the pack.
     lubrication : str
         dry or oil.
     kind : subclass of PackRequirements
@@ -158,14 +156,12 @@ def declare_pack_requirements(
     PackRequirements
         Symbols of the block.
     """
-    series = options.guide_model == "series"
     oil = lubrication == "oil"
-    defaults = {"surface_factor": 1.0 if series else 0.75, "oil_viscosity": 0.02 if oil else 0.0}
-    pack = d.block(kind, **defaults, **kind.defaults(duty, oil=oil))
-    if series:
+    pack = d.block(kind, oil_viscosity=0.02 if oil else 0.0, **kind.defaults(duty, oil=oil))
+    if duty.guide_model == "series" and duty.surface_factor is not None:
         d.refuse(
             "double_guide_loss",
-            pack.surface_factor < 1,
+            duty.surface_factor < 1,
             "no surface_factor below 1 with guide_model series, which computes the friction in the guides itself; "
             "leave surface_factor out or choose guide_model cz",
         )
@@ -255,7 +251,7 @@ def made_plates(d: Declaration, *, options: PackOptions, wants: PackRequirements
 def declare_pack(
     d: Declaration,
     *,
-    duty: Duty,
+    duty: DutyOfPlates,
     options: PackOptions,
     wants: PackRequirements,
     ring: Ring,
@@ -267,7 +263,7 @@ def declare_pack(
     ----------
     d : Declaration
         Takes the declarations.
-    duty : Duty
+    duty : DutyOfPlates
         Block duty.
     options : PackOptions
         Options of the pack.
@@ -350,8 +346,8 @@ def declare_pack(
     return pack
 
 
-def refuse_impossible_pack(d: Declaration, stack: Stack, required: Any) -> None:
-    """Refuse requirements that no design can meet, whatever the unknowns, for a sizing torque [N m]."""
+def refuse_impossible_pack(d: Declaration, stack: Stack) -> None:
+    """Refuse requirements that no design can meet, whatever the unknowns."""
     duty, options, wants, ring, pack = stack.duty, stack.options, stack.wants, stack.ring, stack.pack
     lug = pack.plates.lug_clearance
     if lug is None:
@@ -366,7 +362,7 @@ def refuse_impossible_pack(d: Declaration, stack: Stack, required: Any) -> None:
             "outer_diameter_limit, besides lug_clearance and drum_wall",
         )
     # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
-    saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
+    saturates = duty.guide_model == "series" and options.guide_series != "exponential_K"
     if duty.actuation_force_limit is not None and saturates:
         outer_spline = RING_OUTER_DIAMETER_MAX / 2000 + lug
         if duty.outer_diameter_limit is not None:
@@ -378,7 +374,7 @@ def refuse_impossible_pack(d: Declaration, stack: Stack, required: Any) -> None:
             "torque_above_guide_limit",
             np.logical_and(
                 inner_spline > 0,
-                required * wants.guide_friction * (inner_spline + outer_spline)
+                duty.required_torque * wants.guide_friction * (inner_spline + outer_spline)
                 > net_force * inner_spline * outer_spline,
             ),
             "a sizing torque that the friction in the guides lets pass at actuation_force_limit with the largest "
@@ -392,7 +388,7 @@ def declare_pack_torque(d: Declaration, stack: Stack, force: Any) -> PackTorque:
     options, wants, ring, pair, pack = stack.options, stack.wants, stack.ring, stack.pair, stack.pack
     radius, surfaces = ring.friction_radius, pack.surfaces
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
-    series = options.guide_model == "series"
+    series = stack.duty.guide_model == "series"
 
     def ratios(mu: Any) -> tuple[Any, Any]:
         return (
@@ -491,7 +487,7 @@ def declare_pack_torque(d: Declaration, stack: Stack, force: Any) -> PackTorque:
 
 
 def declare_pack_torques(
-    d: Declaration, stack: Stack, *, required: Any, force: Any, needs: tuple[str, ...] = ()
+    d: Declaration, stack: Stack, *, force: Any, needs: tuple[str, ...] = ()
 ) -> tuple[PackTorque, Torques]:
     """Refuse a pack that cannot be, declare what it carries under an actuation force, and that it carries its load.
 
@@ -501,20 +497,17 @@ def declare_pack_torques(
         Takes the declarations.
     stack : Stack
         What is asked, and what it is made of.
-    required : symbol
-        Torque that it is sized for [N m].
     force : symbol
         Actuation force [N].
     needs : tuple of str
         Guards beside that of the guides without which the torque does not exist.
     """
-    refuse_impossible_pack(d, stack, required)
+    refuse_impossible_pack(d, stack)
     torque = declare_pack_torque(d, stack, force)
     torques = declare_torque(
         d,
         duty=stack.duty,
         pair=stack.pair,
-        required=required,
         torque_low=torque.low,
         torque_high=torque.high,
         source=torque.source,

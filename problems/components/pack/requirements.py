@@ -11,7 +11,7 @@ from synth.declaration import Block, Declaration, Option, Requirement
 from ...friction.duty import Duty
 from ...mechanics import guide_friction
 from ...practice import UNSOURCED
-from ...sources import S0, S1, TYPICAL
+from ...sources import S0, TYPICAL
 from ..lining import wear
 from ..ring.model import Ring
 from ..shaft.model import ShaftRequirements
@@ -24,13 +24,6 @@ class PackOptions(Block):
 
     group = "model"
 
-    guide_model = Option(
-        ("series", "cz"),
-        "series",
-        symbol="guide",
-        text="series: friction in the plate guides is computed; cz: the lecture's factor surface factor instead",
-        source=f"{S0}, eq. (2) to (5); {S1}, c_z",
-    )
     guide_series = Option(
         guide_friction.GUIDE_SERIES,
         "geometric",
@@ -140,14 +133,6 @@ class PackRequirements(Block):
     group = "model"
     lugs: ClassVar[type[LugRequirements]] = LugRequirements
 
-    surface_factor = Requirement(
-        "-",
-        lower=0.3,
-        upper=1,
-        symbol="c_z",
-        text="Surface-count factor, used with guide model cz only; 0.75 belongs to ten surfaces",
-        source=f"{S1}, c_z",
-    )
     guide_friction = Requirement(
         "-",
         0.1,

@@ -9,6 +9,7 @@ from typing import Any
 from synth.declaration import Block, Declaration, Option, Requirement
 from synth.text.numbers import typed_number
 
+from ...duty import WORDS, Drive, refuse_contradictions
 from ...sources import ARCHARD, DRIVE, NOT_IN_S2, S2, SHAFT, TYPICAL
 from .models import MODELS
 
@@ -24,7 +25,7 @@ SOURCES = (
 
 # What a sheet for several families may state.
 COMMON = (
-    "required_torque",
+    *WORDS,
     "slip_safety",
     "peak_torque",
     "spring_speed",
@@ -75,14 +76,16 @@ class Options(Block):
     )
 
 
-class Duty(Block):
+class Duty(Drive):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
 
-    required_torque = Requirement(
-        "N*m", lower=0.01, upper=1e5, symbol="T_req", text="Torque to hold without slip", source=DRIVE
+    driver_speed = replace(
+        Drive.driver_speed, optional=lambda duty: not duty.specifies("power") or duty.specifies("power_speed")
     )
+    safety_factor = replace(Drive.safety_factor, symbol="n_L")
+    required_torque = replace(Drive.required_torque, symbol="T_req", text="Torque to hold without slip")
     slip_safety = Requirement(
         "-",
         1.3,
@@ -102,7 +105,13 @@ class Duty(Block):
         source=DRIVE,
     )
     spring_speed = Requirement(
-        "1/min", 0, lower=0, upper=60000, symbol="omega_s", text="Speed of the spring when driving", source=DRIVE
+        "1/min",
+        lambda duty: duty.driver_speed if duty.specifies("driver_speed") else 0,
+        lower=0,
+        upper=60000,
+        symbol="omega_s",
+        text="Speed of the spring when driving; by default driver speed, else at rest",
+        source=DRIVE,
     )
     interference_tolerance = Requirement(
         "mm",
@@ -220,6 +229,7 @@ def declare_duty(d: Declaration, *, kind: type[Duty], bore: Callable[[Duty], Any
         Symbols of the block.
     """
     duty = d.block(kind, bore_diameter=bore)
+    refuse_contradictions(d, duty)
     d.refuse(
         "peak_below_required",
         duty.peak_torque < duty.required_torque,

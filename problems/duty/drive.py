@@ -1,0 +1,146 @@
+"""Speed and torque of a drive: a torque is stated as that of the load, as a power, or as the rated one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from synth.declaration import Block, Declaration, Requirement
+from synth.errors import InputError
+
+from ..sources import DRIVE, S1
+
+SAME = 0.01  # share by which a power and a torque that are both stated may differ
+LOADS = ("load_torque", "power")
+
+
+def sized_by_load(block: Block) -> bool:
+    """Whether the required torque follows from that of the load."""
+    return block.given(*LOADS) and not block.given("required_torque")
+
+
+class Drive(Block):
+    """Speed and torque of a drive, all in SI; None where a word says nothing in the question."""
+
+    group = "duty"
+
+    driver_speed = Requirement(
+        "1/min", lower=0.1, upper=60000, symbol="omega1", text="Speed of the driving side", source=DRIVE
+    )
+    safety_factor = Requirement(
+        "-",
+        1.5,
+        lower=1,
+        upper=5,
+        optional=lambda drive: not sized_by_load(drive),
+        symbol="n",
+        text="Shock factor of the load: required torque over load torque",
+        source=f"{S1}, n",
+    )
+    power = Requirement(
+        "kW",
+        lower=1e-6,
+        upper=1e5,
+        optional=True,
+        symbol="P",
+        text="Power that the machine takes, in place of load torque",
+        source=DRIVE,
+    )
+    power_speed = Requirement(
+        "1/min",
+        lambda drive: drive.driver_speed,
+        lower=0.1,
+        upper=60000,
+        optional=lambda drive: not drive.given("power"),
+        symbol="omega_P",
+        text="Speed at which the machine takes power; by default driver speed",
+        source=DRIVE,
+    )
+    load_torque = Requirement(
+        "N*m",
+        lambda drive: drive.torque_of_power,
+        lower=0,
+        upper=1e7,
+        optional=lambda drive: not drive.given("power"),
+        symbol="M_load",
+        text="Torque of the load; required torque is by default that with safety factor",
+        source=f"{S1}, M2",
+    )
+    required_torque = Requirement(
+        "N*m",
+        lambda drive: drive.required_for(drive.load_torque) if sized_by_load(drive) else None,
+        lower=0.01,
+        upper=1e7,
+        symbol="M_req",
+        text="Torque to carry, all application factors in it",
+        source=DRIVE,
+    )
+
+    def required_for(self, load_torque: Any) -> Any:
+        """Torque to carry [N m] for a torque of the load [N m]."""
+        return self.safety_factor * load_torque
+
+    @property
+    def torque_of_power(self) -> Any:
+        """Load torque that a power means [N m]; None where no power is given."""
+        return None if self.power is None else self.power / self.power_speed
+
+
+class Start(Drive):
+    """Drive of a clutch that starts its load, whose torque counts as well, all in SI."""
+
+    safety_factor = Requirement(
+        "-", 1.5, lower=1, upper=5, symbol="n", text="Shock factor of the load", source=f"{S1}, n"
+    )
+    load_torque = Requirement(
+        "N*m",
+        lambda drive: drive.load_of_rating if drive.sized_by_rating else drive.torque_of_power,
+        lower=0,
+        upper=1e7,
+        symbol="M_load",
+        text="Torque of the load during start-up; by default that of power or, without shock factor and the like, "
+        "required torque",
+        source=f"{S1}, M2",
+    )
+    required_torque = Requirement(
+        "N*m",
+        lambda drive: None if drive.sized_by_rating else drive.required_for(drive.load_torque),
+        lower=0.01,
+        upper=1e7,
+        symbol="M_req",
+        text="Sizing torque, all factors in it",
+        source=f"{S1}, sizing",
+    )
+
+    @property
+    def sized_by_rating(self) -> bool:
+        """Whether the load follows from the torque that is required."""
+        return self.given("required_torque") and not self.given(*LOADS)
+
+    @property
+    def load_of_rating(self) -> Any:
+        """Load torque [N m] whose sizing torque is the required one."""
+        return self.required_torque / self.required_for(1.0)
+
+
+def refuse_contradictions(d: Declaration, drive: Drive) -> None:
+    """Refuse words for the torque that contradict each other."""
+    if drive.given("required_torque"):
+        if drive.given("safety_factor"):
+            right = "no safety_factor beside required_torque, which has all factors in it; it belongs to load_torque"
+            raise InputError("requirement safety_factor", None, right, ("requirements", "safety_factor"))
+        if drive.load_torque is not None:
+            d.refuse(
+                "required_below_load",
+                drive.required_torque < drive.load_torque,
+                "a required_torque of at least load_torque; the clutch carries what resists, with a reserve",
+            )
+    if drive.power is None:
+        return
+    d.refuse("power_at_standstill", drive.power_speed <= 0, "a power_speed at which the machine takes power")
+    if drive.given("load_torque"):
+        of_power = drive.torque_of_power
+        d.refuse(
+            "power_and_load",
+            abs(of_power - drive.load_torque) > SAME * of_power,
+            "one of power and load_torque; this power at its speed is another torque (T = P/omega)",
+        )
