@@ -125,8 +125,8 @@ class Start(Drive):
 def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     """Refuse words for the torque that contradict each other."""
     if drive.given("required_torque"):
-        if drive.given("safety_factor"):
-            right = "no safety_factor beside required_torque, which has all factors in it; it belongs to load_torque"
+        if drive.given("safety_factor") and not drive.given(*LOADS):
+            right = "no safety_factor, or a load_torque that it belongs to: required_torque has all factors in it"
             raise InputError("requirement safety_factor", None, right, ("requirements", "safety_factor"))
         if drive.load_torque is not None:
             d.refuse(

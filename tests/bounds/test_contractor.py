@@ -530,7 +530,12 @@ class Family:
             x = np.stack([outer, outer * (1 - ratio) / (1 + ratio), np.full(n, 1e4), rng.uniform(0.05, 3, n)], axis=1)
             values = self.model.evaluate(x, data).values
             with np.errstate(all="ignore"):
-                x[:, 2] = 1e4 * values["required_torque"] / values["torque"] * rng.uniform(1, 1.6, n)
+                x[:, 2] = (
+                    1e4
+                    * self.instance.values.requirements["required_torque"]
+                    / values["torque"]
+                    * rng.uniform(1, 1.6, n)
+                )
             x[:, 2] = np.clip(np.nan_to_num(x[:, 2], nan=50.0), 50, 2e5)
             good = np.flatnonzero(self.model.evaluate(x, data).feasible & not_refused(self.form.instance, combinations))
             found_x.append(x[good])

@@ -67,7 +67,7 @@ class Enumeration:
             base = instance.model.evaluate(x, data)
             # The torque is proportional to the force, so one evaluation gives the force that carries the sizing torque.
             with np.errstate(all="ignore"):
-                carries = 1e4 * base.values["required_torque"] / base.values["torque"]
+                carries = 1e4 * instance.values.requirements["required_torque"] / base.values["torque"]
             for factor in forces:
                 trial = x.copy()
                 trial[:, 2] = np.clip(

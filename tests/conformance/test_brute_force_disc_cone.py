@@ -102,7 +102,7 @@ def enumerated(request):
         trial = points.copy()
         trial[:, force] = 1e3
         base = instance.model.evaluate(trial, data)
-        needed = base.values["required_torque"] / base.values.get("worn_torque", base.values["torque"])
+        needed = instance.values.requirements["required_torque"] / base.values.get("worn_torque", base.values["torque"])
         for factor in LADDER:
             trial = points.copy()
             trial[:, force] = 1e3 * needed * factor

@@ -166,7 +166,9 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
         data = instance.data(np.array([combination]))
         points = np.column_stack([rings / 1e3, np.full(len(rings), 1e3), np.full(len(rings), 2.0)])
         # Torque grows with the force in proportion, so the least force is known; time and heat may ask for more.
-        points[:, 2] *= (lambda v: v["required_torque"] / v["torque"])(instance.model.evaluate(points, data).values)
+        points[:, 2] *= (
+            instance.values.requirements["required_torque"] / instance.model.evaluate(points, data).values["torque"]
+        )
         for more in np.linspace(1.0, 1.4, 41):
             result = instance.model.evaluate(points * [1, 1, more, 1], data)
             near_by = np.all([result.values[n] <= chosen.values[n] * 1.2 for n in chosen.objectives], axis=0)

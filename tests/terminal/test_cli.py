@@ -165,7 +165,6 @@ def test_the_lecture_design_comes_out_as_printed_in_its_source(tmp_path: Path) -
     assert done.returncode == 0
     assert done.stderr == ""
     for name, (symbol, shown, printed) in {
-        "required_torque": ("M_req", "1412 N m", 1411.76),
         "torque": ("M_k", "1412 N m", 1411.76),
         "ring_outer_diameter": ("d_out", "258.1 mm", 258.111),
         "ring_inner_diameter": ("d_in", "154.9 mm", 154.866),

@@ -86,7 +86,6 @@ def by_hand(pair, mean, length, angle, shell, force, ramp, *, kind="reactive", w
     factor, add = (1.35, 0.045) if closed else (1.0, 0.03)
     steel = 7850 * area * shell
     result = {
-        "required_torque": 300 / 0.85,
         "ring_ratio": length / mean,
         "friction_area": area,
         "torque": built[low],

@@ -84,7 +84,7 @@ WORKED = {
 def test_worked_numbers(name):
     sizes, values, normal, broken = WORKED[name]
     found = design(sizes, THEN)
-    assert found.values["required_torque"] == pytest.approx(352.9412, rel=1e-6)
+    assert found.frame.requirement_values["required_torque"] == pytest.approx(352.9412, rel=1e-6)
     for quantity, value in values.items():
         assert found.values[quantity] == pytest.approx(value, rel=6e-6), quantity
     assert found.values["wedge_gain"] * found.values["actuation_force"] == pytest.approx(normal, rel=1e-6)

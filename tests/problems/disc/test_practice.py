@@ -61,7 +61,7 @@ def missed(found):
 )
 def test_worked_numbers(case, part, mass, length, life, speed, thickness):
     found = design(case, THEN)
-    assert found.values["required_torque"] == pytest.approx(176.4706, rel=1e-6)
+    assert found.frame.requirement_values["required_torque"] == pytest.approx(176.4706, rel=1e-6)
     assert found.values["part_mass"] == pytest.approx(part, rel=6e-6)
     assert found.values["mass"] == pytest.approx(mass, rel=6e-6)
     assert found.values["length"] == pytest.approx(length, rel=6e-6)

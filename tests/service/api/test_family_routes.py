@@ -91,6 +91,6 @@ def test_a_check_refuses_no_content(client: Client, spec: dict[str, object]) -> 
 
 def test_a_design_is_evaluated(client: Client) -> None:
     found = client.post("evaluate", EXAMPLES["design"]).json()
-    assert found["design"]["values"]["required_torque"] == pytest.approx(1412, rel=0.01)
+    assert found["design"]["values"]["torque"] == pytest.approx(1412, rel=0.01)
     refused = client.post("evaluate", {"family": FAMILY, "requirements": DUTY})
     assert (refused.status_code, code_of(refused)) == (422, "bad_input")
