@@ -49,13 +49,13 @@ class Load(Drive):
 
     driver_speed = replace(
         Drive.driver_speed,
-        default=lambda duty: duty.full_torque_speed if duty.given("full_torque_speed") else None,
+        default=lambda duty: duty.full_torque_speed if duty.specifies("full_torque_speed") else None,
         lower=10,
         text="Working speed of the driver; idle and other speeds follow from it where they are not given",
     )
     full_torque_speed = Requirement(
         "1/min",
-        lambda duty: None if duty.given("full_torque_speed") else duty.driver_speed,
+        lambda duty: None if duty.specifies("full_torque_speed") else duty.driver_speed,
         lower=10,
         upper=60000,
         symbol="omega_full",

@@ -15,7 +15,7 @@ LOADS = ("load_torque", "power")
 
 def sized_by_load(block: Block) -> bool:
     """Whether the required torque follows from that of the load."""
-    return block.given(*LOADS) and not block.given("required_torque")
+    return block.specifies(*LOADS) and not block.specifies("required_torque")
 
 
 class Drive(Block):
@@ -50,7 +50,7 @@ class Drive(Block):
         lambda drive: drive.driver_speed,
         lower=0.1,
         upper=60000,
-        optional=lambda drive: not drive.given("power"),
+        optional=lambda drive: not drive.specifies("power"),
         symbol="omega_P",
         text="Speed at which the machine takes power; by default driver speed",
         source=DRIVE,
@@ -60,7 +60,7 @@ class Drive(Block):
         lambda drive: drive.torque_of_power,
         lower=0,
         upper=1e7,
-        optional=lambda drive: not drive.given("power"),
+        optional=lambda drive: not drive.specifies("power"),
         symbol="M_load",
         text="Torque of the load; required torque is by default that with safety factor",
         source=f"{S1}, M2",
@@ -114,7 +114,7 @@ class Start(Drive):
     @property
     def sized_by_rating(self) -> bool:
         """Whether the load follows from the torque that is required."""
-        return self.given("required_torque") and not self.given(*LOADS)
+        return self.specifies("required_torque") and not self.specifies(*LOADS)
 
     @property
     def load_of_rating(self) -> Any:
@@ -124,8 +124,8 @@ class Start(Drive):
 
 def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     """Refuse words for the torque that contradict each other."""
-    if drive.given("required_torque"):
-        if drive.given("safety_factor") and not drive.given(*LOADS):
+    if drive.specifies("required_torque"):
+        if drive.specifies("safety_factor") and not drive.specifies(*LOADS):
             right = "no safety_factor, or a load_torque that it belongs to: required_torque has all factors in it"
             raise InputError("requirement safety_factor", None, right, ("requirements", "safety_factor"))
         if drive.load_torque is not None:
@@ -137,7 +137,7 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     if drive.power is None:
         return
     d.refuse("power_at_standstill", drive.power_speed <= 0, "a power_speed at which the machine takes power")
-    if drive.given("load_torque"):
+    if drive.specifies("load_torque"):
         of_power = drive.torque_of_power
         d.refuse(
             "power_and_load",

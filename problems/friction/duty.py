@@ -275,9 +275,7 @@ class DutyOfDiscs(Duty):
     )
 
 
-def declare_duty(
-    d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[AnyDuty]
-) -> AnyDuty:
+def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[AnyDuty]) -> AnyDuty:
     """Declare the block duty and the refusals that concern it alone.
 
     Parameters

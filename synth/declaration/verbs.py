@@ -173,7 +173,7 @@ class Block:
 
     ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
     the block, whose attributes are then the symbols. A default may be made of any other field, which is declared
-    before: of two words that follow from each other each has the other in its default, where that one is ``given``.
+    before: of two words that follow from each other each has the other in its default, where it ``specifies`` that one.
     Properties may say what follows from them. The attribute ``group`` of a class is the group under which its own
     requirements and options are listed, where they name none.
 
@@ -227,7 +227,7 @@ class Block:
         self.__dict__[name] = self.fields()[name].declared(self, name, default, group)
         return self.__dict__[name]
 
-    def given(self, *names: str) -> bool:
+    def specifies(self, *names: str) -> bool:
         """Whether the user states one of the requirements of these names."""
         return not self.declaration.specified.isdisjoint(names)
 

@@ -764,8 +764,8 @@ def test_faults_of_a_block_are_named():
 class Speeds(Block):
     """Two words for one thing: each follows from the other."""
 
-    shaft = Requirement("1/min", lambda own: own.motor / 2 if own.given("motor") else None)
-    motor = Requirement("1/min", lambda own: None if own.given("motor") else 2 * own.shaft)
+    shaft = Requirement("1/min", lambda own: own.motor / 2 if own.specifies("motor") else None)
+    motor = Requirement("1/min", lambda own: None if own.specifies("motor") else 2 * own.shaft)
 
 
 @pytest.mark.parametrize(
