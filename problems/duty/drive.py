@@ -134,6 +134,9 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
                 drive.required_torque < drive.load_torque,
                 "a required_torque of at least load_torque; the clutch carries what resists, with a reserve",
             )
+    elif drive.specifies("load_torque"):
+        right = "a required_torque where load_torque is 0: nothing resists, but something has to be brought up to speed"
+        d.refuse("nothing_to_carry", drive.load_torque <= 0, right)
     if drive.power is None:
         return
     d.refuse("power_at_standstill", drive.power_speed <= 0, "a power_speed at which the machine takes power")
