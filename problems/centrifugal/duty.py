@@ -8,7 +8,7 @@ from typing import Any
 from synth.declaration import Declaration, Requirement
 
 from ..components.shaft.model import ShaftRequirements, declare_shaft
-from ..duty import Drive, refuse_contradictions
+from ..duty import WORDS, Drive, refuse_contradictions
 from ..mechanics import centrifugal
 from ..mechanics.shaft import shaft_diameter
 from ..practice import UNSOURCED
@@ -27,7 +27,7 @@ SOURCES = (
 
 # What a sheet for several families may state.
 COMMON = (
-    "required_torque",
+    *WORDS,
     "torque_reserve",
     "idle_speed",
     "full_torque_speed",

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .drive import Drive, Start, refuse_contradictions, sized_by_load
+from .drive import WORDS, Drive, Start, refuse_contradictions, sized_by_load
 
-__all__ = ["Drive", "Start", "refuse_contradictions", "sized_by_load"]
+__all__ = ["WORDS", "Drive", "Start", "refuse_contradictions", "sized_by_load"]

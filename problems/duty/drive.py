@@ -11,6 +11,7 @@ from ..sources import DRIVE, S1
 
 SAME = 0.01  # share by which a power and a torque that are both stated may differ
 LOADS = ("load_torque", "power")
+WORDS = (*LOADS, "power_speed", "required_torque", "driver_speed", "safety_factor")  # of all families
 
 
 def sized_by_load(block: Block) -> bool:

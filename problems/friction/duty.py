@@ -8,17 +8,15 @@ from typing import Any, TypeVar
 from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
-from ..duty import Start, refuse_contradictions
+from ..duty import WORDS, Start, refuse_contradictions
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1, TYPICAL
 
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
-    "load_torque",
-    "driver_speed",
+    *WORDS,
     "driven_inertia",
-    "safety_factor",
     "switching_factor",
     "speed_factor",
     "engagements_per_hour",

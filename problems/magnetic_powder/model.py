@@ -13,7 +13,7 @@ from synth.declaration import Choice, Declaration, Part, Requirement
 
 from .. import practice
 from ..components.coil import model as coil_blocks
-from ..duty import Drive, refuse_contradictions
+from ..duty import WORDS, Drive, refuse_contradictions
 from ..mechanics import magnetics
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -198,8 +198,7 @@ class MagneticPowderClutch(DesignProblem):
         *SHAFT,
     )
     understands = (
-        "required_torque",
-        "driver_speed",
+        *WORDS,
         "outer_diameter_limit",
         "length_limit",
         "ambient_temperature",

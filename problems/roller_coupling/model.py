@@ -14,7 +14,7 @@ from synth import Design, DesignProblem
 from synth.declaration import Declaration, Requirement
 
 from .. import practice
-from ..duty import Drive, refuse_contradictions
+from ..duty import WORDS, Drive, refuse_contradictions
 from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
@@ -338,8 +338,7 @@ class RollerCoupling(DesignProblem):
         *SHAFT,
     )
     understands = (
-        "required_torque",
-        "driver_speed",
+        *WORDS,
         "offset",
         "shaft_angle",
         "outer_diameter_limit",

@@ -144,13 +144,14 @@ def _applicant(entry: object, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     problem = load(family)
     if family_sheet["options"]:
         problem = type(problem)(**{**problem.options, **family_sheet["options"]})
-    declaration = problem.model(frozenset(), catalogs).declaration
+    specified = frozenset({*sheet["requirements"], *family_sheet["requirements"]})
+    declaration = problem.model(specified, catalogs).declaration
     one = Applicant(problem.name, problem.title or problem.name, family_sheet, problem, declaration)
     shared = {n: v for n, v in sheet["options"].items() if n not in problem.options}
     if shared and all(n in one.declaration.options for n in shared):
         one.problem = type(problem)(**{**shared, **problem.options})
         try:
-            one.declaration = one.problem.model(frozenset(), catalogs).declaration
+            one.declaration = one.problem.model(specified, catalogs).declaration
         except InputError as error:
             one.problem = problem
             one.misfits.append(f"refuses an option ({error})")
