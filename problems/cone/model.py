@@ -15,6 +15,7 @@ from synth.text.numbers import number_text, typed_number
 from .. import friction, practice
 from ..components.lining import wear
 from ..components.lining.model import Pair, declare_friction_pair, declare_surface_loads
+from ..duty import coverage
 from ..friction import startup_curves
 from ..mechanics import heat, plates
 from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
@@ -122,6 +123,7 @@ class ConeClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "steel_specific_heat", "temperature_rise_limit")
+    declines = coverage.ENGAGED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -17,6 +17,7 @@ from ..components.discs.layers import LAYERS
 from ..components.lining import wear
 from ..components.lining.model import declare_friction_pair
 from ..components.ring.model import declare_ring
+from ..duty import coverage
 from ..friction import startup_curves
 from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, S1, SHAFT, SHIGLEY_DISC
 
@@ -46,6 +47,7 @@ class DiscClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
+    declines = coverage.ENGAGED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement
-from synth.errors import InputError
 
 from ..sources import DRIVE, S1
 
@@ -128,7 +127,7 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     if drive.specifies("required_torque"):
         if drive.specifies("safety_factor") and not drive.specifies(*LOADS):
             right = "no safety_factor, or a load_torque that it belongs to: required_torque has all factors in it"
-            raise InputError("requirement safety_factor", None, right, ("requirements", "safety_factor"))
+            d.refuse("factor_without_load", True, right)
         if drive.load_torque is not None:
             d.refuse(
                 "required_below_load",
@@ -139,6 +138,8 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
         right = "a required_torque where load_torque is 0: nothing resists, but something has to be brought up to speed"
         d.refuse("nothing_to_carry", drive.load_torque <= 0, right)
     if drive.power is None:
+        if drive.specifies("power_speed"):
+            d.refuse("speed_without_power", True, "a power that belongs to power_speed, or no power_speed")
         return
     d.refuse("power_at_standstill", drive.power_speed <= 0, "a power_speed at which the machine takes power")
     if drive.specifies("load_torque"):

@@ -22,6 +22,7 @@ from ..components.pack import model as plate_pack
 from ..components.pack.body import PackHousing
 from ..components.pack.requirements import MadePackOptions
 from ..components.ring.model import declare_ring
+from ..duty import coverage
 from ..friction import startup_curves
 from ..mechanics import magnetics
 from ..sources import (
@@ -72,6 +73,7 @@ class ElectromagneticClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap")
+    declines = coverage.ENGAGED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

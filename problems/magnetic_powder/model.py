@@ -13,7 +13,7 @@ from synth.declaration import Choice, Declaration, Part, Requirement
 
 from .. import practice
 from ..components.coil import model as coil_blocks
-from ..duty import WORDS, Drive, refuse_contradictions
+from ..duty import WORDS, Drive, coverage, refuse_contradictions
 from ..mechanics import magnetics
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -204,6 +204,7 @@ class MagneticPowderClutch(DesignProblem):
         "ambient_temperature",
         "steel_density",
     )
+    declines = coverage.ENGAGED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

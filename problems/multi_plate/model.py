@@ -18,6 +18,7 @@ from ..components.pack.body import PistonHousing
 from ..components.pack.layers import LAYERS
 from ..components.pack.requirements import MadePackOptions, PackOptions
 from ..components.ring.model import declare_ring
+from ..duty import coverage
 from ..friction import startup_curves
 from ..sources import ARCHARD, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S0, SHAFT
 
@@ -52,6 +53,7 @@ class MultiPlateClutch(DesignProblem):
         "plate_gap",
         "drag_torque_limit",
     )
+    declines = coverage.ENGAGED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -14,7 +14,7 @@ from synth import Design, DesignProblem
 from synth.declaration import Declaration, Requirement
 
 from .. import practice
-from ..duty import WORDS, Drive, refuse_contradictions
+from ..duty import WORDS, Drive, coverage, refuse_contradictions
 from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
@@ -346,6 +346,8 @@ class RollerCoupling(DesignProblem):
         "vibration_limit",
         "steel_density",
     )
+    declines = coverage.JOINING
+    disregards = (*coverage.SOFTNESS, *coverage.FACTORS)
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

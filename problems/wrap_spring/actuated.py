@@ -11,6 +11,7 @@ from synth.declaration import Block, Declaration, Requirement
 from .. import practice
 from ..components.wrap_spring import body, formulas, requirements
 from ..components.wrap_spring.model import Built, Size, WrapSpring, declare_spring
+from ..duty import coverage
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, TYPICAL
 from . import curves
@@ -203,6 +204,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, clearance fit"
     sources = requirements.SOURCES
     understands = requirements.COMMON
+    declines, disregards = coverage.GRIPPING, coverage.FACTORS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -14,7 +14,7 @@ from .. import practice
 from ..components.lining import wear
 from ..components.wrap_spring import body, formulas, requirements
 from ..components.wrap_spring.model import Built, WrapSpring, declare_spring
-from ..duty import sized_by_load
+from ..duty import coverage, sized_by_load
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from . import curves
@@ -243,6 +243,7 @@ class WrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, interference fit"
     sources = requirements.SOURCES
     understands = (*requirements.COMMON, "drag_torque_limit")
+    declines, disregards = coverage.GRIPPING, coverage.FACTORS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

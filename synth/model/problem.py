@@ -53,6 +53,10 @@ class DesignProblem(FamilyHooks):
     sources: tuple[str, ...] = ()
     # Requirements that mean here what they mean in every family: what a sheet for several families may state.
     understands: tuple[str, ...] = ()
+    # Requirements of other families that ask for what this one cannot do: why, and what does it.
+    declines: Mapping[str, str] = {}
+    # Requirements of other families that cannot matter here: they are left out, which is said.
+    disregards: tuple[str, ...] = ()
     # What a spec must repeat beside options and requirements so that it asks for the same problem.
     restated: Mapping[str, Any] = {}
 

@@ -77,6 +77,7 @@ class RobustProblem(DesignProblem):
         super().__init__(**base.options)
         self.base, self.uncertainty, self.user_limits = base, uncertainty, limits
         self.simulation_settings, self.understands = base.simulation_settings, base.understands
+        self.declines, self.disregards = base.declines, base.disregards
         self.operating_point = base.operating_point
         self.restated = {**base.restated, "robust": uncertainty.block()}
 

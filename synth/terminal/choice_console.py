@@ -122,7 +122,7 @@ def print_comparison(found: Comparison, console: Console, every: bool = False, p
     for name in found.objectives:
         meanings: dict[str, list[str]] = {}
         for x in found.outcomes:
-            if x.meanings.get(name) and x.outcome != "refused":
+            if x.meanings.get(name) and x.outcome not in ("refused", "not_covered"):
                 meanings.setdefault(x.meanings[name], []).append(x.family)
         if len(meanings) > 1:
             told_of_each = "; ".join(f"{text} ({', '.join(families)})" for text, families in meanings.items())

@@ -4,6 +4,7 @@ import dataclasses
 import io
 import json
 
+import casadi as ca
 import numpy as np
 import pandas as pd
 import pytest
@@ -534,12 +535,60 @@ def test_a_family_understands_only_what_it_uses(family):
     tables = Catalogs()
     declared = problem.model(frozenset(), tables).declaration.requirements
     assert set(problem.understands) <= set(declared)
-    model = problem.model(frozenset(declared), tables)
-    used = [node for x in model.constraints for node in x.nodes] + list(model.quantity_node.values())
+    # Others follow from some of these words where they are stated alone, and none where all are.
     for name in problem.understands:
-        k = next(i for i, e in enumerate(model.data_inputs) if (e.kind, e.name) == ("requirement", name))
-        marked = model.program.dependence([len(model.variables) + k])
-        assert any(marked[node] for node in used), name
+        words = ({name}, {name, "power"}, declared)
+        assert any(reads(problem.model(frozenset(stated), tables), name) for stated in words), name
+
+
+def reads(model, name):
+    """Whether what is found, a limit or the default of another requirement depends on one."""
+    symbols = model.requirement_symbols
+    records = model.declaration.requirements.values()
+    defaults = ca.vertcat(*(r.default for r in records if isinstance(r.default, ca.SX) and not r.given))
+    if symbols[name] in map(str, ca.symvar(ca.SX(defaults))):
+        return True
+    used = [node for x in model.constraints for node in x.nodes] + list(model.quantity_node.values())
+    k = next(i for i, e in enumerate(model.data_inputs) if (e.kind, e.name) == ("requirement", name))
+    marked = model.program.dependence([len(model.variables) + k])
+    return any(marked[node] for node in used)
+
+
+PLAIN = {"load_torque": "100 N*m", "driver_speed": "1450 1/min", "driven_inertia": "0.4 kg*m2"}
+
+
+def test_who_serves_a_plain_duty_and_what_the_others_say():
+    found = {one.label: one for one in applicants("any", sheet_of(requirements=PLAIN), Catalogs())}
+    serving = {label for label, one in found.items() if not one.misfits}
+    assert serving == {f for f in FAMILIES if "centrifugal" in f} | {
+        "cone_clutch",
+        "disc_clutch",
+        "electromagnetic_clutch",
+        "multi_plate_clutch",
+    }
+    assert "use it beside a clutch" in found["roller_coupling"].misfits[0]
+    for label in ("wrap_spring", "wrap_spring_actuated"):
+        assert "use a friction clutch" in found[label].misfits[0]
+        assert found[label].declined
+    assert found["magnetic_powder_clutch"].misfits == ["does not understand driven_inertia"]
+
+
+def test_what_cannot_matter_to_a_family_is_left_out_and_said():
+    wants = {"required_torque": "30 N*m", "driver_speed": "960 1/min", "engagements_per_hour": "60 1/h"}
+    found = compare(["wrap_spring"], wants, points=2)
+    assert "engagements_per_hour" not in found.designs[0].frame.requirement_values
+    assert found.outcomes[0].sentence.endswith("; not used: engagements_per_hour")
+    wants = {"power": "15 kW", "driver_speed": "1450 1/min", "contact_speed_max": "1000 1/min"}
+    with pytest.raises(synth.InputError, match="is engaged from outside at any speed: use a centrifugal clutch"):
+        compare(["disc_clutch"], wants | {"driven_inertia": "0.4 kg*m2"})
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_family_has_one_answer_to_each_requirement(family):
+    problem = synth.load(family)
+    declared = problem.model(frozenset(), Catalogs()).declaration.requirements
+    assert not set(declared) & {*problem.declines, *problem.disregards}
+    assert not set(problem.declines) & set(problem.disregards)
 
 
 @pytest.mark.slow

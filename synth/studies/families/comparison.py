@@ -32,7 +32,8 @@ class FamilyOutcome:
     """How one family came out.
 
     ``outcome`` is listed (it has designs on the common front), beaten, infeasible (proven), not_found (not proven),
-    refused (it does not understand the sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why.
+    refused (it does not understand the sheet, lacks something, or refuses a value), not_covered (it cannot do what is
+    asked) or stopped; ``sentence`` says why, and which requirements do not matter to it.
     ``front`` is its own front, where it was searched, ``listed`` how many of its designs are on the common one,
     ``meanings`` what the objectives mean in it,
     ``offers`` its own objectives, and whether they count where none is named; nothing where some were named.

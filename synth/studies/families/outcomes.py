@@ -48,12 +48,18 @@ class Outcomes:
     chosen: bool
 
     def of(self, one: Applicant) -> FamilyOutcome:
-        """Outcome of a family."""
+        """Outcome of a family, with the requirements that do not matter to it."""
+        outcome = self._of(one)
+        not_used = f"; not used: {', '.join(one.not_used)}" if one.not_used else ""
+        return replace(outcome, sentence=outcome.sentence + not_used)
+
+    def _of(self, one: Applicant) -> FamilyOutcome:
         d = one.declaration
         quantities: Mapping[str, Any] = {**d.variables, **d.counts, **d.derived}
         meanings = {n: quantities[n].text for n in self.front.objectives if n in quantities}
         offers = {} if self.chosen else {n: objective.default for n, objective in d.objectives.items()}
-        outcome = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings, offers=offers)
+        kind = "not_covered" if one.declined else "refused"
+        outcome = FamilyOutcome(one.label, one.title, kind, "", meanings=meanings, offers=offers)
         if one.misfits:
             return replace(outcome, sentence=f"it {' and '.join(one.misfits)}")
         if one.label in self.faults:

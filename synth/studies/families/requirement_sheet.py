@@ -48,6 +48,8 @@ class Applicant:
     problem: DesignProblem
     declaration: Declaration
     misfits: list[str] = field(default_factory=list)
+    declined: bool = False
+    not_used: tuple[str, ...] = ()  # requirements of the sheet that cannot matter to it
 
     def robust(self, sheet: Sheet) -> dict[str, Any]:
         """Scatter of the sheet of all, and of its own."""
@@ -62,7 +64,8 @@ class Applicant:
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
         """Question of the family: the sheet of all and its own, and the objectives of the ranking."""
         entries: dict[str, Any] = {key: {**sheet[key], **self.family_sheet[key]} for key in ("limits", "fix", "parts")}
-        requirements = {**sheet["requirements"], **self.family_sheet["requirements"]}
+        common = {n: v for n, v in sheet["requirements"].items() if n not in self.not_used}
+        requirements = {**common, **self.family_sheet["requirements"]}
         return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **entries, **ranked)
 
 
@@ -117,7 +120,10 @@ def applicants(families: object, sheet: Sheet, catalogs: Catalogs) -> list[Appli
     _check_family_sheets(candidates, sheet)
     _check_tables(candidates, catalogs)
     for one in candidates:
-        one.misfits += _misfits(one, sheet)
+        one.not_used = tuple(name for name in sheet["requirements"] if name in one.problem.disregards)
+        declined = dict.fromkeys(r for name, r in one.problem.declines.items() if name in sheet["requirements"])
+        one.declined = bool(declined)
+        one.misfits += [*declined, *_misfits(one, sheet)]
     return candidates
 
 
@@ -171,7 +177,7 @@ def _check_names(candidates: Sequence[Applicant], sheet: Sheet) -> None:
     for key in KEYS:
         known = {n for one in candidates for n in _known(one, key)}
         for name in sheet[key]:
-            if name in known:
+            if name in known or any(_answered(one, key, name) for one in candidates):
                 continue
             if key == "requirements":
                 common = (r for one in candidates for r in one.declaration.requirements.values() if r.name in known)
@@ -229,6 +235,11 @@ def _check_tables(candidates: Sequence[Applicant], catalogs: Catalogs) -> None:
             raise InputError("catalogs", name, right, ("catalogs", name))
 
 
+def _answered(one: Applicant, key: str, name: str) -> bool:
+    """Whether a family says of a requirement of others why it is none of its own."""
+    return key == "requirements" and (name in one.problem.declines or name in one.problem.disregards)
+
+
 def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
     """Reasons why a family cannot serve a sheet, as predicates."""
     reasons, d = [], one.declaration
@@ -241,7 +252,7 @@ def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
         "robust": "has nothing that scatters as",
     }
     for key, lacks in words.items():
-        strange = [n for n in sheet[key] if n not in _known(one, key)]
+        strange = [n for n in sheet[key] if n not in _known(one, key) and not _answered(one, key, n)]
         if strange:
             reasons.append(f"{lacks} {', '.join(strange)}")
     names = d.names()

@@ -76,6 +76,7 @@ def test_a_power_is_taken_at_its_speed(family):
         ({"load_torque": "120 N*m", "required_torque": "100 N*m"}, "a required_torque of at least load_torque"),
         ({"required_torque": "100 N*m", "safety_factor": 2}, "required_torque has all factors in it"),
         ({"load_torque": "0 N*m"}, "required_torque"),
+        ({"required_torque": "100 N*m", "power_speed": "725 1/min"}, "a power that belongs to power_speed"),
     ],
 )
 @pytest.mark.parametrize("family", NEEDED)
