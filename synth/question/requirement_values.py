@@ -144,10 +144,10 @@ def missing(r: RequirementRecord) -> InputError:
 
 
 def _example(requirement: RequirementRecord) -> str:
-    """Return a value that may be typed: the middle of the range, rounded."""
-    finite = [x for x in (requirement.lower, requirement.upper) if np.isfinite(x) and x > 0]
-    middle = math.sqrt(finite[0] * finite[1]) if len(finite) == 2 else (finite[0] if finite else 1.0)
-    shown = float(f"{from_si(middle, parse_unit(requirement.unit)):.1g}")
+    """Return a value that may be typed: the middle of the range, rounded; of one that begins at 0, from 1 on."""
+    low, high = (from_si(x, parse_unit(requirement.unit)) for x in (requirement.lower, requirement.upper))
+    low = low if np.isfinite(low) and low > 0 else min(1.0, high)
+    shown = float(f"{math.sqrt(low * (high if np.isfinite(high) else low)):.1g}")
     return f"'{shown:g} {requirement.unit}'"
 
 
