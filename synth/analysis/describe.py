@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
@@ -79,19 +79,23 @@ def describe(p: Family, catalogs: UserTables = None) -> pd.DataFrame:
     return tabulated(described(p, catalogs))
 
 
-def described(p: Family, catalogs: UserTables = None, steps: bool = False) -> list[dict[str, Any]]:
+def described(
+    p: Family, catalogs: UserTables = None, steps: bool = False, stated: Collection[str] = ()
+) -> list[dict[str, Any]]:
     """Return the rows of ``describe``, each by the names of the columns.
 
     ``steps``: the quantities on the way to others as well, which are no results but stand in front.json for hooks.
+    ``stated``: requirements that are given; they decide which others are needed, and what their defaults are made of.
     """
     problem = load(p)
     tables = as_catalogs(catalogs)
-    everything = frozenset(problem.model(frozenset(), tables).declaration.requirements)
+    asked = problem.model(frozenset(stated), tables).declaration.requirements
+    everything = frozenset(asked)
     d = problem.model(everything, tables).declaration
     kinds = _classifications(problem, everything, tables)
     rows = [_row("option", o, default=o.default, choices=", ".join(o.choices)) for o in d.options.values()]
     fixed_rows = fixed_row_values(d, tables)
-    rows += [_requirement(r, fixed_rows) for r in d.requirements.values()]
+    rows += [_requirement(asked.get(r.name, r), fixed_rows) for r in d.requirements.values()]
     rows += [_variable(v) for v in d.variables.values()]
     rows += [
         _row("count", c, lower=float(c.values[0]), upper=float(c.values[-1]), choices=_values(c.values))

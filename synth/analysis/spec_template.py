@@ -56,7 +56,7 @@ def spec_template(problem: DesignProblem, values: Mapping[str, str], file: str =
     str
         Everything else stands in comments, so that the question is the same as without it.
     """
-    rows = described(problem)
+    rows = described(problem, stated=values)
     of = {kind: [row for row in rows if row["kind"] == kind] for kind in ("option", "requirement", "objective")}
     sizes = [row for row in rows if row["kind"] in ("variable", "count", "choice")]
     slots = [row for row in rows if row["kind"] == "slot"]

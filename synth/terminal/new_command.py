@@ -52,7 +52,7 @@ def new(
             raise InputError("NAME=VALUE", name, f"a requirement of {family}: {', '.join(rows)}")
         values[own] = checked_value(rows[own], value)
     if sys.stdin.isatty() and sys.stdout.isatty():
-        for row in needed(rows.values()):
+        for row in needed(described(problem, stated=values)):
             if row["name"] not in values:
                 answer = _answer(row)
                 values |= {row["name"]: answer} if answer else {}
@@ -63,7 +63,7 @@ def new(
     file.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(file, text)
     print(f"written to {file}")
-    left = [row["name"] for row in needed(rows.values()) if row["name"] not in values]
+    left = [row["name"] for row in needed(described(problem, stated=values)) if row["name"] not in values]
     if left:
         print(f"to be filled in: {', '.join(left)}")
 

@@ -122,7 +122,7 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
     assert "lubrication == 'dry'" in " ".join(done.stdout.split())
     for heading in ("Options", "Requirements", "Variables", "Counts", "Parts", "Derived", "Limits", "Objectives"):
         assert f"\n{heading}" in done.stdout
-    assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1 000 000")
+    assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0 .. 1·10⁷")
     assert quantity(done.stdout, "friction_pair.p_allow").startswith("friction_pair.p_allow N/mm2 0.001 .. 500")
     assert quantity(done.stdout, "friction_pair.mu_static").startswith(
         "friction_pair.mu_static - optional 0.001 .. 1.2"

@@ -66,6 +66,15 @@ def test_a_file_is_written_once_and_what_is_left_is_told(tmp_path: Path) -> None
     assert "driver_speed: is missing" in missing.stderr
 
 
+def test_a_torque_is_needed_until_a_word_for_it_is_stated() -> None:
+    for family, torque in (("cone_clutch", "load_torque"), ("centrifugal_lever", "required_torque")):
+        for stated, left in (({}, {torque}), ({"power": "15 kW"}, set()), ({"required_torque": "90 N*m"}, set())):
+            rows = needed(described(family, stated=stated))
+            assert {row["name"] for row in rows} & {"load_torque", "required_torque"} - set(stated) == left
+    text = spec_template(load("roller_coupling"), {"power": "15 kW"})
+    assert "  # required_torque: ... N*m        # Torque to transmit; by default safety_factor*load_torque\n" in text
+
+
 def test_symbols_stand_for_names_and_options_that_differ_are_stated(tmp_path: Path) -> None:
     shown = at_once("new", "multi_plate_clutch", "M_load=600 N*m", "--option", "lubrication=dry").stdout
     content = yaml.safe_load(shown)
@@ -78,9 +87,9 @@ def test_symbols_stand_for_names_and_options_that_differ_are_stated(tmp_path: Pa
     ("words", "told"),
     [
         (("no_such_clutch",), "family"),
-        (("multi_plate_clutch", "torque=5 N*m"), "a requirement of multi_plate_clutch: load_torque"),
+        (("multi_plate_clutch", "torque=5 N*m"), "a requirement of multi_plate_clutch: driver_speed"),
         (("multi_plate_clutch", "load_torque=5 kg"), "kg measures a mass"),
-        (("multi_plate_clutch", "load_torque=0 N*m"), "0.1 .. 1 000 000 N*m"),
+        (("multi_plate_clutch", "load_torque=-1 N*m"), "0 .. 1·10⁷ N*m"),
         (("multi_plate_clutch", "load_torque"), "name=value"),
     ],
 )
