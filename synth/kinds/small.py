@@ -397,7 +397,8 @@ class _Check:
             if value is not None:
                 stated[name] = value
                 self.read[name] = typed_quantity(value, record.unit)
-        for record in model.declaration.requirements.values():
+        asked = self._caught(problem.model, frozenset(named), tables) or model  # what is stated decides what is needed
+        for record in asked.declaration.requirements.values():
             if record.default is None and not record.optional and record.name not in named:
                 self.faults.append(missing(record))
         return stated

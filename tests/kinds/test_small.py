@@ -75,6 +75,16 @@ def test_options_change_a_declaration_and_wrong_ones_are_refused() -> None:
         assert caught.value.path == path
 
 
+@pytest.mark.parametrize(("torque", "ready"), [("load_torque", True), ("power", True), (None, False)])
+def test_what_is_stated_decides_what_is_missing(torque: str | None, ready: bool) -> None:
+    duty = {"driver_speed": "960 rpm", "offset": "5 mm"} | (
+        {torque: "3 kW" if torque == "power" else 30} if torque else {}
+    )
+    checked = check({"family": "roller_coupling", "requirements": duty})
+    faults = [fault["path"] for fault in checked["problems"]]
+    assert (checked["ready"], faults) == (ready, [] if ready else [["requirements", "required_torque"]])
+
+
 def test_examples_come_with_their_families_and_are_ready() -> None:
     found = examples()
     assert {one["family"] for one in found} >= set(FAMILIES)
