@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 SOURCES = {"practice": "off"}  # the formulas of the sources alone
 
 # Numbers with a unit inside formulas, as "module:name": exponents of kg, m, s, K and A.
@@ -20,3 +22,14 @@ MAGNETS = {
     MAGNETICS + "UNIT_HEAT_TRANSFER": (1, 0, -3, -1, 0),
     MAGNETICS + "UNIT_SPEED": (0, 1, -1, 0, 0),
 }
+
+
+def power_of(load_torque: float) -> dict[str, str]:
+    """Power at its speed that means a load torque [N m]."""
+    return {"power": f"{load_torque * 1000 * math.pi / 30} W", "power_speed": "1000 1/min"}
+
+
+def load_of(required_torque: float) -> dict[str, str]:
+    """Load, by torque and by power, that a clutch of a required torque [N m] carries."""
+    load = required_torque / 1.5
+    return {"load_torque": f"{load} N*m", "safety_factor": "1.5", **power_of(load)}

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES
+from ..cases import SHAFTS, SOURCES, load_of
 
 NAMES = Path(__file__).parent
 
@@ -194,7 +194,7 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=RAMPS,
-        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
             "engine": Case(
                 options=SOURCES,
@@ -266,7 +266,7 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=RAMPS,
-        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
             "balls": Case(
                 options=SOURCES,
@@ -321,7 +321,7 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=ENGINE,
-        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
             "engine": Case(
                 options=SOURCES,
@@ -354,7 +354,7 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=ENGINE,
-        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
             "engine": Case(
                 options=SOURCES,

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES
+from ..cases import SHAFTS, SOURCES, power_of
 
 NAMES = Path(__file__).parent
 
@@ -77,6 +77,7 @@ CASES = {
             ),
         },
         optional={
+            **power_of(200),
             "startup_torque": "340 N*m",
             "overload_torque": "2000 N*m",
             "actuation_force_limit": "30 kN",

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import COVER, SHAFTS, SOURCES
+from ..cases import COVER, SHAFTS, SOURCES, power_of
 
 NAMES = Path(__file__).parent
 
@@ -62,6 +62,7 @@ CASES = {
             )
         },
         optional={
+            **power_of(60),
             "startup_torque": "120 N*m",
             "overload_torque": "600 N*m",
             "actuation_force_limit": "8 kN",

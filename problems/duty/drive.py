@@ -6,7 +6,7 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement
 
-from ..sources import DRIVE, S1
+from ..sources import DRIVE, S1, TYPICAL
 
 SAME = 0.01  # share by which a power and a torque that are both stated may differ
 LOADS = ("load_torque", "power")
@@ -34,7 +34,7 @@ class Drive(Block):
         optional=lambda drive: not sized_by_load(drive),
         symbol="n",
         text="Shock factor of the load: required torque over load torque",
-        source=f"{S1}, n",
+        source=TYPICAL,
     )
     power = Requirement(
         "kW",
@@ -63,7 +63,8 @@ class Drive(Block):
         optional=lambda drive: not drive.specifies("power"),
         symbol="M_load",
         text="Torque of the load; required torque is by default that with safety factor",
-        source=f"{S1}, M2",
+        source=DRIVE,
+        follows=True,
     )
     required_torque = Requirement(
         "N*m",
@@ -73,6 +74,7 @@ class Drive(Block):
         symbol="M_req",
         text="Torque to carry, all application factors in it",
         source=DRIVE,
+        follows=True,
     )
 
     def required_for(self, load_torque: Any) -> Any:
@@ -100,6 +102,7 @@ class Start(Drive):
         text="Torque of the load during start-up; by default that of power or, without shock factor and the like, "
         "required torque",
         source=f"{S1}, M2",
+        follows=True,
     )
     required_torque = Requirement(
         "N*m",
@@ -109,6 +112,7 @@ class Start(Drive):
         symbol="M_req",
         text="Sizing torque, all factors in it",
         source=f"{S1}, sizing",
+        follows=True,
     )
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import COVER, MAGNETS, SHAFTS, SOURCES
+from ..cases import COVER, MAGNETS, SHAFTS, SOURCES, power_of
 
 NAMES = Path(__file__).parent
 
@@ -57,6 +57,8 @@ CASES = {
         },
         requirements=DRUM,
         optional={
+            **power_of(30),
+            "surface_factor": "1",
             "startup_torque": "36 N*m",
             "overload_torque": "200 N*m",
             "actuation_force_limit": "5 kN",
@@ -77,7 +79,7 @@ CASES = {
                 "residual_gap": "0.4 mm",
             }
         },
-        unknown={"pack=disc": frozenset({"hub_bore_diameter", "drag_torque_limit"})},
+        unknown={"pack=disc": frozenset({"surface_factor", "hub_bore_diameter", "drag_torque_limit"})},
         feasible={
             "spindle": Case(
                 requirements=SPINDLE,

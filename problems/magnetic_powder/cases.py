@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import MAGNETS, SHAFTS, SOURCES
+from ..cases import MAGNETS, SHAFTS, SOURCES, load_of
 
 NAMES = Path(__file__).parent
 
@@ -46,7 +46,7 @@ CASES = {
             "practice_parts": {"practice": "on", "mass_scope": "parts"},
         },
         requirements=WINDER,
-        optional={"outer_diameter_limit": "280 mm", "length_limit": "160 mm"},
+        optional={**load_of(30), "outer_diameter_limit": "280 mm", "length_limit": "160 mm"},
         feasible={
             "winder": Case(
                 options=SOURCES,

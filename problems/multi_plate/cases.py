@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES
+from ..cases import SHAFTS, SOURCES, power_of
 
 NAMES = Path(__file__).parent
 
@@ -63,6 +63,8 @@ CASES = {
         constants=SHAFTS,
         requirements=HOIST,
         optional={
+            **power_of(600),
+            "surface_factor": "1",
             "startup_torque": "1080 N*m",
             "overload_torque": "4000 N*m",
             "actuation_force_limit": "60 kN",

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES
+from ..cases import SHAFTS, SOURCES, load_of
 
 NAMES = Path(__file__).parent
 
@@ -69,7 +69,7 @@ CASES = {
                 {"roller": "6203", "float_material": "100Cr6"},
             ),
         },
-        optional={"outer_diameter_limit": "400 mm", "mass_limit": "40 kg", "vibration_limit": "2 kN"},
+        optional={**load_of(300), "outer_diameter_limit": "400 mm", "mass_limit": "40 kg", "vibration_limit": "2 kN"},
         feasible={
             "mill": Case(
                 options=SOURCES,

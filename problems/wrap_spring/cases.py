@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES
+from ..cases import SHAFTS, SOURCES, load_of
 
 NAMES = Path(__file__).parent
 
@@ -52,6 +52,8 @@ CASES = {
         requirements=INDEXER,
         optional={
             **WIRE,
+            **load_of(20),
+            "driver_speed": "960 1/min",
             "drag_torque_limit": "8 N*m",
             "outer_diameter_limit": "90 mm",
             "length_limit": "300 mm",
@@ -106,6 +108,8 @@ CASES = {
         requirements={**INDEXER, "relative_speed": "500 1/min"},
         optional={
             **WIRE,
+            **load_of(20),
+            "driver_speed": "960 1/min",
             "actuator_torque_limit": "30 N*m",
             "wrap_angle_limit": "3 rad",
             "outer_diameter_limit": "90 mm",

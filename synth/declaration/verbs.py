@@ -84,7 +84,8 @@ class Requirement(BlockField[Quantity]):
     """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
 
     ``default`` may be a function that takes the block and returns the default from other fields, or None; ``optional``
-    one that tells from what is given whether the requirement is in force only where it is stated.
+    one that tells from what is given whether the requirement is in force only where it is stated. One that ``follows``
+    stands for its default where it is not stated, so that what moves the others in a study or by scatter moves it too.
     """
 
     unit: str
@@ -96,12 +97,16 @@ class Requirement(BlockField[Quantity]):
     text: str = ""
     source: str = ""
     group: str = ""
+    follows: bool = False
 
     def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
         optional = self.optional(block) if callable(self.optional) else self.optional
         record = {**vars(self), "default": default, "optional": optional, "group": self.group or group}
-        return block.declaration.requirement(name, **record)
+        del record["follows"]
+        symbol = block.declaration.requirement(name, **record)
+        followed = self.follows and symbol is not None and default is not None and not block.specifies(name)
+        return default if followed else symbol
 
 
 @dataclass(frozen=True)

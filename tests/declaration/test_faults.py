@@ -249,7 +249,7 @@ def test_faults_of_verbs_tell_their_line():
     assert str(again) == str(caught.value)
 
 
-@pytest.mark.parametrize("unit", ["kV", "l", "", "mm^", None, 3])
+@pytest.mark.parametrize("unit", ["kV", "lx", "", "mm^", None, 3])
 @pytest.mark.parametrize(
     "what",
     [
