@@ -54,7 +54,7 @@ def sizing_line(calculation: Calculation, design: Design) -> str:
     outcome = calculation.of_design(design)
     tree: Expression = rule.limit
     named = calculation.quantities.get(tree[1]) if tree[0] == "q" else None
-    if named is not None and named.expression is not None:
+    if named is not None and named.computed and named.expression is not None:
         tree = named.expression
     tree, _ = in_force(textbook(tree), outcome.values)
     tree = _without_ones(tree, calculation, outcome.values)
