@@ -130,8 +130,8 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     """Refuse words for the torque that contradict each other."""
     if drive.specifies("required_torque"):
         if drive.specifies("safety_factor") and not drive.specifies(*LOADS):
-            right = "no safety_factor, or a load_torque that it belongs to: required_torque has all factors in it"
-            d.refuse("factor_without_load", True, right)
+            text = "safety_factor is not used: it belongs to load_torque, and required_torque has all factors in it"
+            d.advise("factor_unused", True, text)
         if drive.load_torque is not None:
             d.refuse(
                 "required_below_load",

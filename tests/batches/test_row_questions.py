@@ -88,7 +88,7 @@ def test_a_question_is_known_by_its_content() -> None:
     [
         ({"force [kN]": "6,5"}, "line 2, column force [kN]: got '6,5'; expected a decimal point"),
         ({"force [kN]": "-5"}, "line 2, column force [kN]: got '-5 kN'; expected 1 N to 1000000 N"),
-        ({"force [kN]": "5 kg"}, "line 2, column force [kN]: got '5 kg'; expected a force"),
+        ({"force [kN]": "5 kg"}, "line 2, column force [kN]: got '5 kg'; expected kgf instead of kg"),
         ({"force [kN]": ""}, "line 2, column force [kN]: is missing; expected a value in N"),
         ({"force [kN]": "ten"}, "line 2, column force [kN]: got 'ten'; expected a number"),
         ({"F": "3"}, "line 2, column F: got '3'; expected each quantity once; column force [kN] gives force too"),
@@ -134,7 +134,7 @@ def test_a_line_with_too_few_cells_is_a_fault(tmp_path: Path) -> None:
         ("saftey_factor", "expected safety_factor"),
         ("load_torqe [N*m]", "expected load_torque"),
         ("familly", "expected family"),
-        ("force [kg]", "line 1, column force [kg]: got 'kg'; expected a force"),
+        ("force [kg]", "line 1, column force [kg]: got 'kg'; expected kgf instead of kg"),
         ("section [mm]", "section without a unit"),
         ("limits [kg]", "limits without a unit"),
     ],
@@ -146,7 +146,7 @@ def test_a_heading_that_cannot_be_meant_stops_the_table(header: str, words: str)
 
 
 @pytest.mark.parametrize(
-    "header", ["id", "note", "code", "price", "power [kW]", "forse [mm]", "a [b] c", "driver_inertia"]
+    "header", ["id", "note", "code", "price", "rated_power [kW]", "forse [mm]", "a [b] c", "driver_inertia"]
 )
 def test_headings_of_ones_own_are_carried_along(header: str) -> None:
     found = questioner([{**GOOD, header: "?"}])

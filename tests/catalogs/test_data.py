@@ -517,7 +517,7 @@ def test_requests_agree_with_physics(requests: View) -> None:
     c = d.where(names_family(d, "centrifugal"))
     speeds = [c.idle_speed, c.contact_speed_min, c.contact_speed_max, c.full_torque_speed, c.top_speed]
     assert all((low < high).all() for low, high in pairwise(speeds))
-    np.testing.assert_allclose(9549.3 * d.power / d.driver_speed, d.rated_torque, rtol=0.02)
+    np.testing.assert_allclose(9549.3 * d.rated_power / d.driver_speed, d.rated_torque, rtol=0.02)
     q = d.where(~names_family(d, "roller_coupling") & ~np.isnan(d.required_torque))
     np.testing.assert_allclose(q.safety_factor * q.rated_torque / q.required_torque, 1, rtol=0.01)
     both = d.where(~np.isnan(d.load_torque) & ~np.isnan(d.required_torque))
@@ -525,7 +525,7 @@ def test_requests_agree_with_physics(requests: View) -> None:
     assert (d.outer_diameter_limit > 1.8 * d.hub_bore_diameter).all()
     assert (d.slip_time_limit >= d.acceleration_time_estimate * 0.99).all()
     hourly = d.friction_work_estimate * d.engagements_per_hour
-    assert (hourly <= 1.05 * 0.35 * d.power * 3.6e6 + 1e6).all()
+    assert (hourly <= 1.05 * 0.35 * d.rated_power * 3.6e6 + 1e6).all()
 
 
 def test_the_lectures_case() -> None:

@@ -74,7 +74,6 @@ def test_a_power_is_taken_at_its_speed(family):
     [
         ({"power": "15 kW", "load_torque": "120 N*m"}, "one of power and load_torque"),
         ({"load_torque": "120 N*m", "required_torque": "100 N*m"}, "a required_torque of at least load_torque"),
-        ({"required_torque": "100 N*m", "safety_factor": 2}, "required_torque has all factors in it"),
         ({"load_torque": "0 N*m"}, "required_torque"),
         ({"required_torque": "100 N*m", "power_speed": "725 1/min"}, "a power that belongs to power_speed"),
     ],
@@ -97,3 +96,9 @@ def test_speeds_of_a_centrifugal_clutch_follow_from_that_of_the_driver(family):
     assert speeds(full_torque_speed="1450 1/min") == pytest.approx([1450, 1450, 725, 1087.5, 1595])
     both = {"driver_speed": "1450 1/min", "full_torque_speed": "1400 1/min", "idle_speed": "800 1/min"}
     assert speeds(**both) == pytest.approx([1450, 1400, 800, 1087.5, 1595])
+
+
+def test_a_factor_beside_a_rating_is_remarked():
+    stated = START | {"required_torque": "100 N*m", "safety_factor": 2}
+    d = synth.load("disc_clutch").model(frozenset(stated), as_catalogs(None)).declaration
+    assert any("safety_factor is not used" in advice.message for advice in d.advices)
