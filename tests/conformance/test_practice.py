@@ -176,8 +176,13 @@ def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
         synth.synthesize(synth.load(family, practice="off"), requirements)
 
 
-LAYERED = [f for f in CASES if hasattr(import_module(type(synth.load(f)).__module__), "LAYERS")]
+def layered(family: str) -> list[Any]:
+    """Modules of a family, or of a class that it derives from, which choose a layer by the rules of practice."""
+    modules = [import_module(kind.__module__) for kind in type(synth.load(family)).__mro__]
+    return [module for module in modules if hasattr(module, "LAYERS")]
 
+
+LAYERED = [family for family in CASES if layered(family)]
 
 OTHER_STRUCTURES = [("electromagnetic_clutch", {"pack": "disc"}), ("centrifugal_two_spring", {"mechanism": "lever"})]
 
@@ -193,7 +198,7 @@ def test_practice_is_asked_by_the_layer_alone(
         return [(node.op, tuple(node.args), node.constant) for node in program.nodes]
 
     before = traced("on")
-    module = import_module(type(synth.load(family)).__module__)
+    module = layered(family)[0]
     monkeypatch.setattr(module, "LAYERS", dict.fromkeys(module.LAYERS, module.LAYERS[False, False]))
     assert traced("on") == traced("off") != before
 
