@@ -30,7 +30,7 @@ OF: dict[str, dict[str, Any]] = {
     "whatif": {**DISC, "vary": {"load_torque": "50, 60 N*m"}, "breaks": False},
     "explain": DISC,
     "prices": {"of": "front", "design": [1]},
-    "near_equals": {"of": "front", "within": "10 %"},
+    "near_equals": {"of": "front", "within": "20 %"},
     "rate": {"of": "front", "design": 1, "robust": {"load_torque": "+-1 %"}},
     "verify": {"of": "front"},
     "report": {"of": "front", "formats": ["html", "json"]},
