@@ -183,7 +183,7 @@ def test_several_families_make_one_front_with_a_line_each(compared: tuple[Path, 
     assert "6 designs of 1 family" in shown
     assert max(len(line) for line in shown.splitlines() if not line.startswith("written")) <= 100
     words = " ".join(shown.split())
-    assert "roller_coupling refused it does not understand load_torque, driven_inertia" in words
+    assert "roller_coupling not_covered it joins two shafts and never slips" in words
     assert "cone_clutch beaten everywhere, in " in words
     assert "(disc_clutch): least mass" in words
     assert "multi_plate_clutch infeasible No combination is feasible." in words
@@ -231,7 +231,7 @@ def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Pa
     assert done.returncode == 3, done.stdout
     text = (tmp_path / "out" / "explanation.txt").read_text()
     assert "disc_clutch (infeasible)" in text
-    assert "roller_coupling (refused)" in text
+    assert "roller_coupling (not_covered)" in text
     assert "none of the" in " ".join(done.stdout.split())
 
 
