@@ -52,6 +52,7 @@ class Load(Drive):
         default=lambda duty: duty.full_torque_speed if duty.specifies("full_torque_speed") else None,
         lower=10,
         text="Working speed of the driver; idle and other speeds follow from it where they are not given",
+        follows=True,
     )
     full_torque_speed = Requirement(
         "1/min",
@@ -61,6 +62,7 @@ class Load(Drive):
         symbol="omega_full",
         text="From this speed of the driver on the clutch carries its full torque",
         source=DRIVE,
+        follows=True,
     )
     torque_reserve = Requirement(
         "-",

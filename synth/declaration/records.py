@@ -20,7 +20,10 @@ Quantity: TypeAlias = Any
 
 @dataclass(frozen=True)
 class RequirementRecord:
-    """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None."""
+    """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None.
+
+    One that ``follows`` is not stated: formulas read its default, and not its symbol.
+    """
 
     name: str
     unit: str
@@ -34,6 +37,7 @@ class RequirementRecord:
     given: bool
     group: str
     sx: Any
+    follows: bool = False
 
 
 @dataclass(frozen=True)

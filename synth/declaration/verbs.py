@@ -84,8 +84,7 @@ class Requirement(BlockField[Quantity]):
     """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
 
     ``default`` may be a function that takes the block and returns the default from other fields, or None; ``optional``
-    one that tells from what is given whether the requirement is in force only where it is stated. One that ``follows``
-    stands for its default where it is not stated, so that what moves the others in a study or by scatter moves it too.
+    one that tells from what is given whether the requirement is in force only where it is stated.
     """
 
     unit: str
@@ -103,10 +102,7 @@ class Requirement(BlockField[Quantity]):
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
         optional = self.optional(block) if callable(self.optional) else self.optional
         record = {**vars(self), "default": default, "optional": optional, "group": self.group or group}
-        del record["follows"]
-        symbol = block.declaration.requirement(name, **record)
-        followed = self.follows and symbol is not None and default is not None and not block.specifies(name)
-        return default if followed else symbol
+        return block.declaration.requirement(name, **record)
 
 
 @dataclass(frozen=True)
@@ -380,14 +376,17 @@ class Declaration:
         text: str = "",
         source: str = "",
         group: str = "",
+        follows: bool = False,
     ) -> Any:
         """Declare a quantity that the user states; bare numbers are in ``unit``, expressions in SI.
 
-        ``group`` is a word of the family, under which forms and descriptions list what belongs together.
+        ``group`` is a word of the family, under which forms and descriptions list what belongs together. One that
+        ``follows`` stands for its default where it is not stated, so that what moves the others in a study or by
+        scatter moves it too.
 
         Returns
         -------
-        symbol, or None for an optional requirement that was not given.
+        symbol, or None for an optional requirement that was not given, or the default that one follows.
         """
         symbol = self._claim(name, symbol)
         parsed = self._unit(f"requirement {name}", unit)
@@ -414,9 +413,10 @@ class Declaration:
             given=specified,
             group=group,
             sx=None if optional and not specified else ca.SX.sym(name),
+            follows=follows and not specified and isinstance(default, ca.SX),
         )
         self.requirements[name] = record
-        return record.sx
+        return default if record.follows and record.sx is not None else record.sx
 
     def option(
         self,

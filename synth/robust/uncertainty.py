@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import casadi as ca
 import numpy as np
 
 from synth.declaration import Declaration
@@ -225,6 +226,9 @@ class _RangeReader:
             return self.tolerance(key, text)
         if name in self.d.requirements:
             r = self.d.requirements[name]
+            if r.follows:
+                others = " or ".join(sorted({str(s) for s in ca.symvar(r.default)} & set(self.d.requirements)))
+                raise InputError(field, text, f"{others}, from which {name} follows here, or a {name} that is stated")
             span = self._range(text, r.unit, field)
             if span.kind == "ends" and not all(
                 within(x, r.lower, r.upper, MARGINS.conversion) for x in (span.low, span.high)

@@ -102,3 +102,20 @@ def test_a_factor_beside_a_rating_is_remarked():
     stated = START | {"required_torque": "100 N*m", "safety_factor": 2}
     d = synth.load("disc_clutch").model(frozenset(stated), as_catalogs(None)).declaration
     assert any("safety_factor is not used" in advice.message for advice in d.advices)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("family", "stated", "word", "others"),
+    [
+        ("cone_clutch", {"load_torque": "100 N*m"}, "required_torque", "load_torque or safety_factor"),
+        ("cone_clutch", {"required_torque": "170 N*m"}, "load_torque", "required_torque or safety_factor"),
+        ("centrifugal_lever", {"required_torque": "150 N*m"}, "full_torque_speed", "driver_speed"),
+    ],
+)
+def test_what_follows_from_other_words_moves_with_them_and_not_alone(family, stated, word, others):
+    front = synth.synthesize(family, NEEDED[family] | stated, points=1, objectives=["mass"])
+    with pytest.raises(synth.InputError, match=f"{others}.*, from which {word} follows here"):
+        synth.rate(front, {word: "+-10 %"})
+    moved = "driver_speed" if word == "full_torque_speed" else next(iter(stated))
+    assert synth.rate(front, {moved: "+-10 %"}).to_frame()["robust"].tolist() == ["no"]
