@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from synth.declaration import Block, Declaration, Requirement
 
 from ..sources import DRIVE, S1, TYPICAL
@@ -119,6 +121,11 @@ class Start(Drive):
     def sized_by_rating(self) -> bool:
         """Whether the load follows from the torque that is required."""
         return self.specifies("required_torque") and not self.specifies(*LOADS)
+
+    @property
+    def rated_torque(self) -> Any:
+        """Torque that drag is held against [N m]: that of the load, or the required one where nothing resists."""
+        return np.where(self.load_torque > 0, self.load_torque, self.required_torque)
 
     @property
     def load_of_rating(self) -> Any:

@@ -219,7 +219,7 @@ def startup_over_torque(problem: DesignProblem, spec: Mapping[str, Any], design:
     load, inertia, speed = spec["load_torque"], spec["driven_inertia"], spec["driver_speed"]
     kind = problem.option("load_kind")
     sizing = spec["required_torque"]
-    ramps = [float(f"{k * inertia * speed / load:.2g}") for k in RAMPS]
+    ramps = [float(f"{k * inertia * speed / (load or sizing):.2g}") for k in RAMPS]
     marks = [{"x": load, "label": "load torque"}, {"x": sizing, "label": "required torque"}]
     if spec.get("startup_torque") is not None:
         marks.append({"x": spec["startup_torque"], "label": "start-up torque"})

@@ -282,9 +282,9 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
     ratio = d.derive(
         "drag_ratio",
         "-",
-        drag / duty.load_torque,
+        drag / duty.rated_torque,
         symbol="r_drag",
-        text="Drag of the released clutch over the torque of the load",
+        text="Drag of the released clutch over the torque of the load, over required torque where nothing resists",
         source="definition",
     )
     d.at_most(

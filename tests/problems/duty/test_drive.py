@@ -119,3 +119,17 @@ def test_what_follows_from_other_words_moves_with_them_and_not_alone(family, sta
         synth.rate(front, {word: "+-10 %"})
     moved = "driver_speed" if word == "full_torque_speed" else next(iter(stated))
     assert synth.rate(front, {moved: "+-10 %"}).to_frame()["robust"].tolist() == ["no"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", ["multi_plate_clutch", "disc_clutch", "cone_clutch"])
+def test_a_drive_with_inertia_alone_is_sized_shown_and_simulated(family):
+    problem = synth.load(family)
+    wants = START | {"load_torque": "0 N*m", "required_torque": "100 N*m"}
+    found = synth.synthesize(problem, wants, points=1, objectives=["mass"])
+    assert found.status.value == "optimal"
+    design = found.designs[0]
+    # Work of a start without load: the energy of the inertia, whatever the torque and the ramp.
+    assert design.values["friction_work"] == pytest.approx(0.4 * SPEED**2 / 2, rel=1e-6)
+    assert synth.curves(problem, wants, design)
+    assert synth.simulate(problem, wants, design)
