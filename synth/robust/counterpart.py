@@ -226,7 +226,9 @@ class _Shifted(Declaration):
 
     def requirement(self, name: str, *args: Any, **details: Any) -> Any:
         """Declare a requirement; return what it is here."""
-        super().requirement(name, *args, **details)
+        declared = super().requirement(name, *args, **details)
+        if self.requirements[name].follows:
+            return declared  # made of what is moved already
         symbol = self._around.requirements[name].sx
         return None if symbol is None else self._moved(Member("requirement", name), symbol)
 
