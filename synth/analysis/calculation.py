@@ -137,11 +137,14 @@ def _with_unit(q: NamedQuantity, known: Mapping[str, NamedQuantity]) -> NamedQua
 
 
 def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list[NamedQuantity]:
-    """Inputs of a model: requirements, searched quantities and cells of tables."""
+    """Inputs of a model: requirements, searched quantities and cells of tables.
+
+    A requirement that follows from others is computed.
+    """
     d, quantities = model.declaration, list[NamedQuantity]()
     defaults = _defaults(model)
     for r in d.requirements.values():
-        if r.sx is not None:
+        if r.sx is not None and not r.follows:
             common = {"unit": r.unit, "text": r.text, "source": r.source, "bounds": (r.lower, r.upper)}
             quantities.append(
                 NamedQuantity(
@@ -227,7 +230,11 @@ def _defaults(model: Model) -> dict[str, Expression]:
     defaults = {
         r.name: ca.SX(r.default)
         for r in d.requirements.values()
-        if r.sx is not None and not r.given and r.default is not None and not isinstance(r.default, float)
+        if r.sx is not None
+        and not r.given
+        and not r.follows
+        and r.default is not None
+        and not isinstance(r.default, float)
     }
     if not defaults:
         return {}
@@ -260,12 +267,14 @@ class _Formulas:
         """Read the formulas of a model from its trace."""
         d = model.declaration
         limits = list(d.limits.values())
+        following = {r.name: r for r in d.requirements.values() if r.follows and r.sx is not None}
         expressions = [*(q.sx for q in d.derived.values()), *(q.sx for q in d.steps.values())]
+        expressions += [r.default for r in following.values()]
         expressions += [side for x in limits for side in (x.value, x.limit)] + [a.when for a in d.advices]
         everything = ca.vertsplit(expanded(ca.vertcat(*expressions), model.calls)) if expressions else []
         program = Program(model.inputs, everything)
         nodes = iter(program.outputs)
-        named = {name: next(nodes) for name in (*d.derived, *d.steps)}
+        named = {name: next(nodes) for name in (*d.derived, *d.steps, *following)}
         sides = {x.name: (next(nodes), next(nodes)) for x in limits}
         conditions = [next(nodes) for _ in d.advices]
         leaves = _input_names(model, program)
@@ -280,7 +289,7 @@ class _Formulas:
         needs = _needs(model, program, {**named, **{name: node for node, name in helpers.items()}})
         records: dict[str, NamedQuantity] = {}
         for name, node in named.items():
-            record = d.derived.get(name) or d.steps[name]
+            record = d.derived.get(name) or d.steps.get(name) or following[name]
             is_leaf = leaves.get(node) == name
             records[name] = NamedQuantity(
                 name=name,
