@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from synth.kernels.loading import native_code
-from tests.benchmarks import batch, parts, practice, service, studies
+from tests.benchmarks import batch, parts, practice, sent_back, service, studies
 from tests.benchmarks.families import families
 from tests.benchmarks.tables import Report, write_csv
 
@@ -27,6 +27,7 @@ PARTS: dict[str, Callable[[parts.Settings], list[Report]]] = {
     "batch": lambda settings: batch.batches(settings.quick),
     "ranges": lambda settings: batch.ranges(settings.quick),
     "practice": lambda settings: practice.practice(settings.time_limit, settings.quick),
+    "sent-back": lambda settings: sent_back.sent_back(settings.time_limit, settings.quick),
     "service": lambda settings: service.service(settings.quick),
 }
 
