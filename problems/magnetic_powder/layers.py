@@ -189,6 +189,11 @@ class Ruled(WithBody):
     # Least power and least inertia ask for ever larger bodies; with the rules of practice the supply limits power.
     objectives = ("mass", "outer_diameter")
 
+    def declare_cost(self, d: Declaration, built: Built) -> None:
+        """Declare cost and objectives; of equal designs the one with the cooler coil."""
+        super().declare_cost(d, built)
+        d.prefer("coil_temperature_rise")
+
     def declare_bore(self, d: Declaration) -> Bore:
         """The bore of the rotor, by default for a shaft that stands the torque."""
         torque = self.wants.torque_reserve * self.wants.required_torque

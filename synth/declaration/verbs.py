@@ -278,6 +278,7 @@ class Declaration:
         self.next_rows: dict[str, NextRowRecord] = {}
         self.limits: dict[str, Limit] = {}
         self.objectives: dict[str, Objective] = {}
+        self.preferences: dict[str, str] = {}
         self.refusals: list[Refusal] = []
         self.advices: list[Advice] = []
         self.headlines = Headline()
@@ -725,6 +726,19 @@ class Declaration:
             )
         self.objectives[name] = Objective(name, sense, default, resolution)
 
+    def prefer(self, name: str, sense: str = "min") -> None:
+        """Settle by a quantity what the objectives leave open, after those preferred before.
+
+        Parameters
+        ----------
+        name : str
+            Left out where an option does without it.
+        sense : {"min", "max"}
+        """
+        if sense not in ("min", "max"):
+            raise DeclarationError(f"{self.problem}: preference {name} has sense {sense!r}; write 'min' or 'max'")
+        self.preferences[name] = sense
+
     def headline(self, *names: str, sized_by: str = "") -> None:
         """Name what people decide by, in the order of a table of designs; objectives that were chosen stand before.
 
@@ -809,6 +823,7 @@ class Declaration:
                 raise DeclarationError(
                     f"{self.problem}: objective {objective.name} is no variable, count or derived quantity"
                 )
+        self.preferences = {name: sense for name, sense in self.preferences.items() if name in known}
         shown, sized_by = self.headlines.shown, self.headlines.sized_by
         self.headlines = Headline(
             tuple(name for name in shown if name in known), sized_by if sized_by in self.limits else ""

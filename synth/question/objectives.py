@@ -61,12 +61,13 @@ def quantities_compared(model: Model, requested: Objectives) -> list[str]:
 
 
 def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
-    """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
+    """Return the chosen objectives, then what settles ties: default objectives, preferences, others, variables."""
+    declared = model.declaration.objectives.values()
+    defaults, others = ({o.name: o.sense for o in declared if o.default is default} for default in (True, False))
     result = dict(chosen)
-    for default in (True, False):
-        for objective in model.declaration.objectives.values():
-            if objective.default == default and objective.name not in result:
-                result[objective.name] = objective.sense
+    for ties in (defaults, model.declaration.preferences, others):
+        for name, sense in ties.items():
+            result.setdefault(name, sense)
     for variable in model.variables:
         result.setdefault(variable.name, "min")
     return result

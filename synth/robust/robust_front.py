@@ -8,9 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+import numpy as np
 from msgspec import structs
 
 from synth.order.feasibility import Status
+from synth.order.pareto import extremes, senses_of
 from synth.question.instance import Instance
 from synth.question.settings import LEAST_SECONDS, Progress
 from synth.question.uncertainty import LIMITS, Uncertainty
@@ -102,7 +104,7 @@ def robust_front(
         return _RatedFront(uncertainty, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
 
     got, searches = ask(rater.uncertainty, known, first), 1
-    while got.uncertainty.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
+    while got.uncertainty.mode == LIMITS and got.failing and not got.stopped and searches < got.most_searches:
         try:
             better = ask(got.uncertainty.with_scenarios(got.scenarios()), got.front.designs)
         except KeyboardInterrupt:
@@ -129,6 +131,18 @@ class _RatedFront:
     def failing(self) -> list[int]:
         """Positions of the designs that break a limit somewhere in the range."""
         return [j for j, rating in enumerate(self.ratings) if rating["holds"] is False]
+
+    @property
+    def most_searches(self) -> int:
+        """At most so many searches: more where a design fails that the order of all depends on.
+
+        Where the best in each objective hold, they are the best of all that holds, so that the ideal stays; and
+        where the first design holds, no other one that does comes nearer to it.
+        """
+        designs, objectives = self.front.designs, self.front.frame.objectives
+        signed = np.array([[d.values[n] for n in objectives] for d in designs]) * senses_of(objectives)
+        decide = {0, *extremes(signed)} & set(self.failing)
+        return self.limits.searches_for_first if decide else self.limits.searches
 
     @property
     def holding(self) -> int:
@@ -170,9 +184,9 @@ def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
     kept = [d for j, d in enumerate(front.designs) if j not in failing]
     chosen = dict(front.frame.objectives)
     weights = front.settings.get("weights") or {}
-    _, kept = ranked(kept, chosen, [weights.get(n, 1.0) for n in chosen])
+    _, kept = ranked(kept, chosen, [weights.get(n, 1.0) for n in chosen], scale=front.scale)
     if not kept:
         # Nothing says that there is no robust design; there is none here that anything could be proven of.
         certificate = replace(front.certificate, kind="heuristic", gap=None, resolution={}, units={})
         return replace(front, designs=[], scale=None, complete=False, status=Status.NOT_SOLVED, certificate=certificate)
-    return replace(front, designs=kept, complete=False, scale=scale_of(kept, chosen))
+    return replace(front, designs=kept, complete=False, scale=scale_of(kept, chosen, front.scale))

@@ -46,6 +46,8 @@ class RobustLimits:
     ----------
     searches : int
         At most so many, each with more points at which limits are posed.
+    searches_for_first : int
+        The same as long as the first design or the best in an objective fails: the order of all hangs on them.
     scenarios : int
         New points per limit.
     parts : int
@@ -65,6 +67,7 @@ class RobustLimits:
     """
 
     searches: int = 5
+    searches_for_first: int = 12
     scenarios: int = 4
     parts: int = 2**14
     batch: int = 2**8

@@ -48,17 +48,19 @@ class NearestIdeal:
         Of the score: the tolerance.
     known : Archive
         Designs known, one at least.
+    least : float
+        The smallest score of designs that are known elsewhere.
     """
 
     proves = False
 
-    def __init__(self, scored: ScoredFront, share: float, known: Archive) -> None:
+    def __init__(self, scored: ScoredFront, share: float, known: Archive, least: float = np.inf) -> None:
         m = len(scored.weights)
         self.scored, self.columns = scored, list(range(m))
         self.fixed_cutoffs = np.full(known.phi.shape[1], np.inf)
         phi = known.phi[:, :m]
         first = scored.best(phi)
-        self._share, self._least = share, float(scored.scores(phi)[first])
+        self._share, self._least = share, min(float(scored.scores(phi)[first]), least)
         # A step along each objective takes the same part of the score.
         farther = scored.scale.distances(scored.objectives.values_of(phi[first][None, :])) + share * self._least
         self.tolerance = (scored.objectives.phi_of(scored.scale.at(farther)) - phi[first])[0]

@@ -19,7 +19,7 @@ RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and wo
 DUTY = {**NEEDED, "torque_limit": "400 N*m"}
 
 
-ONE_SEARCH = tuned(robust={"searches": 1})
+ONE_SEARCH = tuned(robust={"searches": 1, "searches_for_first": 1})
 
 
 def synthesized(robust=None, requirements=DUTY, problem=ShaftBrake, tuning=TUNING, **settings):
@@ -245,3 +245,21 @@ def test_why_nothing_is_robust_is_explained_by_the_corner():
 def test_careless_blocks_are_refused_before_the_search(block):
     with pytest.raises(synth.InputError, match="robust"):
         synthesized(block)
+
+
+@pytest.mark.parametrize("searches", [1, 5])
+def test_the_first_that_holds_is_the_same_however_many_are_listed(searches):
+    # With one search designs are taken off in the end, but never the first or the best in an objective.
+    first = [
+        synthesized(
+            WIDE,
+            requirements=NEEDED,
+            tuning=tuned(robust={"searches": searches}),
+            limits={"size": ">= 200 mm"},
+            points=points,
+            objectives={"size": "min", "force": "min"},
+        ).designs[0]
+        for points in (3, 6, 20, 100)
+    ]
+    assert [d.objectives for d in first] == [pytest.approx(first[0].objectives, rel=1e-3)] * 4
+    assert [d.score for d in first] == pytest.approx([first[0].score] * 4, rel=1e-3)

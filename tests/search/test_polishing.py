@@ -7,6 +7,7 @@ import pytest
 
 import synth
 from synth import DesignProblem
+from synth.errors import DeclarationError
 from synth.search.archive import Candidate
 from synth.search.box_operations import BoxOperations
 from synth.search.joint.joint_search import JointSearch
@@ -205,3 +206,58 @@ def test_no_more_ties_are_sought_than_are_told_and_few_at_a_time(at_once, monkey
     assert len({str(other) for other in design.alternatives}) == limits.ties - 1
     assert max(sizes) <= at_once
     assert sum(sizes) < 100_000
+
+
+# -- preferences ---------------------------------------------------------------------------------------
+
+
+class Ramp(DesignProblem):
+    """A size that its objective sees, and a ramp that it does not: a long one is cool, a short one lasts."""
+
+    name = "ramp"
+
+    def declare(self, d):
+        size, ramp = d.variable("size", "mm", 1, 9), d.variable("ramp", "s", 1, 10)
+        plies = d.count("plies", 1, 2)
+        d.derive("mass", "kg", 1000 * size)
+        d.derive("life", "-", 100 * plies / ramp)
+        d.derive("heat", "K", 50 / ramp + size)
+        d.at_least("strength", size, 0.002, "mm")
+        d.objective("mass")
+        d.objective("heat", default=False)
+        self.preferred(d)
+
+    def preferred(self, d):
+        d.prefer("life", "max")
+        d.prefer("heat")
+        d.prefer("of_another_option")
+
+
+class NothingPreferred(Ramp):
+    def preferred(self, d):
+        pass
+
+
+def test_what_a_family_prefers_settles_what_the_objectives_leave_open():
+    (preferred,), (other,) = (synth.synthesize(p, {}, points=1).designs for p in (Ramp, NothingPreferred))
+    assert preferred.objectives == pytest.approx(other.objectives, rel=1e-8)
+    assert other.values["ramp"] == pytest.approx(10, rel=1e-6)
+    assert (preferred.values["ramp"], preferred.values["life"]) == pytest.approx((1, 200), rel=1e-6)
+
+
+def test_a_preference_has_a_sense():
+    class Odd(Ramp):
+        def preferred(self, d):
+            d.prefer("life", "long")
+
+    with pytest.raises(DeclarationError, match="preference life has sense 'long'"):
+        synth.synthesize(Odd, {}, points=1)
+
+
+@pytest.mark.slow
+def test_a_magnet_does_not_slip_for_seconds_where_its_mass_does_not_see_it():
+    duty = {"load_torque": "1.36 N*m", "driver_speed": "1000 1/min", "driven_inertia": "0.001 kg*m2"}
+    first = synth.synthesize("electromagnetic_clutch", duty, points=2).designs[0]
+    assert first.values["mass"] == pytest.approx(0.3294, rel=1e-3)
+    assert first.values["ramp_time"] < 0.1
+    assert first.values["wear_life"] > 5e6

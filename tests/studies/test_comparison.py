@@ -496,7 +496,7 @@ def test_limits_that_fail_between_corners_are_posed_for_every_family():
 
 @pytest.mark.slow
 def test_nothing_is_proven_of_all_where_designs_were_taken_off():
-    one_search = tuned(robust={"searches": 1})
+    one_search = tuned(robust={"searches": 1, "searches_for_first": 1})
     found = brakes(tuning=one_search)
     assert all(x.front.statistics["robust"]["searches"] == 1 for x in found.outcomes)
     assert any(x.front.statistics["robust"]["taken_off"] for x in found.outcomes)
@@ -508,7 +508,8 @@ def test_nothing_is_proven_of_all_where_designs_were_taken_off():
 
 
 def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
-    # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well.
+    # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well: the
+    # nearest to the ideal of both, and what beats a design of the other.
     rated, own = [], synth.studies.families.competitor.Competitor.standing
 
     def standing(self, designs, deadline):
@@ -518,7 +519,7 @@ def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
     monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", standing)
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=6, robust=SCATTER)
     assert found.certificate.kind == "global"
-    assert [d.robust["holds"] for d in rated] == [True]
+    assert [d.robust["holds"] for d in rated] == [True, True]
     # Where it fails nothing says that what is left cannot be beaten.
     monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", lambda self, designs, deadline: [])
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=6, robust=SCATTER)
@@ -684,3 +685,22 @@ def test_who_is_stopped_keeps_what_the_first_look_brought(found):
 )
 def test_the_screen_says_how_long_it_may_take(families, time_limit, words):
     assert words in how_long("abc"[:families], time_limit)
+
+
+# ---- the first by rank ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("robust", [None, SCATTER])
+def test_the_first_of_all_families_does_not_depend_on_how_many_are_listed(robust):
+    every = np.log(enumerated(1.4, 1.4) if robust else enumerated())
+    nearest = np.sqrt(((every - every.min(axis=0)) ** 2).mean(axis=1)).min()
+    for points in (3, 6, 20, 100):
+        first = compare([Solid, Tube, Padded], {"load": LOAD}, catalogs=OWN, points=points, robust=robust).designs[0]
+        assert first.score == pytest.approx(nearest, rel=1e-6)
+
+
+def test_the_first_by_the_ideal_of_all_is_searched_for():
+    """Each family's own first lies elsewhere: by its own ideal, which others beat."""
+    own = compare([Solid], {"load": LOAD}, catalogs=OWN, points=3)
+    both = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=3)
+    assert own.designs[0].objectives != both.designs[0].objectives

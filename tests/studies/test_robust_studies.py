@@ -130,7 +130,7 @@ def test_limits_that_fail_between_corners_are_posed_at_all_steps_and_between() -
 def test_a_break_between_designs_that_do_not_stand_the_range_is_not_proven() -> None:
     asked = {key: given for key, given in HUMMING.items() if key != "points"}
     request = Request.of(PROBLEM, NEEDED, CATALOGS, WIDE, **asked)
-    one_search = tuned(robust={"searches": 1})
+    one_search = tuned(robust={"searches": 1, "searches_for_first": 1})
     found = study_of(request, SearchSettings(points=1), {"torque": "90, 190 N*m"}, tuning=one_search)
     assert found.steps[0].reason == "no design was found that keeps its limits over the whole range"
     assert found.steps[0].front is not None

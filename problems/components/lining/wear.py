@@ -15,6 +15,7 @@ from ...mechanics import wear as wear_formulas
 from ...sources import DRIVE
 
 WEAR_LIFE = "wear_life"
+PREFERRED = {WEAR_LIFE: "max", "peak_temperature_rise": "min", "coil_temperature_rise": "min"}
 DEPTH, RATE = "wearable_depth", "wear_rate"
 LEAST_LIFE = Requirement(
     "-",
@@ -70,9 +71,11 @@ def declare_wear_life(d: Declaration, part: Part, *, area: Any, depth: Any, work
 
 
 def offer_wear_life(d: Declaration) -> None:
-    """Offer the wear life as objective, where it is known."""
+    """Offer the wear life as objective, where it is known; of equal designs the one that lasts and stays cool."""
     if WEAR_LIFE in d.derived:
         d.objective(WEAR_LIFE, "max", default=False)
+        for name, sense in PREFERRED.items():
+            d.prefer(name, sense)
 
 
 def limit_wear_life(d: Declaration, part: Part, least: Any, *, text: str, source: str) -> None:

@@ -13,9 +13,10 @@ import numpy as np
 from synth.order.pareto import Scale, nearly
 from synth.search.archive import Candidate
 from synth.search.branch_and_bound import branch_and_bound
+from synth.search.budget import Clock
 from synth.search.front_state import FrontState
 from synth.search.nearest_ideal import NearestIdeal, ScoredFront
-from synth.search.polishing import polish_extremes
+from synth.search.polishing import polish_extremes, polish_variables
 from synth.search.stages.one_best import better_in
 
 
@@ -40,6 +41,40 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
     )
     state.counters.nodes += outcome.looked
     state.end_tree()
+
+
+def nearest_among(state: FrontState, signed: np.ndarray, weights: Sequence[float], deadline: float) -> list[Candidate]:
+    """Return the design of a finished search that comes first among designs of others, if none of those does.
+
+    What the others reach already cuts off all that comes no nearer to the ideal of all, so the tree is small.
+
+    Parameters
+    ----------
+    state : FrontState
+    signed : array (designs, objectives)
+        Objectives of all designs in SI, with their sign: the ideal is theirs.
+    weights : list of float
+    deadline : float
+        As of ``time.monotonic``.
+
+    Raises
+    ------
+    Stopped
+        When time is over.
+    """
+    form, limits, m = state.form, state.task.limits, state.task.m
+    scored = ScoredFront(Scale.of(signed), np.asarray(weights, dtype=float), form.objectives)
+    least = float(scored.scale.scores(signed, weights).min())
+    rule = NearestIdeal(scored, limits.first_share, form.archive, least)
+    if not rule.least:
+        return []
+    state.progress.enter("against the others")
+    clock = Clock(deadline, state.progress.working)
+    branch_and_bound(form, state.pool, rule, clock, state.rng, min(limits.first_nodes, state.node_limit))
+    phi = form.archive.phi[:, :m]
+    first = scored.best(phi)
+    nearer = scored.scores(phi[[first]])[0] < least * (1.0 - limits.first_share)
+    return polish_variables(form, [form.archive[first]], m, range(m)) if nearer else []
 
 
 def _none_nearer(state: FrontState, rule: NearestIdeal) -> bool:

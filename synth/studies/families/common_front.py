@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from synth.order.margins import MARGINS
-from synth.order.pareto import senses_of, spread_subset
+from synth.order.pareto import Scale, extremes, senses_of, spread_subset
 from synth.results import Design
 from synth.studies.families.competitor import Competitor
 
@@ -21,6 +21,8 @@ class CommonFront:
         Names and senses.
     points : int
         Designs that are listed, at most.
+    weights : mapping, optional
+        Objective -> weight for the ranking; 1 where missing.
 
     Attributes
     ----------
@@ -28,8 +30,9 @@ class CommonFront:
         Families whose designs stand on it; they come as they are searched.
     """
 
-    def __init__(self, objectives: Mapping[str, str], points: int) -> None:
+    def __init__(self, objectives: Mapping[str, str], points: int, weights: Mapping[str, float] | None = None) -> None:
         self.objectives, self.points = dict(objectives), points
+        self.weights = [float((weights or {}).get(name, 1.0)) for name in self.objectives]
         self.senses = senses_of(self.objectives)
         self.members: list[Competitor] = []
 
@@ -41,8 +44,12 @@ class CommonFront:
 
     def useful(self, designs: Sequence[Design]) -> list[Design]:
         """Designs that no known design dominates or equals."""
-        known = self.signed([d for m in self.members for d in m.designs])
+        known = self.everything()
         return [d for d, point in zip(designs, self.signed(designs), strict=True) if not beaten(known, point).any()]
+
+    def everything(self) -> np.ndarray:
+        """Return the objectives of all designs that are known, as ``signed`` does."""
+        return self.signed([d for m in self.members for d in m.designs])
 
     def listed(self) -> tuple[list[tuple[Competitor, Design]], list[tuple[Competitor, Design]]]:
         """Return the designs of the common front, and all that nothing beats."""
@@ -57,13 +64,20 @@ class CommonFront:
         return [front[k] for k in self._spread([m for m, _ in front], signed[stay])], front
 
     def _spread(self, owners: Sequence[Competitor], signed: np.ndarray) -> list[int]:
-        """Return designs that spread best, at most so many as asked for; no family is left out that has one."""
-        most = self.points
-        chosen = [int(k) for k in spread_subset(signed, most)]
+        """Return designs that spread best, at most so many as asked for; no family is left out that has one.
+
+        The first by rank stays in any case, and so do what is best in each objective as long as there are others.
+        """
+        if not len(signed):
+            return []
+        most, ends = self.points, extremes(signed)
+        first = int(np.argmin(Scale.of(signed).scores(signed, self.weights)))
+        chosen = [int(k) for k in spread_subset(signed, most, [first, *ends])]
         kept = [owners[k].one.label for k in chosen]
         for label in dict.fromkeys(m.one.label for m in owners):
             if label not in kept:
-                spare = [k for k, owner in enumerate(kept) if kept.count(owner) > 1]
+                spare = [k for k, owner in enumerate(kept) if kept.count(owner) > 1 and chosen[k] != first]
+                spare = [k for k in spare if chosen[k] not in ends] or spare
                 if not spare:
                     break
                 low, high = signed.min(axis=0), signed.max(axis=0)

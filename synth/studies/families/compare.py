@@ -20,15 +20,17 @@ from synth.order.feasibility import Status
 from synth.question.arguments import Families, Limits, Objectives, PartRules, Pins, Requirements, Scatter, UserTables
 from synth.question.settings import LEAST_SECONDS, Progress, ProgressState, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
-from synth.results import Certificate, ParetoFront
+from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import ranked
 from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
+from synth.search.archive import Candidate
 from synth.search.front_report import further_designs
 from synth.search.question import pose
 from synth.search.resolution import rounded_up
 from synth.search.settings import TUNING, Tuning
 from synth.search.stages.challenge import challenge
+from synth.search.stages.first_by_rank import nearest_among
 from synth.studies.families.common_front import CommonFront
 from synth.studies.families.comparison import Comparison
 from synth.studies.families.competitor import Competitor, KeptQuestion
@@ -145,7 +147,7 @@ class _Comparing:
         self.settings, self.progress = settings, progress
         limit = settings.time_limit
         self.deadline = math.inf if limit is None else self.started + limit
-        self.front = CommonFront(ranked["objectives"], settings.points)
+        self.front = CommonFront(ranked["objectives"], settings.points, ranked["weights"])
         self.faults: dict[str, InputError] = {}
         self.interrupted = ""
         self.proven = True
@@ -232,22 +234,27 @@ class _Comparing:
     # -- against each other --------------------------------------------------------------------
 
     def _challenge_all(self) -> None:
-        """Let every family look for designs that beat those of the others, until none finds any."""
+        """Let every family look for the design nearest to the ideal of all, then for designs that beat the others'."""
         able = [m for m in self.front.members if m.designs or m.front.status is Status.FEASIBLE]
         if len(able) < 2 or len(self.front.objectives) < 2 or self.interrupted:
             return
+        nearest_stand = True
+        for member in able:
+            found = nearest_among(member.state, self.front.everything(), self.front.weights, self.deadline)
+            fresh, all_stand = self._standing(member, found)
+            member.designs += fresh
+            nearest_stand = nearest_stand and all_stand
         for _ in range(self.limits.rounds):
-            quiet = closed = True
+            quiet, closed = True, nearest_stand
             for member in able:
                 listed, _ = self.front.listed()
                 others = [d for m, d in listed if m is not member]
                 if others:
                     reply = challenge(member.state, self.front.signed(others), self.deadline)
                     member.amounts = np.maximum(member.amounts, reply.amounts)
-                    useful = self.front.useful(further_designs(member.state, reply.better)) if reply.better else []
-                    fresh = member.standing(useful, self.deadline)
+                    fresh, all_stand = self._standing(member, reply.better)
                     member.designs += fresh
-                    closed = closed and reply.closed and len(fresh) == len(useful)
+                    closed = closed and reply.closed and all_stand
                     quiet = quiet and not fresh
             if quiet:
                 # What did not stand the range may have kept the search from what does, and beats others as well.
@@ -255,15 +262,20 @@ class _Comparing:
                 return
         self.proven = False
 
+    def _standing(self, member: Competitor, found: Sequence[Candidate]) -> tuple[list[Design], bool]:
+        """New designs of a family that no known design beats and that stand the range; whether all found do."""
+        useful = self.front.useful(further_designs(member.state, found)) if found else []
+        fresh = member.standing(useful, self.deadline)
+        return fresh, len(fresh) == len(useful)
+
     # -- the report ----------------------------------------------------------------------------
 
     def _compared(self) -> Comparison:
         listed, every = self.front.listed()
         certificate = self._certificate(bool(listed))
-        weights = [float((self.ranked["weights"] or {}).get(n, 1.0)) for n in self.front.objectives]
         proven = certificate.kind == "global"
         complete = proven and all(m.front.complete for m in self.front.members)
-        order, designs = ranked([d for _, d in listed], self.front.objectives, weights, complete)
+        order, designs = ranked([d for _, d in listed], self.front.objectives, self.front.weights, complete)
         owners = [listed[k][0].one.label for k in order]
         designs = [
             replace(d, status=d.status if proven else Status.FEASIBLE, gap=certificate.gap if proven else None)
