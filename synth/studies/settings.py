@@ -126,12 +126,12 @@ class ComparisonLimits:
     ----------
     rounds : int
         In which every family looks for designs that beat those of the others; mostly two or three are enough.
-    first_pass : float
-        In s, of each family before any goes on to its end: most are done by then, and all others have designs.
+    budget : float
+        In s, for all families where no time limit is stated: with reading and writing an answer takes a minute.
     """
 
     rounds: int = 6
-    first_pass: float = 10.0
+    budget: float = 50.0
 
 
 @dataclass(frozen=True, kw_only=True)

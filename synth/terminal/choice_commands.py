@@ -30,6 +30,7 @@ from synth.verbs.requests import NearEqualsRequest, PricesRequest
 
 if TYPE_CHECKING:
     from synth.question.spec import Spec
+    from synth.studies.families.comparison import Comparison
 
 
 def register(app: typer.Typer) -> None:
@@ -103,7 +104,10 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
     from synth.terminal.choice_console import comparison_explanation, how_long, print_comparison
     from synth.terminal.console import output, progress_display
 
-    # Finished families are kept there until all are.
+    def keep(found: Comparison, at: Path) -> None:
+        save_result(at, csv.files({**found.files(at), **found.family_files(at)}), FRONT, False)
+
+    # What is found stands there until all families are searched.
     place = None if folder is None else place_for_stopped(folder, FRONT)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         tables = Catalogs(asked.catalogs, base=asked.folder)
@@ -117,7 +121,7 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
             catalogs=tables,
             options=asked.options,
             progress=progress,
-            finished=None if place is None else lambda label, front: front.save(place / label, csv),
+            so_far=None if place is None else lambda found: keep(found, place),
             serving=None if quiet else lambda labels: tell(how_long(labels, asked.time_limit)),
             **stated,
         )

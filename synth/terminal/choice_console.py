@@ -150,16 +150,9 @@ def _plain_common_front(found: Comparison, console: Console, every: bool) -> Non
 
 def how_long(families: Sequence[str], time_limit: float | None) -> str:
     """Time that a comparison takes, and what stops it."""
-    look, count = COMPARING.first_pass, len(families)
-    if time_limit is not None and time_limit <= count * look:
-        spent = f"They share {typed_number(time_limit)} s"
-    else:
-        first = f"Each is searched for {typed_number(look)} s at first" + (
-            f", {typed_number(count * look)} s for all" if count > 1 else ""
-        )
-        end = "which may take minutes each" if time_limit is None else f"within {typed_number(time_limit)} s in all"
-        spent = f"{first}; what is not finished then is searched to the end, {end}"
-    stops = "Ctrl-C keeps what is found" + ("" if time_limit is not None else "; --time-limit ends it by itself")
+    count, seconds = len(families), typed_number(COMPARING.budget if time_limit is None else time_limit)
+    spent = f"They share {seconds} s, those with the fewest combinations first" if count > 1 else f"It has {seconds} s"
+    stops = "Ctrl-C keeps what is found" + ("" if time_limit is not None else "; --time-limit gives more time")
     who = "1 family serves" if count == 1 else f"{count} families serve"
     return f"{who} this sheet: {', '.join(families)}. {spent}. {stops}."
 

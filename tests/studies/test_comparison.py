@@ -332,7 +332,7 @@ def test_an_interruption_keeps_the_families_that_are_finished(tmp_path):
             raise KeyboardInterrupt
 
     found = compare(
-        [Solid, Tube, Padded], {"load": LOAD}, catalogs=OWN, points=4, progress=stop, finished=kept.__setitem__
+        [Solid, Padded, Tube], {"load": LOAD}, catalogs=OWN, points=4, progress=stop, finished=kept.__setitem__
     )
     assert found.interrupted == "interrupted"
     assert found.certificate.kind == "heuristic"
@@ -607,34 +607,52 @@ def test_families_that_understand_the_same_measure_it_alike():
 # ---- time that is shared --------------------------------------------------------------------------------------------
 
 
-def looked(families, progress=None, finished=None, told=None):
-    """Compare families none of which is finished at the first look."""
+def looked(families, budget, **more):
+    """Compare families that have so many seconds where no time limit is stated."""
     sheet, tables = sheet_of(requirements={"load": LOAD}), Catalogs(OWN)
     found = applicants(families, sheet, tables)
     ranked = {"objectives": common_objectives(found, None), "weights": None, "grid": True}
-    settings, limits = SearchSettings(points=4), dataclasses.replace(COMPARING, first_pass=0.0)
+    settings, limits = SearchSettings(points=4), dataclasses.replace(COMPARING, budget=budget)
     comparing = synth.studies.families.compare._Comparing(
-        found, sheet, ranked, tables, settings, progress, False, limits=limits
+        found, sheet, ranked, tables, settings, more.pop("progress", None), False, limits=limits
     )
-    return comparing.run(finished, told)
+    return comparing.run(**{"finished": None, **more})
 
 
-@pytest.mark.slow
-def test_what_is_listed_does_not_depend_on_the_first_look():
-    kept, asked = [], [Solid, Tube, Padded]
-    late = looked(asked, finished=lambda label, front: kept.append((label, front.interrupted)))
-    once = compare(asked, {"load": LOAD}, catalogs=OWN, points=4)
-    assert kept == [(x, stop) for stop in ("time limit", "") for x in ("solid", "padded", "tube")]
-    assert [(d.rank, d.values) for d in late.designs] == [(d.rank, d.values) for d in once.designs]
-    assert late.families == once.families
-    assert late.certificate == once.certificate
-    assert late.certificate.kind == "global"
-    assert not late.interrupted
+def test_best_found_is_told_where_the_budget_ends_a_search():
+    kept = []
+    late = looked([Solid, Tube], 1e-9, finished=lambda label, front: kept.append((label, front.interrupted)))
+    assert kept == [("solid", "time limit")]
+    assert (late.interrupted, late.status) == ("time limit", Status.NOT_SOLVED)  # nothing was found
+    assert late.certificate.kind == "heuristic"
+    early = looked([Solid, Tube], 1e3)
+    assert (early.certificate.kind, early.certificate.budget) == ("global", None)
 
 
-def test_every_family_is_looked_at_before_any_is_searched_to_the_end():
-    """The simplest first: a count that takes much time comes after what has none."""
+def test_a_budget_that_is_over_is_no_interruption(monkeypatch):
+    """Some designs and no proof: it is a result, and says that more time may do more."""
+    search = synth.studies.families.compare._Comparing._searched
 
+    def ended(self, one, *more):
+        member = search(self, one, *more)
+        front = dataclasses.replace(member.front, interrupted="time limit" if one.label == "tube" else "")
+        return dataclasses.replace(member, front=front)
+
+    monkeypatch.setattr(synth.studies.families.compare._Comparing, "_searched", ended)
+    told = []
+    found = looked([Solid, Tube], 1e3, so_far=told.append)
+    assert [x.interrupted for x in told] == ["under way"] * 3  # the tube is searched once more
+    assert [len(x.designs) > 0 for x in told] == [True] * 3
+    assert outcome(told[0], "tube").sentence == "not searched (under way)"
+    assert (found.interrupted, found.status) == ("", Status.FEASIBLE)
+    assert (found.certificate.kind, found.certificate.budget) == ("heuristic", 1e3)
+    assert found.sentence().startswith("not proven: best found in the budget of 1000 s;")
+    assert outcome(found, "tube").sentence.endswith("; best found, its search was not finished")
+    assert "best found" not in outcome(found, "solid").sentence
+    assert all(d.status is Status.FEASIBLE and d.gap is None for d in found.designs)
+
+
+def test_families_with_the_fewest_combinations_come_first():
     class Bundle(Solid):
         name, title = "bundle", "Bundle of bars"
 
@@ -644,17 +662,17 @@ def test_every_family_is_looked_at_before_any_is_searched_to_the_end():
 
     searched, told = [], []
 
-    def stop(state):
+    def note(state):
         label = state["stage"].split(":")[0]
         searched.extend([] if searched[-1:] == [label] else [label])
-        if len(searched) > 3:  # the second look begins
+        if label == "tube":
             raise KeyboardInterrupt
 
-    late = looked([Bundle, Solid, Tube], progress=stop, told=told.extend)
-    assert told == ["solid", "bundle", "tube"]
-    assert searched == [*told, "solid"]
+    late = looked([Bundle, Solid, Tube], 1e3, progress=note, announce=told.extend)
+    assert told == ["solid", "tube", "bundle"]
+    assert searched == told[:2]
     assert late.interrupted == "interrupted"
-    assert {x.family: x.front is not None for x in late.outcomes} == {"bundle": True, "solid": True, "tube": True}
+    assert {x.family: x.front is not None for x in late.outcomes} == {"bundle": False, "solid": True, "tube": True}
 
 
 def test_who_is_stopped_keeps_what_the_first_look_brought(found):
@@ -675,12 +693,11 @@ def test_who_is_stopped_keeps_what_the_first_look_brought(found):
         (
             3,
             None,
-            "3 families serve this sheet: a, b, c. Each is searched for 10 s at first, 30 s for all; what is not ",
+            "3 families serve this sheet: a, b, c. They share 50 s, those with the fewest combinations first. Ct",
         ),
-        (3, None, "searched to the end, which may take minutes each. Ctrl-C keeps what is found; --time-limit ends it"),
-        (3, 100.0, "searched to the end, within 100 s in all. Ctrl-C keeps what is found."),
-        (3, 20.0, "They share 20 s. Ctrl-C keeps what is found."),
-        (1, None, "1 family serves this sheet: a. Each is searched for 10 s at first; what"),
+        (3, None, "Ctrl-C keeps what is found; --time-limit gives more time."),
+        (3, 20.0, "They share 20 s, those with the fewest combinations first. Ctrl-C keeps what is found."),
+        (1, None, "1 family serves this sheet: a. It has 50 s. Ctrl-C"),
     ],
 )
 def test_the_screen_says_how_long_it_may_take(families, time_limit, words):

@@ -7,7 +7,6 @@ it finds take their places, until nothing changes.
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -18,6 +17,7 @@ import numpy as np
 from synth.errors import InputError
 from synth.order.feasibility import Status
 from synth.question.arguments import Families, Limits, Objectives, PartRules, Pins, Requirements, Scatter, UserTables
+from synth.question.instance import Instance
 from synth.question.settings import LEAST_SECONDS, Progress, ProgressState, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import Certificate, Design, ParetoFront
@@ -48,7 +48,8 @@ from synth.system.deadline import INTERRUPTED, stoppable
 from synth.tables.catalogs import Catalogs
 
 KINDS = ("heuristic", "exhaustive", "global")
-PASSES = 2  # over the families: a first one, and one to the end
+UNDER_WAY = "under way"
+PASSES = 2  # over the families: each in its share of the time, and those that are not finished once more
 
 
 def compare(
@@ -72,11 +73,12 @@ def compare(
     finished: Callable[[str, ParetoFront], object] | None = None,
     robust: Scatter | None = None,
     serving: Callable[[Sequence[str]], object] | None = None,
+    so_far: Callable[[Comparison], object] | None = None,
 ) -> Comparison:
     """Search all families that can serve one requirement sheet, and rank their designs on one front.
 
-    Each is searched for a few seconds first, the simplest before the others; those that are not finished by then are
-    searched to the end afterwards. What is listed does not depend on which they are.
+    Those with the fewest combinations come first, and each may take its share of the time that is left, so that none
+    keeps the others waiting. What the first ones leave goes to those that were not finished.
 
     Parameters
     ----------
@@ -92,17 +94,19 @@ def compare(
     catalogs, parts, limits, fix, weights, gap, grid, workers, seed, progress : optional
         As for ``synthesize``; a family that does not know a name of ``parts``, ``limits`` or ``fix`` is left out.
     time_limit : float, optional
-        Seconds for all families together.
+        Seconds for all families together; by default ``COMPARING.budget``, after which the best found is told.
     options : mapping, optional
         Options of every family.
     finished : callable, optional
-        Called with the label and the front of each family as soon as it is searched; again where it is searched to the
-        end after a first pass.
+        Called with the label and the front of each family as soon as it is searched; again where it is searched once
+        more.
     robust : mapping, optional
         What scatters, as for ``synthesize``: designs of all families stand it, or are rated. Under a family "none" in
         place of a range tells that it does not scatter there.
     serving : callable, optional
         Called with the labels of the families that can serve, in the order of the search, before it begins.
+    so_far : callable, optional
+        Called with the comparison as it stands, after each family.
 
     Returns
     -------
@@ -123,7 +127,7 @@ def compare(
     refuse_all(candidates, sheet)
     ranked = {"objectives": chosen, "weights": weights, "grid": grid}
     comparing = _Comparing(candidates, sheet, ranked, tables, settings, progress, objectives is not None)
-    return comparing.run(finished, serving)
+    return comparing.run(finished, serving, so_far)
 
 
 class _Comparing:
@@ -145,24 +149,33 @@ class _Comparing:
         self.started, self.tuning, self.limits = time.monotonic(), tuning, limits
         self.candidates, self.sheet, self.ranked, self.tables = candidates, sheet, ranked, tables
         self.settings, self.progress = settings, progress
-        limit = settings.time_limit
-        self.deadline = math.inf if limit is None else self.started + limit
+        # A limit that was asked for interrupts; the budget ends a search as it ends that of one family.
+        self.budget = limits.budget if settings.time_limit is None else None
+        self.deadline = self.started + (self.budget or settings.time_limit or 0.0)
         self.front = CommonFront(ranked["objectives"], settings.points, ranked["weights"])
         self.faults: dict[str, InputError] = {}
         self.interrupted = ""
-        self.proven = True
+        self.proven, self.spent = True, False
 
     def run(
         self,
         finished: Callable[[str, ParetoFront], object] | None,
         announce: Callable[[Sequence[str]], object] | None = None,
+        so_far: Callable[[Comparison], object] | None = None,
     ) -> Comparison:
-        serving = sorted((one for one in self.candidates if not one.misfits), key=Applicant.effort)
+        serving = self._serving()
+        if not serving:
+            raise next(iter(self.faults.values()))
         if announce is not None:
             announce([one.label for one in serving])
-        self._search_all(serving, finished)
-        if len(self.faults) == len(serving):
-            raise next(iter(self.faults.values()))
+
+        def searched(label: str, front: ParetoFront) -> None:
+            if finished is not None:
+                finished(label, front)
+            if so_far is not None:
+                so_far(self._compared(UNDER_WAY))
+
+        self._search_all(serving, searched)
         with stoppable(self.deadline) as ending:
             self._challenge_all()
         if ending.reason:
@@ -170,14 +183,30 @@ class _Comparing:
         return self._compared()
 
     def _stop(self, reason: str) -> None:
-        self.interrupted, self.proven = self.interrupted or reason, False
+        self.proven = False
+        if self.budget and reason != INTERRUPTED:
+            self.spent = True
+        else:
+            self.interrupted = self.interrupted or reason
+
+    def _serving(self) -> list[Applicant]:
+        """Families that can serve, those with the fewest combinations first; what one refuses is kept."""
+        counted = []
+        for one in (one for one in self.candidates if not one.misfits):
+            try:
+                instance = Instance(one.request(self.sheet, self.tables, **self.ranked))
+            except InputError as error:
+                self.faults[one.label] = error
+            else:
+                counted.append((instance.combinations.count, one))
+        return [one for _, one in sorted(counted, key=lambda pair: pair[0])]
 
     # -- every family by itself ----------------------------------------------------------------
 
-    def _search_all(self, serving: Sequence[Applicant], finished: Callable[[str, ParetoFront], object] | None) -> None:
-        """Search every family for a limited time, then those that are not finished to the end."""
+    def _search_all(self, serving: Sequence[Applicant], searched: Callable[[str, ParetoFront], object]) -> None:
+        """Search every family in its share of the time, then those that are not finished in what is left."""
         members: dict[str, Competitor] = {}
-        for pass_number, most in enumerate((self.limits.first_pass, math.inf)):
+        for pass_number in range(PASSES):
             open_still = [one for one in serving if one.label not in self.faults and not _done(members.get(one.label))]
             for number, one in enumerate(open_still):
                 remaining = (self.deadline - time.monotonic()) / (len(open_still) - number)
@@ -185,7 +214,7 @@ class _Comparing:
                     break
                 done = (pass_number + number / len(open_still)) / PASSES
                 try:
-                    member = self._searched(one, min(most, remaining), done, 1 / len(open_still) / PASSES)
+                    member = self._searched(one, remaining, done, 1 / len(open_still) / PASSES)
                 except InputError as error:
                     self.faults[one.label] = error
                     continue
@@ -193,17 +222,18 @@ class _Comparing:
                     self._stop(INTERRUPTED)
                     break
                 members[one.label] = member.with_what_it_had(members.get(one.label))
-                if finished is not None:
-                    finished(one.label, members[one.label].front)
+                self.front.members = [members[one.label] for one in self.candidates if one.label in members]
+                searched(one.label, members[one.label].front)
                 if member.front.interrupted == INTERRUPTED:
                     self._stop(INTERRUPTED)
-        self.front.members += [members[one.label] for one in self.candidates if one.label in members]
-        if not self.interrupted and not all(map(_done, self.front.members)):
+        if len(self.faults) == sum(not one.misfits for one in self.candidates):
+            raise next(iter(self.faults.values()))
+        if not self.interrupted and not (len(members) == len(serving) and all(map(_done, members.values()))):
             self._stop("time limit")
 
     def _searched(self, one: Applicant, seconds: float, done: float, share: float) -> Competitor:
-        """Search one family for some seconds, or to the end; ``done`` and ``share`` are of all that is to be done."""
-        limit = max(seconds, LEAST_SECONDS) if math.isfinite(seconds) else None
+        """Search one family for some seconds; ``done`` and ``share`` are of all that is to be done."""
+        limit = max(seconds, LEAST_SECONDS)
         shown, kept = self._shown(one.label, done, share), list[KeptQuestion]()
 
         request, rater = one.request(self.sheet, self.tables, **self.ranked), None
@@ -236,7 +266,7 @@ class _Comparing:
     def _challenge_all(self) -> None:
         """Let every family look for the design nearest to the ideal of all, then for designs that beat the others'."""
         able = [m for m in self.front.members if m.designs or m.front.status is Status.FEASIBLE]
-        if len(able) < 2 or len(self.front.objectives) < 2 or self.interrupted:
+        if len(able) < 2 or len(self.front.objectives) < 2 or not self.proven:
             return
         nearest_stand = True
         for member in able:
@@ -270,9 +300,11 @@ class _Comparing:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _compared(self) -> Comparison:
+    def _compared(self, under_way: str = "") -> Comparison:
+        """Comparison as it stands; ``under_way``: what is said of it while families are still searched."""
         listed, every = self.front.listed()
-        certificate = self._certificate(bool(listed))
+        stopped = self.interrupted or under_way or ("time limit" if self.spent and not listed else "")
+        certificate = self._certificate(bool(listed), bool(stopped))
         proven = certificate.kind == "global"
         complete = proven and all(m.front.complete for m in self.front.members)
         order, designs = ranked([d for _, d in listed], self.front.objectives, self.front.weights, complete)
@@ -281,7 +313,7 @@ class _Comparing:
             replace(d, status=d.status if proven else Status.FEASIBLE, gap=certificate.gap if proven else None)
             for d in designs
         ]
-        outcomes = Outcomes(self.front, designs, owners, every, self.faults, self.interrupted, self.chosen)
+        outcomes = Outcomes(self.front, designs, owners, every, self.faults, stopped or "time limit", self.chosen)
         settings = {
             "points": self.settings.points,
             "weights": self.ranked["weights"],
@@ -299,14 +331,14 @@ class _Comparing:
             [outcomes.of(one) for one in self.candidates],
             certificate,
             settings,
-            self.interrupted,
+            stopped,
             time.monotonic() - self.started,
         )
 
-    def _certificate(self, any_design: bool) -> Certificate:
+    def _certificate(self, any_design: bool, stopped: bool) -> Certificate:
         certificates = [m.front.certificate for m in self.front.members]
         weakest = min((KINDS.index(c.kind) for c in certificates), default=0)
-        kind = KINDS[weakest] if not self.interrupted else KINDS[0]
+        kind = KINDS[0] if stopped or self.spent else KINDS[weakest]
         if kind == "global" and not self.proven:
             kind = KINDS[0]
         gap = self.settings.gap if kind == "global" and any_design else None
@@ -319,6 +351,7 @@ class _Comparing:
             sum(c.excluded_by_bound for c in certificates),
             sum(c.solved for c in certificates),
             sum(c.unresolved for c in certificates),
+            self.budget if self.spent else None,
             resolution=amounts,
             units=units,
         )

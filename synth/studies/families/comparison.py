@@ -18,7 +18,7 @@ from synth.results.certificate import all_of, none_of
 from synth.results.drawings import front_picture
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
-from synth.text.numbers import gap_text
+from synth.text.numbers import gap_text, typed_number
 from synth.units import typed_quantity
 
 if TYPE_CHECKING:
@@ -101,6 +101,9 @@ class Comparison:
             return f"proven: {none_of(count)} of parts and counts of {those} searched is feasible"
         if self.interrupted:
             return f"not proven: stopped ({self.interrupted}) before every family was searched to the end"
+        if self.certificate.budget is not None:
+            budget = typed_number(self.certificate.budget)
+            return f"not proven: best found in the budget of {budget} s; a longer time limit may find and prove more"
         return f"not proven ({self.certificate.kind}): the certificate of each family says how far it is"
 
     def to_frame(self) -> pd.DataFrame:

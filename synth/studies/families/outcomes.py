@@ -50,6 +50,9 @@ class Outcomes:
     def of(self, one: Applicant) -> FamilyOutcome:
         """Outcome of a family, with the requirements that do not matter to it."""
         outcome = self._of(one)
+        front = outcome.front
+        if front is not None and front.interrupted and front.designs:
+            outcome = replace(outcome, sentence=f"{outcome.sentence}; best found, its search was not finished")
         not_used = f"; not used: {', '.join(one.not_used)}" if one.not_used else ""
         return replace(outcome, sentence=outcome.sentence + not_used)
 

@@ -7,7 +7,6 @@ that it does not understand makes it step back; nothing that was asked is overlo
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
@@ -54,12 +53,6 @@ class Applicant:
     def robust(self, sheet: Sheet) -> dict[str, Any]:
         """Scatter of the sheet of all, and of its own."""
         return {**sheet["robust"], **self.family_sheet["robust"]}
-
-    def effort(self) -> tuple[int, int]:
-        """Sizes and combinations of counts and choices that a search decides: the fewer, the sooner it is done."""
-        d = self.declaration
-        kinds = [*(len(c.values) for c in d.counts.values()), *(len(c.labels) for c in d.choices.values())]
-        return len(d.variables) + len(d.slots), math.prod(kinds)
 
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
         """Question of the family: the sheet of all and its own, and the objectives of the ranking."""
