@@ -15,7 +15,7 @@ from synth.text.numbers import number_text, typed_number
 from .. import friction, practice
 from ..components.lining import wear
 from ..components.lining.model import Pair, declare_friction_pair, declare_surface_loads
-from ..duty import coverage
+from ..duty import cooling, coverage
 from ..friction import startup_curves
 from ..mechanics import heat, plates
 from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
@@ -520,7 +520,7 @@ class ConeClutch(DesignProblem):
         friction.declare_heated_body(
             d,
             heat_capacity=shell_mass * duty.steel_specific_heat,
-            cooled_area=plates.cylinder_surface(size.diameter, size.length),
+            cooled_area=cooling.effective(d, plates.cylinder_surface(size.diameter, size.length)),
             body="A shell",
         )
         rise = d.derive(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .cooling import COOLING
 from .drive import WORDS, Drive, Start, refuse_contradictions, sized_by_load
 
-__all__ = ["WORDS", "Drive", "Start", "refuse_contradictions", "sized_by_load"]
+__all__ = ["COOLING", "WORDS", "Drive", "Start", "refuse_contradictions", "sized_by_load"]

@@ -13,6 +13,7 @@ from ..components.magnet import model as magnet_blocks
 from ..components.magnet.model import Magnet, MagnetSize, Pressed, Pull
 from ..components.pack import layers as plate_layers
 from ..components.shaft.model import ShaftRequirements
+from ..duty import cooling
 from ..practice import by_scope
 
 MAGNET_PARTS = 3  # pot, armature and coil
@@ -81,7 +82,8 @@ class Ruled(WithBody):
 
     def declare_magnet(self, d: Declaration) -> Magnet:
         """Declare a magnet whose defaults grow with the clutch."""
-        return magnet_blocks.declare_magnet(d, sticking_gap=self._seat.sticking_gap, **self._seat.defaults)
+        seat, still = self._seat, cooling.still_transfer(d)
+        return magnet_blocks.declare_magnet(d, sticking_gap=seat.sticking_gap, still_transfer=still, **seat.defaults)
 
     def limit_pull_in(self, d: Declaration, magnet: Magnet, pull: Pull) -> None:
         """Declare that the magnet draws the armature in; a gap that is not set again counts with worn linings."""

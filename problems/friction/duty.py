@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from synth.declaration import Declaration, Option, Requirement
-from synth.errors import InputError
 
-from ..duty import WORDS, Start, refuse_contradictions
+from ..duty import COOLING, WORDS, Start, cooling, refuse_contradictions
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1, TYPICAL
@@ -52,12 +51,7 @@ class Duty(Start):
         "where it harms",
         source="scatter band of the friction pair",
     )
-    cooling = Option(
-        table="cooling_options",
-        symbol="cool",
-        text="How heat leaves the clutch; gives the default of heat transfer",
-        source=f"{S0}, cooling of the plates",
-    )
+    cooling = COOLING
     allow_obsolete = Option(
         ("no", "historical", "yes"),
         "no",
@@ -295,20 +289,14 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
     Raises
     ------
     InputError
-        When the cooling does not go with the lubrication.
+        When the cooling does not go with the lubrication, or with what turns.
     """
     duty = d.block(
         kind,
         cooling=cooling_default,
-        heat_transfer=lambda duty: d.row("cooling_options", duty.cooling).heat_transfer,
+        heat_transfer=lambda duty: cooling.row(d).heat_transfer,
     )
-    if lubrication is not None and _lubrication_of(d, cooling=duty.cooling) not in ("", lubrication):
-        fitting = [c for c in d.designations("cooling_options") if _lubrication_of(d, cooling=c) == lubrication]
-        raise InputError(
-            "lubrication_mismatch",
-            f"cooling {duty.cooling}",
-            f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}",
-        )
+    cooling.refuse_unfit(d, lubrication, turns=True)
     refuse_contradictions(d, duty)
     if duty.startup_torque is not None:
         d.refuse(
@@ -324,7 +312,7 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
             "a brake or backstop that is released then makes it a reactive load with less heat",
             source=f"{S1}, start-up; friction work of the two kinds of load",
         )
-    if duty.cooling == "fan":
+    if "fan" in duty.cooling:
         d.advise(
             "fan_cooling",
             True,
@@ -332,11 +320,6 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
             source=f"{S0}, cooling of the plates",
         )
     return duty
-
-
-def _lubrication_of(d: Declaration, *, cooling: str) -> str:
-    """Lubrication that a cooling belongs to; empty where it goes with any."""
-    return d.cell("cooling_options", cooling, "lubrication")
 
 
 def declare_ramp_time(d: Declaration) -> Any:

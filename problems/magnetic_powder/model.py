@@ -13,8 +13,9 @@ from synth.declaration import Choice, Declaration, Part, Requirement
 
 from .. import practice
 from ..components.coil import model as coil_blocks
-from ..duty import WORDS, Drive, coverage, refuse_contradictions
+from ..duty import COOLING, WORDS, Drive, cooling, coverage, refuse_contradictions
 from ..mechanics import magnetics
+from ..practice import UNSOURCED
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
 from . import formulas as powder
@@ -41,6 +42,7 @@ class Wants(Drive):
         text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil",
         source=f"{S4}, section 6.1",
     )
+    cooling = COOLING
     required_torque = replace(Drive.required_torque, text="Torque that the clutch has to carry, slipping or not")
     steel_density = Requirement(
         "kg/m3",
@@ -209,10 +211,11 @@ class MagneticPowderClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        wants = d.block(Wants)
+        wants = d.block(Wants, cooling=layer_of.cooling)
+        cooling.refuse_unfit(d, "dry", turns=False)
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
-        iron = coil_blocks.declare_coil_requirements(d)
+        iron = coil_blocks.declare_coil_requirements(d, still_heat_transfer=cooling.still_transfer(d))
         radius = d.variable(
             "gap_radius",
             "mm",
@@ -251,6 +254,9 @@ class MagneticPowderClutch(DesignProblem):
             text="stationary: a second air gap, no slip rings; rotating: slip rings, the coil turns with the driver",
             source=f"{S4}, figures 2-27 to 2-29",
         )
+        if cooling.stands(d):
+            turns = coil.select({"stationary": 0.0, "rotating": 1.0})
+            d.at_most("standing_body", turns, 0.5, "-", text="A jacket needs a body that stands", source=UNSOURCED)
         part = d.part("powder", "powders", symbol="pw", text="Magnetic powder", source="table powders")
         layout = powder.Layout(
             gap_radius=radius,
@@ -296,7 +302,7 @@ class MagneticPowderClutch(DesignProblem):
             ambient_temperature=wants.ambient_temperature,
             temperature_limit=np.minimum(unknowns.winding_wire.insulation_temperature, part.temp_max),
             heat_transfer=transfer,
-            surface=magnetics.cylinder_surface(layout.outer_radius, layout.length),
+            surface=cooling.effective(d, magnetics.cylinder_surface(layout.outer_radius, layout.length)),
             other_heat=slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
         )
@@ -501,6 +507,11 @@ def _declare_size(
     ):
         d.step(name, "kg", value, symbol=symbol, text=text, source=f"{S4} [P10]")
     copper = coil_blocks.declare_copper(d, section=copper_section, radius=layout.coil_radius, source=f"{S4} [P10]")
+    tube = powder.cylinder_mass(density, layout.bore + layout.coil_height, layout.thickness, layout.length)
+    fins = cooling.fin_mass(d, tube)
+    if fins is not None:
+        text = "Fins on the yoke tube"
+        body += d.step("fins_mass", "kg", fins, symbol="m_fin", text=text, source=UNSOURCED)
     inertia = powder.ring_inertia(drum, layout.drum_radius, inner)
     d.step("drum_inertia", "kg*m2", inertia, symbol="J_drum", text="Inertia of the drum", source=f"{S4} [P10]")
     d.derive(

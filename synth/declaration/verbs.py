@@ -569,9 +569,10 @@ class Declaration:
     def row(self, table: str, designation: str) -> Part:
         """Return one fixed row of a table (not a slot), for options whose figures stand in a table."""
         self.catalogs.table(table).row_index(designation)
-        part = self._part(f"{table}:{designation}", table, (f"designation == {designation!r}",), "", "", "", False)
-        self.rows[part.slot] = part
-        return part
+        slot = f"{table}:{designation}"
+        if slot not in self.rows:
+            self.rows[slot] = self._part(slot, table, (f"designation == {designation!r}",), "", "", "", False)
+        return self.rows[slot]
 
     def _part(
         self, slot: str, table: str, where: tuple[str, ...], symbol: str, text: str, source: str, is_slot: bool

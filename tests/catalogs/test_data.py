@@ -25,7 +25,7 @@ CATALOGUES = {
     "parallel_keys": 19, "splines": 93, "shaft_ends": 42, "preferred_numbers": 229, "hub_diameters": 51,
     "guide_rolling_bearings": 95, "spring_wire_round": 170, "spring_wire_flat": 46, "compression_springs": 168,
     "disc_springs_DIN2093": 87, "metals": 60, "float_materials": 25, "motors_iec": 22, "balls": 35, "powders": 3,
-    "winding_wire": 54, "cone_layouts": 2, "release_aids": 4, "cooling_options": 4,
+    "winding_wire": 54, "cone_layouts": 2, "release_aids": 4, "cooling_options": 8,
 }  # fmt: skip
 DATA = {
     "application_factors": ("designation", 168),
@@ -463,11 +463,16 @@ def test_small_tables() -> None:
     none = view("release_aids").one("none")
     assert [none.force_fraction[0], none.area_factor[0], none.drag_factor[0]] == [0, 1, 1]
     cooling = view("cooling_options")
-    assert rises(cooling.heat_transfer)
-    assert set(cooling.lubrication) == {"dry", "oil"}
-    assert ((cooling.forced_oil == 0) | (cooling.lubrication == "oil")).all()
-    assert between(cooling.heat_transfer[cooling.lubrication == "dry"], 15, 60)
-    assert between(cooling.heat_transfer[cooling.lubrication == "oil"], 80, 300)
+    dry, oil, water = (cooling.lubrication == name for name in ("dry", "oil", "any"))
+    assert (dry | oil | water).all()
+    assert ((cooling.forced_oil == 0) | oil).all()
+    for found in (cooling.heat_transfer, cooling.heat_transfer_still):
+        assert between(found[dry], 12, 80)  # gases, free and forced: 2 to 250
+        assert rises(found[oil])
+        assert between(found[oil], 80, 300)
+    assert np.isnan(cooling.heat_transfer[water]).all()  # a jacket needs a body that stands
+    assert (cooling.heat_transfer[~water] >= cooling.heat_transfer_still[~water]).all()
+    assert ((cooling.area_factor > 1) == (cooling.fin_mass > 0)).all()
 
 
 # ---- factors, requests, the lecture's case --------------------------------------------------------------------------

@@ -96,9 +96,10 @@ class CoilRequirements(Block):
         "W/(m2*K)",
         12,
         lower=1,
-        upper=200,
+        upper=5000,
         symbol="h_still",
-        text=f"Surface coefficient of a body at rest, convection and radiation ({TYPICAL})",
+        text=f"Surface coefficient of a body at rest, convection and radiation ({TYPICAL}; with rules of practice, and "
+        "in a powder clutch, that of cooling)",
         source=f"{S4} [P7]",
         group="model",
     )
@@ -193,9 +194,9 @@ class Surroundings:
     brush_drop: Any = 0.0
 
 
-def declare_coil_requirements(d: Declaration) -> CoilRequirements:
+def declare_coil_requirements(d: Declaration, **defaults: Any) -> CoilRequirements:
     """Declare the requirements of the block coil and the refusals that concern them alone."""
-    wants = d.block(CoilRequirements)
+    wants = d.block(CoilRequirements, **defaults)
     d.refuse(
         "iron_saturates",
         wants.iron_flux_limit >= wants.iron_saturation,

@@ -7,6 +7,7 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Requirement
 
+from ...duty import cooling
 from ...friction.duty import Duty, Size
 from ...friction.engagement import (
     Startup,
@@ -352,7 +353,7 @@ def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
         text="Hottest pressure plate after one engagement, which takes half of the friction work",
         source="heat balance; half of the work for the hottest plate of a single or twin disc",
     )
-    cooled_area = plates.cylinder_surface(size.diameter, size.length)
+    cooled_area = cooling.effective(d, plates.cylinder_surface(size.diameter, size.length))
     mean_rise = d.derive(
         "mean_temperature_rise",
         "K",

@@ -7,6 +7,7 @@ from typing import Any
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
+from ...duty import cooling
 from ...friction.duty import Duty, Size
 from ...friction.engagement import Startup
 from ...mechanics import heat, magnetics, plates
@@ -193,7 +194,9 @@ def declare_magnet_rules(d: Declaration) -> MagnetRules:
     return rules
 
 
-def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Magnet:
+def declare_magnet(
+    d: Declaration, *, sticking_gap: Any, still_transfer: Any = cooling.STILL_AIR, **defaults: Any
+) -> Magnet:
     """Declare requirements and unknowns of the magnet, its force, and what is left for the pack.
 
     Parameters
@@ -202,6 +205,8 @@ def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Mag
         Takes the declarations.
     sticking_gap : float or symbol
         Gap below which it may hold without current [m].
+    still_transfer : float or symbol
+        Default of the surface coefficient of the standing magnet [W/(m2 K)].
     defaults : symbols
         Defaults of MagnetRequirements, in SI.
 
@@ -211,7 +216,7 @@ def declare_magnet(d: Declaration, *, sticking_gap: Any, **defaults: Any) -> Mag
         Symbols of the block.
     """
     wants = d.block(MagnetRequirements, **defaults)
-    iron = coil_blocks.declare_coil_requirements(d)
+    iron = coil_blocks.declare_coil_requirements(d, still_heat_transfer=still_transfer)
     pole_width = d.variable(
         "inner_pole_width",
         "mm",
@@ -329,7 +334,7 @@ def declare_coil(d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull) -
         ambient_temperature=duty.ambient_temperature,
         temperature_limit=unknowns.winding_wire.insulation_temperature,
         heat_transfer=iron.still_heat_transfer,
-        surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
+        surface=cooling.effective(d, magnetics.cylinder_surface(shape.outer_radius, shape.body_length)),
         other_heat=heat.hourly_heat(pressed.start.friction_work, duty.engagements_per_hour),
     )
     winding = coil_blocks.declare_winding(

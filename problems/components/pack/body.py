@@ -12,6 +12,7 @@ import numpy as np
 
 from synth.declaration import Declaration
 
+from ...duty import cooling
 from ...friction.duty import Size
 from ...mechanics import heat, plates
 from ...mechanics import ring as ring_formulas
@@ -28,6 +29,7 @@ PARTS = {  # symbol and meaning of the masses around a pack
     "hub_rim_mass": ("m_rim", "Rim of the hub, which carries the inner plates"),
     "hub_web_mass": ("m_web", "Web of the hub"),
     "boss_mass": ("m_boss", "Both bosses on the shaft"),
+    "fins_mass": ("m_fin", "Fins on the shell of the drum"),
     "drum_bottom_mass": ("m_bot", "Bottom of the drum"),
     "piston_mass": ("m_pis", "Piston of the actuator"),
 }
@@ -152,14 +154,17 @@ def _masses_around(
     rho, wall, shaft = built.duty.steel_density, built.wants.drum_wall, wants.shaft_diameter / 2
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
     thicker = end - pack.inner_thickness
+    shell = plates.annulus_mass(rho, 1, drum_length, 2 * b + wall, wall)
+    fins = cooling.fin_mass(built.duty.declaration, shell)
     return {
         "end_plate_mass": plates.annulus_mass(
             rho, end_plates, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width
         ),
-        "drum_shell_mass": plates.annulus_mass(rho, 1, drum_length, 2 * b + wall, wall),
+        "drum_shell_mass": shell,
         "hub_rim_mass": plates.annulus_mass(rho, 1, along, 2 * a - wall, wall),
         "hub_web_mass": plates.annulus_mass(rho, 1, end, a - wall + shaft, a - wall - shaft),
         "boss_mass": 2 * wants.boss_mass(rho),
+        **({} if fins is None else {"fins_mass": fins}),
     }
 
 

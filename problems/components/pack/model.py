@@ -10,6 +10,7 @@ import numpy as np
 
 from synth.declaration import Declaration
 
+from ...duty import cooling
 from ...friction.duty import DutyOfPlates, Size
 from ...friction.engagement import (
     Startup,
@@ -739,7 +740,7 @@ def pack_size(stack: Stack) -> PackSize:
         diameter=diameter,
         length=length,
         heat_capacity=steel * duty.steel_specific_heat,
-        cooled_area=plate_formulas.cylinder_surface(diameter, length),
+        cooled_area=cooling.effective(duty.declaration, plate_formulas.cylinder_surface(diameter, length)),
         inner_mass=inner,
         outer_mass=outer,
         lining_mass=linings,

@@ -22,6 +22,7 @@ THEN = {
     "return_spring_force": "100 N",
     "release_drag_force": "20 N",
     "residual_gap": "0.4 mm",
+    "still_heat_transfer": "12 W/(m2*K)",
 }
 SIZES = {
     "multi_plate": {

@@ -39,7 +39,7 @@ RULES = {
 
 def design(sizes, requirements=None, coil="stationary", wire="Cu 1.25 class 155", **options):
     return synth.evaluate(
-        synth.load("magnetic_powder_clutch", **{"practice": "on", **options}),
+        synth.load("magnetic_powder_clutch", **{"practice": "on", "cooling": "still_air", **options}),
         {**DUTY, **(requirements or {})},
         values={"powder_gap": "1.25 mm", "coil": coil, **sizes},
         parts={"powder": "carbonyl_graphite", "winding_wire": wire},

@@ -1,0 +1,87 @@
+"""How heat leaves a clutch: rows of cooling_options in the families that have heat."""
+
+import math
+
+import pytest
+
+import synth
+
+POWDER = {
+    "values": {
+        "gap_radius": "67 mm", "pole_length": "18 mm", "powder_gap": "1.25 mm", "coil_length": "23 mm",
+        "coil_height": "15 mm", "yoke_thickness": "11 mm", "flux_density": "0.84 T", "coil": "stationary",
+    },
+    "parts": {"powder": "carbonyl_graphite", "winding_wire": "Cu 0.8 class 155"},
+}  # fmt: skip
+DISC = {
+    "values": {
+        "ring_outer_diameter": "175 mm", "ring_inner_diameter": "124 mm", "pressure_plate_thickness": "9 mm",
+        "ramp_time": "0.57 s", "actuation_force": "3400 N", "discs": 1,
+    },
+    "parts": {"friction_pair": "moulded_dry"},
+}  # fmt: skip
+LOAD = {"load_torque": "60 N*m", "driver_speed": "1450 1/min", "driven_inertia": "0.4 kg*m2"}
+
+
+def powder(coil="stationary", **options):
+    asked = {**POWDER, "values": {**POWDER["values"], "coil": coil}}
+    return synth.evaluate(synth.load("magnetic_powder_clutch", **options), {"required_torque": "30 N*m"}, **asked)
+
+
+def disc(requirements=None, **options):
+    return synth.evaluate(synth.load("disc_clutch", **options), LOAD | (requirements or {}), **DISC)
+
+
+def conductance(found):
+    """What a body of a coil gives off [W/K], of the outside that is told."""
+    outside = found.values["outer_diameter"] / 2
+    length = found.values["pack_length"]
+    return found.steps["coil_conductance"] / (2 * math.pi * outside * (outside + length))
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"), [("still_air", 12), ("finned", 30), ("fan", 40), ("finned_fan", 100), ("water", 500)]
+)
+def test_a_standing_body_gives_off_heat_by_its_row(row, expected):
+    assert conductance(powder(cooling=row)) == pytest.approx(expected)
+
+
+def test_a_turning_body_gives_off_more():
+    found = powder("rotating", cooling="finned")
+    speed = found.values["outer_diameter"] / 2 * 1432.39 * math.pi / 30
+    assert conductance(found) == pytest.approx(2.5 * (12 + 3 * speed**0.8))
+
+
+def test_fins_weigh_a_tenth_of_the_shell_that_bears_them():
+    plain, finned = powder(cooling="still_air"), powder()
+    outside, length = plain.values["outer_diameter"] / 2, plain.values["pack_length"]
+    shell = 7850 * math.pi * (outside**2 - (outside - 0.011) ** 2) * length
+    assert finned.values["mass"] - plain.values["mass"] == pytest.approx(0.1 * shell)
+    assert "fins_mass" not in plain.steps
+
+
+def test_a_typed_coefficient_wins_over_the_row_and_keeps_the_fins():
+    typed = synth.evaluate(
+        synth.load("magnetic_powder_clutch", cooling="finned"),
+        {"required_torque": "30 N*m", "still_heat_transfer": "15 W/(m2*K)"},
+        **POWDER,
+    )
+    assert conductance(typed) == pytest.approx(2.5 * 15)
+    rise = {row: disc(cooling=row).values["mean_temperature_rise"] for row in ("still_air", "finned", "fan")}
+    assert rise["still_air"] == pytest.approx(2.5 * rise["finned"])
+    assert rise["still_air"] == pytest.approx(2.5 * rise["fan"])
+    found = disc({"heat_transfer": "50 W/(m2*K)"}, cooling="finned").values["mean_temperature_rise"]
+    assert found == pytest.approx(rise["fan"] / 2.5)
+
+
+def test_a_jacket_needs_a_body_that_stands():
+    assert powder(cooling="water").limits["standing_body"][0] < 0.5
+    assert "standing_body" in powder("rotating", cooling="water").violated
+    right = "a cooling of bodies that turn: still_air, finned, fan, finned_fan, forced_air, oil_bath, through_oil"
+    with pytest.raises(synth.InputError, match=right):
+        disc(cooling="water")
+
+
+def test_a_powder_clutch_is_dry():
+    with pytest.raises(synth.InputError, match=r"for lubrication dry: still_air or finned or fan .* or water"):
+        powder(cooling="oil_bath")
