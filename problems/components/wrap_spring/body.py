@@ -97,9 +97,9 @@ class SpringRules(Block):
 
     def pairs(self, d: Declaration, wants: Any) -> list[str]:
         """Conditions on friction pairs, where the table tells: in oil or greased, as dry steel on steel galls."""
-        told = all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note"))
+        known = all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note"))
         return (
-            ["(lubrication == 'oil' or lubrication_note == 'greased')"] if told and not self.may_run_dry(wants) else []
+            ["(lubrication == 'oil' or lubrication_note == 'greased')"] if known and not self.may_run_dry(wants) else []
         )
 
     def may_run_dry(self, wants: Any) -> bool:
