@@ -57,16 +57,3 @@ def declare_scope(d: Declaration) -> Scope:
         group="practice",
     )
     return Scope(rules=rules == "on", complete=scope == "complete")
-
-
-def allowed_linings(d: Declaration, allow_obsolete: str) -> list[str]:
-    """Conditions on rows of friction_materials that leave out what new designs may not have."""
-    return [] if allow_obsolete == "yes" else ["new_design_allowed == 1"]
-
-
-def current_linings(d: Declaration, allow_obsolete: str) -> list[str]:
-    """Conditions on rows of friction_materials that leave out historical linings too, where the table has a status."""
-    conditions = allowed_linings(d, allow_obsolete)
-    if allow_obsolete == "no" and d.has_column("friction_materials", "status"):
-        conditions.append("status in ('current', '')")  # a row of one's own need not say that it is current
-    return conditions

@@ -191,7 +191,7 @@ BUILT_TWO_SPRINGS_LEVER = KnownDesign(
 CASES = {
     "centrifugal_ball_ramp": FamilyCases(
         option_sets={"default": SOURCES, "practice": {"practice": "on"}},
-        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=RAMPS,
         optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
@@ -263,7 +263,7 @@ CASES = {
             "practice": {"practice": "on"},
             "practice_lever": {"practice": "on", "mechanism": "lever"},
         },
-        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=RAMPS,
         optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
@@ -318,7 +318,7 @@ CASES = {
     ),
     "centrifugal_lever": FamilyCases(
         option_sets={"default": SOURCES, "practice": {"practice": "on"}},
-        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=ENGINE,
         optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
@@ -351,7 +351,7 @@ CASES = {
     ),
     "centrifugal_reversed": FamilyCases(
         option_sets={"default": SOURCES, "practice": {"practice": "on"}},
-        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=ENGINE,
         optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},

@@ -187,11 +187,13 @@ def declare_clamp(d: Declaration, *, lining: Lining, force: Any, text: str, sour
     d.at_most(
         "lining_pressure",
         pressure,
-        lining.pair.p_allow,
+        lining.linings.edge_pressure(lining.pair, lining.pair.p_allow),
         "N/mm2",
         text="The lining stands the pressure",
         source=UNIFORM_WEAR,
     )
+    face = centrifugal.lining_area(1, lining.inner_radius, lining.outer_radius)
+    lining.linings.limit_mean(d, lining.pair, force / face)
 
 
 def declare_stop_force(d: Declaration, *, force: Any, text: str, source: str) -> Any:

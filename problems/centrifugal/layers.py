@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from ..components.lining import wear
+from ..components.lining.allowed import Makers, Practice
 from ..components.springs.model import Fitted, advise_springs, limit_set
-from ..practice import by_scope, current_linings
+from ..practice import by_scope
 from . import body, size
 from .body import Built
 from .duty import Duty, WholeDuty, declare_duty, declare_whole_duty
@@ -33,9 +34,9 @@ class Sources:
         """Wear of the linings where the formulas do without [m]."""
         return 0.0
 
-    def linings(self, d: Declaration) -> list[str]:
-        """Conditions on linings beside those of the family."""
-        return []
+    def linings(self, d: Declaration) -> Makers:
+        """What linings stand, with conditions on them beside those of the family."""
+        return Makers(d, "yes")
 
     def declare_size(self, d: Declaration, built: Built) -> None:
         """Declare outside diameter, mass and inertia, and the limit of the room there is."""
@@ -123,9 +124,9 @@ class Ruled(WithBody):
         super().__init__(d, rules)
         self._rules = d.block(rules)
 
-    def linings(self, d: Declaration) -> list[str]:
-        """Conditions that leave out linings which are built no more."""
-        return current_linings(d, self._rules.allow_obsolete)
+    def linings(self, d: Declaration) -> Makers:
+        """What linings stand in practice; those which are built no more are left out."""
+        return Practice(d, self._rules.allow_obsolete)
 
     def declare_size(self, d: Declaration, built: Built) -> None:
         """Declare the size, and limits of discs and springs around the shaft by the rules."""

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 from ..mechanics import centrifugal, heat, ring
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from synth.declaration import Declaration, Part
 
+    from ..components.lining.allowed import Makers
     from .duty import Duty
 
 SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "long_slip == 1")
@@ -28,6 +27,7 @@ class Lining:
     ratio: Any
     surfaces: Any
     pair: Part
+    linings: Makers
 
     @property
     def area(self) -> Any:
@@ -48,7 +48,7 @@ class Lining:
         return centrifugal.force_for_torque(torque, self.pair.mu_dynamic, self.surfaces, self.friction_radius)
 
 
-def declare_lining(d: Declaration, *, duty: Duty, linings: Sequence[str]) -> Lining:
+def declare_lining(d: Declaration, *, duty: Duty, linings: Makers) -> Lining:
     """Declare lining and slot friction_pair, with the limits of its shape and of the heat of an engagement.
 
     Parameters
@@ -57,8 +57,8 @@ def declare_lining(d: Declaration, *, duty: Duty, linings: Sequence[str]) -> Lin
         Takes the declarations.
     duty : Duty
         Requirements.
-    linings : sequence of str
-        Further conditions on the rows of linings.
+    linings : Makers
+        What linings stand, with further conditions on their rows.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def declare_lining(d: Declaration, *, duty: Duty, linings: Sequence[str]) -> Lin
     pair = d.part(
         "friction_pair",
         "friction_materials",
-        where=(*SUITED, *linings),
+        where=(*SUITED, *linings.conditions(d)),
         symbol="pair",
         text="Lining and the plate it rubs on",
         source="table friction_materials",
@@ -119,7 +119,7 @@ def declare_lining(d: Declaration, *, duty: Duty, linings: Sequence[str]) -> Lin
         text="The lining is not too narrow",
         source="practice",
     )
-    lining = Lining(inner, outer, ratio, surfaces, pair)
+    lining = Lining(inner, outer, ratio, surfaces, pair, linings)
     for name, unit, value, symbol, text in (
         ("lining_area", "cm2", lining.area, "A_l", "All linings"),
         ("friction_radius", "mm", lining.friction_radius, "r_f", "Friction radius of the worn-in lining"),

@@ -307,7 +307,10 @@ def declare_rules(d: Declaration, cones: Cones, rules: ConeRules, body: ConeBody
     inside = shape.mean_diameter - shape.length * np.sin(shape.angle) - 2 * shape.shell_thickness
     burst = "The shells do not burst or buckle"
     hub, pressure = body.wants.hub_diameter, d.derived["surface_pressure"].sx
-    least, hub_text = rules.pressure_use_min * pair.part.p_allow, "The hub of the shaft fits inside the inner cone"
+    least, hub_text = (
+        rules.pressure_use_min * pair.linings.pressure(pair.part),
+        "The hub of the shaft fits inside the inner cone",
+    )
     for limit, name, value, border, unit, text, source in (
         (d.at_least, "cone_angle_min", shape.angle, rules.cone_angle_min, "deg", "The cones do not grab", USUAL_ANGLES),
         (d.at_most, "cone_angle_max", shape.angle, rules.cone_angle_max, "deg", "The cones wedge", USUAL_ANGLES),

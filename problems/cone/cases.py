@@ -49,7 +49,7 @@ CASES = {
         },
         constants=SHAFTS,
         requirements=CONE,
-        needed={"practice=on": {"wear_life_min": "10000"}},
+        needed={"practice=on": {"wear_life_min": "10000", "edge_pressure_ratio": "1"}},
         designs={
             "practice": KnownDesign(
                 {

@@ -9,6 +9,7 @@ import numpy as np
 from synth.declaration import Declaration
 
 from .. import cost, practice
+from ..components.lining.allowed import Makers, Practice
 from ..components.lining.model import Pair
 from ..friction.duty import Duty, Size
 from ..practice import by_scope
@@ -20,7 +21,7 @@ from .body import DERIVED, Cone, ConeBody, Cones
 class Sources:
     """The cones by the formulas of their sources, with nothing around them."""
 
-    linings = staticmethod(practice.allowed_linings)
+    linings: ClassVar[type[Makers]] = Makers
     mass_of: ClassVar[str] = "Both shells and the lining, times the mass factor of the layout"
     along: ClassVar[str] = "Length of the cone and what the layout adds to it"
     pull_max: Any = None  # pull over spring force; None where the cones must come apart by themselves
@@ -86,7 +87,7 @@ class Complete(WithBody):
 class Ruled(WithBody):
     """Cones by rules of practice."""
 
-    linings = staticmethod(practice.current_linings)
+    linings = Practice
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
         super().__init__(d, duty)

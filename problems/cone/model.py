@@ -182,6 +182,7 @@ class ConeClutch(DesignProblem):
             pressure=grip_low / low / shape.area,
             pressure_source=f"{S1}, cone clutch; formula lost in print, derived",
             rubbing_radius=shape.largest_diameter / 2,
+            narrowing=shape.ratio * np.sin(shape.angle),
         )
         self._declare_seating(
             d, duty=duty, wants=wants, pair=pair, shape=shape, torque=seated_torque, pressure=seated_force / shape.area
@@ -541,14 +542,16 @@ class ConeClutch(DesignProblem):
         )
         d.advise(
             "lining_temperature",
-            rise > pair.part.optional("temp_max") - duty.ambient_temperature,
+            rise > pair.linings.peak_temperature(pair.part, pair.part.optional("temp_max")) - duty.ambient_temperature,
             "one engagement makes the shell hotter than the lining stands, even from ambient temperature; a thicker "
             "shell helps, or a lower temperature rise limit",
             source="Neale, Tribology Handbook, Table 7.4",
         )
         d.advise(
             "cooling_pause",
-            rise > pair.part.optional("temp_continuous") - duty.ambient_temperature,
+            rise
+            > pair.linings.mean_temperature(pair.part, pair.part.optional("temp_continuous"))
+            - duty.ambient_temperature,
             "one engagement makes the shell hotter than the lining stands continuously: it has to cool down before "
             "the next; frequent switching makes cooling compulsory",
             source="Neale, Tribology Handbook, Table 7.4; S0 (Szoke 1966), cooling of the plates",

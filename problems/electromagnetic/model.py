@@ -45,8 +45,12 @@ if TYPE_CHECKING:
     from synth.drawing import Drawing
 
 
-# Pairs on a flat face, as built today; no bare cast iron.
-SUITED = ("'disc facing' in surfaces or 'plate pack' in surfaces", "status in ('current', '')", "lining != 'cast iron'")
+# Pairs on a flat face; no bare cast iron, wood, cork or lining of the lecture.
+SUITED = (
+    "'disc facing' in surfaces or 'plate pack' in surfaces",
+    "status != 'obsolete'",
+    "lining not in ('cast iron', 'wood (historical)', 'cork', 'unspecified lining of the seed example')",
+)
 
 
 class ElectromagneticClutch(DesignProblem):

@@ -231,7 +231,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             text="Energising torque at the free end of the spring",
             source=NOT_IN_S2,
         )
-        spring = declare_spring(d, options=options, duty=duty)
+        spring = declare_spring(d, options=options, duty=duty, pairs=layer.pairs(d, wants))
         loose, tight, effective = self._declare_moments(d, spring, clearance)
         text = "The energising torque closes the widest clearance; otherwise nothing grips"
         d.at_least("grip", actuator, -effective, "N*m", guard=True, text=text, source=NOT_IN_S2)

@@ -49,6 +49,10 @@ class Sources:
         """Requirements of the fit."""
         return d.block(self.fit.wants)
 
+    def pairs(self, d: Declaration, wants: Any) -> list[str]:
+        """Conditions on friction pairs."""
+        return []
+
     def size(self, built: Built) -> Size:
         """Size that counts."""
         return built.size
@@ -100,6 +104,10 @@ class Ruled(WithBody):
         wants = d.block(self.fit.ruled_wants, **{f"{self.fit.small_torque}_limit": SMALL_SHARE * duty.required_torque})
         self._rules = d.block(self.fit.rules)
         return wants
+
+    def pairs(self, d: Declaration, wants: Any) -> list[str]:
+        """Conditions on friction pairs, which are in oil or greased."""
+        return self._rules.pairs(d, wants)
 
     def extend(self, d: Declaration, built: Built) -> None:
         """Declare the complete clutch, and limits by the rules."""

@@ -133,11 +133,6 @@ class Wants(Block):
         group="material",
     )
 
-    @property
-    def lubricated(self) -> bool:
-        """True if dry friction pairs are left out."""
-        return False
-
 
 class PracticeWants(Wants):
     """Requirements of the interference fit by the rules of practice."""
@@ -147,7 +142,7 @@ class PracticeWants(Wants):
         default=None,
         lower=0.1,
         optional=True,
-        text="Speed between spring and hub when overrunning; where it is given, the pair is in oil or greased",
+        text="Speed between spring and hub when overrunning; where it is given, no pair is dry",
     )
     overrun_duty = replace(Wants.overrun_duty, lower=1e-4)
     drag_torque_limit = replace(
@@ -162,11 +157,6 @@ class PracticeWants(Wants):
         text="Largest interference, with its tolerance, over mean coil radius: the spring must be opened over its hub",
         source=f"tinyclutch.com, spring clutches: slightly smaller; {UNSOURCED}",
     )
-
-    @property
-    def lubricated(self) -> bool:
-        """True if dry friction pairs are left out: where the clutch overruns."""
-        return self.overrun_speed is not None
 
 
 class Rules(body.SpringRules):
@@ -192,6 +182,10 @@ class Rules(body.SpringRules):
         text=f"Least time in service until overrunning has worn the hubs ({UNSOURCED})",
         source=UNSOURCED,
     )
+
+    def may_run_dry(self, wants: Any) -> bool:
+        """True if dry friction pairs are offered, which wear out where the clutch overruns."""
+        return wants.overrun_speed is None and super().may_run_dry(wants)
 
     def limit(self, d: Declaration, built: Built) -> None:
         """Declare the limits that an engineer adds to this fit."""
@@ -271,7 +265,7 @@ class WrapSpringClutch(DesignProblem):
             text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
             source=f"{S2}, Delta r",
         )
-        spring = declare_spring(d, options=options, duty=duty, lubricated=wants.lubricated)
+        spring = declare_spring(d, options=options, duty=duty, pairs=layer.pairs(d, wants))
         if wants.drag_torque_limit is not None:
             self._refuse_drag(d, spring, wants)
 

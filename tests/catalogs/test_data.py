@@ -154,6 +154,14 @@ def test_friction_materials() -> None:
     asbestos = np.array(["asbestos" in lining and "non-asbestos" not in lining for lining in d.lining])
     assert ((d.new_design_allowed == 0) == asbestos).all()
     np.testing.assert_allclose(d.pv_allow, d.power_density_allow / d.mu_dynamic, rtol=6e-3)
+    assert set(d.take_up) == {"", "soft", "medium", "harsh"}
+    told = ~np.isnan(d.p_mean_allow)  # practice asks less of a lining than its maker
+    assert (d.p_mean_allow[told] <= d.p_allow[told]).all()
+    assert ((d.take_up[told] != "") | ["wire on hub" in cell for cell in d.surfaces[told]]).all()
+    assert (np.isnan(d.counter_mean_max) | (d.counter_mean_max < d.counter_peak_max)).all()
+    np.testing.assert_array_equal(
+        np.isnan(d.counter_mean_max), [set(s.split(";")) <= {"", "wire on hub"} for s in d.surfaces]
+    )
 
 
 def test_surfaces_of_friction_pairs() -> None:

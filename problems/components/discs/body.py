@@ -209,7 +209,7 @@ def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
     d.at_least(
         "pressure_use",
         d.derived["surface_pressure"].sx,
-        rules.pressure_use_min * pair.part.p_allow,
+        rules.pressure_use_min * pair.linings.pressure(pair.part),
         "N/mm2",
         text="The lining is used",
         source=UNSOURCED,

@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 
 from synth.declaration import Declaration
 
-from ... import cost, practice
+from ... import cost
 from ...friction.duty import Duty, DutyOfDiscs, Size
 from ...practice import by_scope
+from ..lining.allowed import Makers, Practice
 from ..shaft.model import ShaftRequirements
 from . import body
 from .body import DiscHousing, DiscRules
@@ -22,7 +23,7 @@ class Sources:
     """The discs by the formulas of their sources, with nothing around them."""
 
     kind: ClassVar[type[Duty]] = Duty
-    linings = staticmethod(practice.allowed_linings)
+    linings: ClassVar[type[Makers]] = Makers
     ring_ratios: ClassVar[tuple[float, float]] = (0.11, 0.13)
     mass_of: ClassVar[str] = "Pressure plates, linings and cores, without flywheel, springs and cover"
     along: ClassVar[str] = "Length of the released discs and pressure plates, without flywheel, springs and cover"
@@ -105,7 +106,7 @@ class Ruled(WithBody):
     """Discs by rules of practice."""
 
     kind = DutyOfDiscs
-    linings = staticmethod(practice.current_linings)
+    linings = Practice
     ring_ratios = (0.17, 0.28)
 
     def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:

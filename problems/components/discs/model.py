@@ -258,6 +258,7 @@ def declare_disc_start(
         pressure=force / ring.area,
         pressure_source=f"{S1}, p",
         rubbing_radius=ring.outer_radius,
+        narrowing=ring.ratio,
     )
     return start
 
@@ -373,7 +374,7 @@ def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
     d.at_most(
         "mean_temperature",
         mean_rise,
-        pair.part.temp_continuous - duty.ambient_temperature,
+        pair.linings.mean_temperature(pair.part, pair.part.temp_continuous) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature",
         source="Neale, Tribology Handbook, Table 7.4",
@@ -383,7 +384,8 @@ def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
     advise_frequent_switching(d, duty=duty, heat_capacity=capacity, cooled_area=cooled_area)
     d.advise(
         "lining_temperature",
-        mean_rise + rise > pair.part.optional("temp_max") - duty.ambient_temperature,
+        mean_rise + rise
+        > pair.linings.peak_temperature(pair.part, pair.part.optional("temp_max")) - duty.ambient_temperature,
         "just after an engagement in steady repetition the pressure plate is hotter than the lining stands: a thicker "
         "pressure plate or a stronger cooling helps",
         source="Neale, Tribology Handbook, Table 7.4",

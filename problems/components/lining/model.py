@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ...mechanics import heat, plates
-from ...practice import allowed_linings
 from ...sources import PRACTICE, S1
+from .allowed import Makers
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
@@ -22,6 +22,7 @@ class Pair:
     """Slot friction_pair with the friction to reckon with."""
 
     part: Part
+    linings: Makers
     mu_low: Any
     mu_high: Any
     hourly_allow: Any
@@ -33,7 +34,7 @@ def declare_friction_pair(
     suited: Sequence[str],
     duty: Duty,
     lubrication: str | None,
-    linings: Callable[[Declaration, str], list[str]] = allowed_linings,
+    linings: type[Makers],
 ) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
@@ -47,8 +48,8 @@ def declare_friction_pair(
         Block duty.
     lubrication : str or None
         dry or oil; None accepts both.
-    linings : callable
-        Further conditions, from the declaration and the word chosen for allow_obsolete.
+    linings : subclass of Makers
+        What linings stand, with further conditions on their rows.
 
     Returns
     -------
@@ -56,7 +57,8 @@ def declare_friction_pair(
         The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
     """
     conditions = [*suited, f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')"]
-    conditions += linings(d, duty.allow_obsolete)
+    stand = linings(d, duty.allow_obsolete)
+    conditions += stand.conditions(d)
     part = d.part(
         "friction_pair",
         "friction_materials",
@@ -68,6 +70,7 @@ def declare_friction_pair(
     worst_case = duty.friction_basis == "worst_case"
     pair = Pair(
         part=part,
+        linings=stand,
         mu_low=part.mu_min if worst_case else part.mu_dynamic,
         mu_high=part.mu_max if worst_case else part.mu_dynamic,
         hourly_allow=part.first_of("q_hourly_allow_forced_oil", "q_hourly_allow")
@@ -104,6 +107,7 @@ def declare_surface_loads(
     pressure: Any,
     pressure_source: str,
     rubbing_radius: Any,
+    narrowing: Any,
 ) -> None:
     """Declare pressure, heat, power and sliding speed of the friction surfaces with their limits.
 
@@ -125,86 +129,34 @@ def declare_surface_loads(
         Of its formula, which is that of the family.
     rubbing_radius : symbol
         Outermost radius that rubs [m].
+    narrowing : symbol
+        Half the difference of outer and inner edge over the mean radius [-].
     """
-    part = pair.part
+    part, stand, work = pair.part, pair.linings, start.friction_work
     d.derive("friction_area", "cm2", area, symbol="A", text="All friction surfaces together", source=f"{S1}, A")
-    hourly = d.derive(
-        "hourly_heat",
-        "J/(mm2*h)",
-        heat.specific_hourly_heat(start.friction_work, duty.engagements_per_hour, rubbing_area),
-        symbol="w",
-        text="Friction work per hour and area",
-        source=f"{S1}, w",
-    )
-    single = d.derive(
-        "single_heat",
-        "J/mm2",
-        heat.single_heat(start.friction_work, rubbing_area),
-        symbol="Q_A",
-        text="Friction work per engagement and area",
-        source="makers' limit for a single engagement",
-    )
-    density = d.derive(
-        "power_density",
-        "W/mm2",
+    hourly = heat.specific_hourly_heat(work, duty.engagements_per_hour, rubbing_area)
+    single, single_source = heat.single_heat(work, rubbing_area), "makers' limit for a single engagement"
+    density, density_source = (
         heat.power_density(start.peak_slip_power, rubbing_area),
-        symbol="q_peak",
-        text="Greatest friction power per area",
-        source="Neale, Tribology Handbook, Table 7.4",
+        "Neale, Tribology Handbook, Table 7.4",
     )
-    speed = d.derive(
-        "sliding_speed",
-        "m/s",
-        plates.sliding_speed(duty.driver_speed, rubbing_radius),
-        symbol="v_s",
-        text="Sliding speed at the outer edge when slip begins",
-        source="kinematics",
-    )
-    pressure = d.derive(
-        "surface_pressure",
-        "N/mm2",
-        pressure,
-        symbol="p_s",
-        text="Largest pressure on a friction surface",
-        source=pressure_source,
-    )
-    d.at_most(
-        "surface_pressure",
-        pressure,
-        part.p_allow,
-        "N/mm2",
-        text="The lining stands the pressure",
-        source=f"{S1}, sizing",
-    )
-    d.at_most(
-        "specific_heat",
-        hourly,
-        pair.hourly_allow,
-        "J/(mm2*h)",
-        text="The lining stands the hourly heat",
-        source=f"{S1}, w",
-    )
-    d.at_most(
-        "engagement_heat",
-        single,
-        part.optional("q_single_allow"),
-        "J/mm2",
-        text="The lining stands the heat of one engagement",
-        source="makers' limit for a single engagement",
-    )
-    d.at_most(
-        "specific_power",
-        density,
-        part.power_density_allow,
-        "W/mm2",
-        text="The lining stands the peak power",
-        source="Neale, Tribology Handbook, Table 7.4",
-    )
-    d.at_most(
-        "sliding_speed",
-        speed,
-        part.v_allow,
-        "m/s",
-        text="The lining stands the sliding speed",
-        source="makers' limit of the lining",
-    )
+    speed, edge = plates.sliding_speed(duty.driver_speed, rubbing_radius), "at the outer edge when slip begins"
+    loads = {}
+    for name, unit, value, symbol, text, source in (
+        ("hourly_heat", "J/(mm2*h)", hourly, "w", "Friction work per hour and area", f"{S1}, w"),
+        ("single_heat", "J/mm2", single, "Q_A", "Friction work per engagement and area", single_source),
+        ("power_density", "W/mm2", density, "q_peak", "Greatest friction power per area", density_source),
+        ("sliding_speed", "m/s", speed, "v_s", f"Sliding speed {edge}", "kinematics"),
+        ("surface_pressure", "N/mm2", pressure, "p_s", "Largest pressure on a friction surface", pressure_source),
+    ):
+        loads[name] = d.derive(name, unit, value, symbol=symbol, text=text, source=source), unit
+    for limit, name, allowed, text, source in (
+        ("surface_pressure", "surface_pressure", stand.pressure(part), "pressure", f"{S1}, sizing"),
+        ("specific_heat", "hourly_heat", pair.hourly_allow, "hourly heat", f"{S1}, w"),
+        ("engagement_heat", "single_heat", part.optional("q_single_allow"), "heat of one engagement", single_source),
+        ("specific_power", "power_density", part.power_density_allow, "peak power", density_source),
+        ("sliding_speed", "sliding_speed", stand.speed(part), "sliding speed", "makers' limit of the lining"),
+    ):
+        value, unit = loads[name]
+        d.at_most(limit, value, allowed, unit, text=f"The lining stands the {text}", source=source)
+    stand.limit_edge(d, part, pressure=loads["surface_pressure"][0], narrowing=narrowing)

@@ -321,7 +321,7 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
     d.at_most(
         "mean_temperature",
         heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, built.size.cooled_area),
-        pair.part.optional("temp_continuous") - duty.ambient_temperature,
+        pair.linings.mean_temperature(pair.part, pair.part.optional("temp_continuous")) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature, drag included",
         source="Neale, Tribology Handbook, Table 7.4",

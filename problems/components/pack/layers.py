@@ -8,9 +8,10 @@ import numpy as np
 
 from synth.declaration import Declaration, Part
 
-from ... import cost, practice
+from ... import cost
 from ...friction.duty import DutyOfPack, DutyOfPlates, Size
 from ...practice import by_scope
+from ..lining.allowed import Makers, Practice
 from ..shaft.model import ShaftRequirements
 from . import body
 from .model import BuiltPack, advise_mean_temperature
@@ -22,7 +23,7 @@ class Sources:
 
     kind: ClassVar[type[DutyOfPlates]] = DutyOfPlates
     pack: ClassVar[type[PackRequirements]] = PackRequirements
-    linings = staticmethod(practice.allowed_linings)
+    linings: ClassVar[type[Makers]] = Makers
     ratio_min: ClassVar[float] = 0.10
     mass_of: ClassVar[str] = "Plates with linings"
     along: ClassVar[str] = "Length of the released pack, without actuator and end stops"
@@ -100,7 +101,7 @@ class Ruled(WithBody):
 
     kind = DutyOfPack
     pack = PracticePackRequirements
-    linings = staticmethod(practice.current_linings)
+    linings = Practice
     ratio_min = 0.15
     objectives = ("mass", "length")
 

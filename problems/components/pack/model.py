@@ -534,6 +534,7 @@ def declare_pack_start(
         pressure=torque.pressure,
         pressure_source=torque.pressure_source,
         rubbing_radius=ring.outer_radius,
+        narrowing=ring.ratio,
     )
     return BuiltPack(**vars(stack), force=torque.force, area=area, start=start, size=pack_size(stack))
 
@@ -770,7 +771,7 @@ def declare_pack_temperature(d: Declaration, built: BuiltPack) -> None:
     d.at_most(
         "peak_temperature",
         rise,
-        pair.part.temp_max - duty.ambient_temperature,
+        pair.linings.peak_temperature(pair.part, pair.part.temp_max) - duty.ambient_temperature,
         "K",
         text="The lining stands the temperature",
         source="Neale, Tribology Handbook, Table 7.4",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from synth.declaration import Block, Declaration, Requirement
 
 from ... import cost
+from ...friction.duty import Duty as FrictionDuty
 from ...mechanics import shaft as shaft_formulas
 from ...practice import UNSOURCED
 from ..shaft.model import ShaftRequirements, ShaftStress, declare_shaft
@@ -70,6 +71,11 @@ class SpringRules(Block):
 
     group = "practice"
 
+    allow_obsolete = replace(
+        FrictionDuty.allow_obsolete,
+        choices=("no", "historical"),
+        text="historical: also dry hubs, on which steel galls, where nothing overruns",
+    )
     coils_per_hub_max = Requirement(
         "-",
         8,
@@ -88,6 +94,17 @@ class SpringRules(Block):
         text=f"Largest mean coil diameter over wire thickness: slimmer ones are hard to coil and handle ({UNSOURCED})",
         source=UNSOURCED,
     )
+
+    def pairs(self, d: Declaration, wants: Any) -> list[str]:
+        """Conditions on friction pairs, where the table tells: in oil or greased, as dry steel on steel galls."""
+        known = all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note"))
+        return (
+            ["(lubrication == 'oil' or lubrication_note == 'greased')"] if known and not self.may_run_dry(wants) else []
+        )
+
+    def may_run_dry(self, wants: Any) -> bool:
+        """True if dry friction pairs are offered."""
+        return self.allow_obsolete != "no"
 
     def limit(self, d: Declaration, built: Built) -> None:
         """Declare the limits that an engineer adds to the spring of both fits."""

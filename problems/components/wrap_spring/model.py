@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -192,7 +193,7 @@ class Built:
     clearance: Any = 0.0
 
 
-def declare_spring(d: Declaration, *, options: Options, duty: Duty, lubricated: bool = False) -> WrapSpring:
+def declare_spring(d: Declaration, *, options: Options, duty: Duty, pairs: Sequence[str]) -> WrapSpring:
     """Declare wire, hub diameter, coils and friction pair, with the limits of their shape and of the belt exponent.
 
     Parameters
@@ -203,8 +204,8 @@ def declare_spring(d: Declaration, *, options: Options, duty: Duty, lubricated: 
         Options of the family.
     duty : Duty
         Requirements.
-    lubricated : bool
-        Whether dry pairs are left out, where the table tells.
+    pairs : sequence of str
+        Conditions on friction pairs beside that they suit.
     """
     wire, model = _declare_wire(d, catalogue=options.wire_choice == "catalogue"), MODELS[options.model]
     grid, text = hub_grid(d, ladder=options.hub_ladder), "Outer diameter of both hubs"
@@ -216,7 +217,7 @@ def declare_spring(d: Declaration, *, options: Options, duty: Duty, lubricated: 
     mean = model.mean_radius(diameter, wire.thickness)
     mean = d.derive("mean_coil_radius", "mm", mean, symbol="r_m", text=text, source=f"{S2}, r")
     _limit_coiling(d, duty=duty, wire=wire, mean=mean)
-    radius, ratio, pair = diameter / 2, model.radius_ratio(diameter, wire.thickness), _declare_pair(d, lubricated)
+    radius, ratio, pair = diameter / 2, model.radius_ratio(diameter, wire.thickness), _declare_pair(d, pairs)
     low, high = (formulas.belt_exponent(mu, per_hub, ratio) for mu in (pair.mu_min, pair.mu_max))
     high = _declare_exponents(d, duty=duty, low=low, high=high)
     return WrapSpring(duty, model, wire, diameter, radius, mean, ratio, per_hub, pair, low, high)
@@ -309,13 +310,11 @@ def _limit_coiling(d: Declaration, *, duty: Duty, wire: Wire, mean: Any) -> None
     )
 
 
-def _declare_pair(d: Declaration, lubricated: bool) -> Part:
-    """Declare the slot friction_pair; dry pairs may be left out, where the table tells."""
-    where = ["'wire on hub' in surfaces"]
-    if lubricated and all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note")):
-        where.append("(lubrication == 'oil' or lubrication_note == 'greased')")
+def _declare_pair(d: Declaration, conditions: Sequence[str]) -> Part:
+    """Declare the slot friction_pair of pairs that meet conditions."""
     table, text = "friction_materials", "Wire and the hub surface it grips"
-    pair = d.part("friction_pair", table, where=tuple(where), symbol="pair", text=text, source=f"table {table}")
+    where = ("'wire on hub' in surfaces", *conditions)
+    pair = d.part("friction_pair", table, where=where, symbol="pair", text=text, source=f"table {table}")
     text = "a friction pair whose mu_min is at most its mu_max"
     d.refuse("friction_range_reversed", pair.mu_min > pair.mu_max, text)
     return pair

@@ -188,7 +188,7 @@ def test_linings_that_are_built_no_more_are_asked_for():
         return {slot.table.designations[k] for k in slot.rows}
 
     current, historical = pairs(practice="on"), pairs(practice="on", allow_obsolete="historical")
-    assert historical - current == {"leather_dry", "leather_greased", "wood_dry", "cork_dry"}
+    assert historical - current == {"leather_dry", "leather_greased", "wood_dry", "cork_dry", "millboard_dry"}
     assert pairs(practice="off") == historical
 
 

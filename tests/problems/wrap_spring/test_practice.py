@@ -157,13 +157,14 @@ def test_every_rule_can_bind_and_can_be_widened():
         assert ("overrun_life" not in missed(found)) == kept
 
 
-def test_what_never_overruns_may_be_dry():
-    problem = synth.load("wrap_spring", practice="on")
+def test_dry_hubs_are_historical_and_never_overrun():
+    problem = synth.load("wrap_spring", practice="on", allow_obsolete="historical")
     assert "overrun_life" not in design(STOUT).values
     dry = {"friction_pair": ["hardened_steel_dry"], "wire": ["rect 6x3"]}
     assert synth.synthesize(problem, INDEXER, objectives=["mass"], points=1, parts=dry).designs
-    with pytest.raises(synth.InputError, match="lubrication"):
-        synth.synthesize(problem, FREEWHEEL, points=1, parts={"friction_pair": "designation == 'hardened_steel_dry'"})
+    for asked, duty in ((problem, FREEWHEEL), (synth.load("wrap_spring", practice="on"), INDEXER)):
+        with pytest.raises(synth.InputError, match="lubrication"):
+            synth.synthesize(asked, duty, points=1, parts={"friction_pair": "designation == 'hardened_steel_dry'"})
 
 
 def test_without_practice_nothing_is_added():
