@@ -66,6 +66,7 @@ CASES = {
             "startup_torque": "120 N*m",
             "overload_torque": "600 N*m",
             "actuation_force_limit": "8 kN",
+            "starts_in_row": "10",
             "outer_diameter_limit": "400 mm",
             "length_limit": "80 mm",
             "jerk_limit": "2000 rad/s3",

@@ -62,6 +62,7 @@ CASES = {
             "startup_torque": "36 N*m",
             "overload_torque": "200 N*m",
             "actuation_force_limit": "5 kN",
+            "starts_in_row": "10",
             "outer_diameter_limit": "250 mm",
             "length_limit": "200 mm",
             "jerk_limit": "2e5 rad/s3",

@@ -10,7 +10,7 @@ from synth.declaration import Declaration, Option, Requirement
 from ..duty import COOLING, WORDS, Start, cooling, refuse_contradictions
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
-from ..sources import S0, S1, TYPICAL
+from ..sources import DRIVE, S0, S1, TYPICAL
 
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
@@ -212,7 +212,28 @@ class Duty(Start):
 AnyDuty = TypeVar("AnyDuty", bound=Duty)
 
 
-class DutyOfPlates(Duty):
+class DutyInRows(Duty):
+    """A duty of a body whose heating and cooling is counted."""
+
+    group = "duty"
+
+    starts_in_row = Requirement(
+        "-",
+        lower=1,
+        upper=1e6,
+        optional=True,
+        symbol="n_row",
+        text="Starts of a row that begins cold, after which it cools down; without it the row does not end",
+        source=DRIVE,
+    )
+
+    @property
+    def repetition(self) -> str:
+        """Which engagement temperatures are told after."""
+        return "in steady repetition" if self.starts_in_row is None else "the last of its row"
+
+
+class DutyOfPlates(DutyInRows):
     """A duty of plates in guides, which take a share of the torque."""
 
     group = "model"
@@ -257,7 +278,7 @@ class DutyOfPack(DutyOfPlates):
     )
 
 
-class DutyOfDiscs(Duty):
+class DutyOfDiscs(DutyInRows):
     """A duty of discs by the rules of practice, which come free although they run out."""
 
     group = "model"

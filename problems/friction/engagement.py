@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..mechanics import heat, plates, startup
 from ..sources import PRACTICE, S0, S1
-from .duty import Duty
+from .duty import Duty, DutyInRows
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration
@@ -296,6 +296,23 @@ def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: An
     root = startup.peak_power_root(high, load, inertia, slip_speed, ramp_time)
     text = "Root of the greatest friction power inside the ramp"
     name("peak_power_root", "N*m", root, "M_root", text)
+
+
+def mean_rise(duty: DutyInRows, work: Any, rate: Any, *, capacity: Any, cooled_area: Any) -> Any:
+    """Mean rise of a body heated by a work [J] at a rate [1/s], of a row of starts that of its last [K]."""
+    steady = heat.mean_temperature_rise(work, rate, duty.heat_transfer, cooled_area)
+    if duty.starts_in_row is None:
+        return steady
+    conductance = duty.heat_transfer * cooled_area
+    return steady * heat.row_share(duty.starts_in_row, duty.engagements_per_hour, capacity, conductance)
+
+
+def peak_rise(duty: DutyInRows, work: Any, *, capacity: Any, cooled_area: Any) -> Any:
+    """Rise of a body just after an engagement of a work [J], steady or at the end of a row of starts [K]."""
+    n, rate, transfer = duty.starts_in_row, duty.engagements_per_hour, duty.heat_transfer
+    if n is None:
+        return heat.peak_temperature_rise(work, rate, capacity, transfer, cooled_area)
+    return heat.rise_after(n, work, rate, capacity, transfer * cooled_area)
 
 
 def declare_heated_body(d: Declaration, *, heat_capacity: Any, cooled_area: Any, body: str) -> None:

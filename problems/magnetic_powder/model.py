@@ -42,7 +42,7 @@ class Wants(Drive):
         text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil",
         source=f"{S4}, section 6.1",
     )
-    cooling = COOLING
+    cooling = replace(COOLING, source="table cooling_options")
     required_torque = replace(Drive.required_torque, text="Torque that the clutch has to carry, slipping or not")
     steel_density = Requirement(
         "kg/m3",

@@ -27,6 +27,7 @@ __all__ = [
     "peak_temperature_rise",
     "power_density",
     "rise_after",
+    "row_share",
     "single_heat",
     "specific_hourly_heat",
     "thermal_time_constant",
@@ -372,8 +373,43 @@ def rise_after(n: Quantity, work: Quantity, rate: Quantity, capacity: Quantity, 
     >>> [round(float(rise_after(n, 39524.1, 50 / 3600, 4000, 9)), 6) for n in (1, 10, float("inf"))]
     [9.881025, 52.993092, 66.06783]
     """
-    cooled = conductance / (capacity * rate)
-    return work / capacity * np.expm1(-n * cooled) / np.expm1(-cooled)
+    return work * peak_rise_per_work(rate, capacity, conductance, 1.0) * row_share(n, rate, capacity, conductance)
+
+
+@special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), curvature="log-concave")
+def row_share(n: Quantity, rate: Quantity, capacity: Quantity, conductance: Quantity) -> Quantity:
+    """Rise after an engagement of a row that begins cold over that of steady repetition, just after it or on average.
+
+    Equation: x = 1 - exp(-n G/(C f))
+
+    Parameters
+    ----------
+    n : scalar, array or symbol
+        Number of the engagement in its row n [-], at least 1.
+    rate : scalar, array or symbol
+        Engagements per second f [1/s].
+    capacity : scalar, array or symbol
+        C [J/K].
+    conductance : scalar, array or symbol
+        Heat given off per kelvin G [W/K].
+
+    Returns
+    -------
+    scalar, array or symbol
+        x [-].
+
+    References
+    ----------
+    As :func:`rise_after`; the mean is that from one engagement to the next.
+
+    Examples
+    --------
+    Computed here, the tenth start of 50 an hour:
+
+    >>> float(row_share(10, 50 / 3600, 4000, 9))
+    0.802101
+    """
+    return -np.expm1(-n * conductance / (capacity * rate))
 
 
 def conductance(

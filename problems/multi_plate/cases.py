@@ -68,6 +68,7 @@ CASES = {
             "startup_torque": "1080 N*m",
             "overload_torque": "4000 N*m",
             "actuation_force_limit": "60 kN",
+            "starts_in_row": "10",
             "outer_diameter_limit": "400 mm",
             "length_limit": "200 mm",
             "jerk_limit": "60 rad/s3",

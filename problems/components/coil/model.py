@@ -146,6 +146,15 @@ class CoilRules(Block):
         text=f"Least share of coil voltage limit that the coil takes: it is wound for its supply ({UNSOURCED})",
         source=UNSOURCED,
     )
+    coil_rise_max = Requirement(
+        "K",
+        80,
+        lower=1,
+        upper=1000,
+        symbol="dT_c_max",
+        text=f"Largest rise of a coil over ambient by its own loss alone ({UNSOURCED}; a maker names 65 K for class F)",
+        source=UNSOURCED,
+    )
 
 
 class CoilUnknowns(Block):
@@ -493,7 +502,7 @@ def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, lin
 
 
 def limit_coil(d: Declaration, *, rules: CoilRules, wants: CoilRequirements, unknowns: CoilUnknowns) -> None:
-    """Declare the limits that an engineer adds to every coil: its window, and the supply it is wound for.
+    """Declare the limits that an engineer adds to every coil: window, own heat, and the supply it is wound for.
 
     Parameters
     ----------
@@ -529,6 +538,14 @@ def limit_coil(d: Declaration, *, rules: CoilRules, wants: CoilRequirements, unk
         rules.voltage_use_min * wants.coil_voltage_limit,
         "V",
         text="The coil is wound for its supply",
+        source=UNSOURCED,
+    )
+    d.at_most(
+        "coil_rise",
+        d.derived["coil_power"].sx / d.steps["coil_conductance"].sx,
+        rules.coil_rise_max,
+        "K",
+        text="The coil stays cool by itself",
         source=UNSOURCED,
     )
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from synth.declaration import Declaration
 
 from ... import cost
-from ...friction.duty import Duty, DutyOfDiscs, Size
+from ...friction.duty import DutyInRows, DutyOfDiscs, Size
 from ...practice import by_scope
 from ..lining.allowed import Makers, Practice
 from ..shaft.model import ShaftRequirements
@@ -22,14 +22,14 @@ from .model import DiscRequirements, Discs
 class Sources:
     """The discs by the formulas of their sources, with nothing around them."""
 
-    kind: ClassVar[type[Duty]] = Duty
+    kind: ClassVar[type[DutyInRows]] = DutyInRows
     linings: ClassVar[type[Makers]] = Makers
     ring_ratios: ClassVar[tuple[float, float]] = (0.11, 0.13)
     mass_of: ClassVar[str] = "Pressure plates, linings and cores, without flywheel, springs and cover"
     along: ClassVar[str] = "Length of the released discs and pressure plates, without flywheel, springs and cover"
     shaft: ShaftRequirements | None = None
 
-    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: DutyInRows) -> None:
         """Declare requirements of what is around the discs."""
         self.duty = duty
 
@@ -62,7 +62,7 @@ class Sources:
 class WithBody(Sources):
     """Discs with hub, cover and spring, whose mass and length are known beside those of the discs."""
 
-    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: DutyInRows) -> None:
         super().__init__(d, housing, duty)
         self.housing = housing(d, self.duty.required_torque)
         self.shaft = self.housing.wants
@@ -109,7 +109,7 @@ class Ruled(WithBody):
     linings = Practice
     ring_ratios = (0.17, 0.28)
 
-    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: Duty) -> None:
+    def __init__(self, d: Declaration, housing: type[DiscHousing], duty: DutyInRows) -> None:
         super().__init__(d, housing, duty)
         self._rules = d.block(DiscRules)
 

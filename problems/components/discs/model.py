@@ -8,13 +8,14 @@ from typing import Any
 from synth.declaration import Block, Declaration, Requirement
 
 from ...duty import cooling
-from ...friction.duty import Duty, Size
+from ...friction.duty import DutyInRows, Size
 from ...friction.engagement import (
     Startup,
     advise_frequent_switching,
     declare_heated_body,
     declare_startup,
     declare_torque,
+    mean_rise,
 )
 from ...mechanics import disc, heat, plates
 from ...mechanics import ring as ring_formulas
@@ -123,7 +124,7 @@ class DiscPack:
 class LinedDiscs:
     """Discs and their lining, with what they are declared for."""
 
-    duty: Duty
+    duty: DutyInRows
     ring: Ring
     pair: Pair
     pack: DiscPack
@@ -145,7 +146,7 @@ class Discs(LinedDiscs):
 def declare_disc_pack(
     d: Declaration,
     *,
-    duty: Duty,
+    duty: DutyInRows,
     ring: Ring,
     wants: DiscRequirements,
     facing: Facing | None = None,
@@ -355,10 +356,11 @@ def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
         source="heat balance; half of the work for the hottest plate of a single or twin disc",
     )
     cooled_area = cooling.effective(d, plates.cylinder_surface(size.diameter, size.length))
-    mean_rise = d.derive(
+    capacity = pack.discs * plate_mass * wants.pressure_plate_specific_heat
+    mean = d.derive(
         "mean_temperature_rise",
         "K",
-        heat.mean_temperature_rise(start.friction_work, duty.engagements_per_hour, duty.heat_transfer, cooled_area),
+        mean_rise(duty, start.friction_work, duty.engagements_per_hour, capacity=capacity, cooled_area=cooled_area),
         symbol="dT_m",
         text="Clutch over ambient, mean of repeated switching",
         source=f"lumped heat balance; {S1}, repeated switching",
@@ -373,18 +375,17 @@ def declare_disc_temperature(d: Declaration, discs: Discs) -> None:
     )
     d.at_most(
         "mean_temperature",
-        mean_rise,
+        mean,
         pair.linings.mean_temperature(pair.part, pair.part.temp_continuous) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature",
         source="Neale, Tribology Handbook, Table 7.4",
     )
-    capacity = pack.discs * plate_mass * wants.pressure_plate_specific_heat
     declare_heated_body(d, heat_capacity=capacity, cooled_area=cooled_area, body="The pressure plates")
     advise_frequent_switching(d, duty=duty, heat_capacity=capacity, cooled_area=cooled_area)
     d.advise(
         "lining_temperature",
-        mean_rise + rise
+        mean + rise
         > pair.linings.peak_temperature(pair.part, pair.part.optional("temp_max")) - duty.ambient_temperature,
         "just after an engagement in steady repetition the pressure plate is hotter than the lining stands: a thicker "
         "pressure plate or a stronger cooling helps",

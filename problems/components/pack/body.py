@@ -14,7 +14,7 @@ from synth.declaration import Declaration
 
 from ...duty import cooling
 from ...friction.duty import Size
-from ...mechanics import heat, plates
+from ...mechanics import plates
 from ...mechanics import ring as ring_formulas
 from ...practice import UNSOURCED
 from ...sources import DRIVE
@@ -320,7 +320,7 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
     heating = built.start.friction_work * duty.engagements_per_hour + power
     d.at_most(
         "mean_temperature",
-        heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, built.size.cooled_area),
+        built.mean_rise(heating, 1.0),
         pair.linings.mean_temperature(pair.part, pair.part.optional("temp_continuous")) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature, drag included",

@@ -19,8 +19,10 @@ from ...friction.engagement import (
     declare_heated_body,
     declare_startup,
     declare_torque,
+    mean_rise,
+    peak_rise,
 )
-from ...mechanics import guide_friction, heat
+from ...mechanics import guide_friction
 from ...mechanics import plates as plate_formulas
 from ...mechanics import ring as ring_formulas
 from ...sources import S0, S1
@@ -121,6 +123,11 @@ class BuiltPack(Stack):
     area: Any
     start: Startup
     size: PackSize
+
+    def mean_rise(self, work: Any, rate: Any) -> Any:
+        """Mean rise of the pack heated by a work [J] at a rate [1/s]; [K]."""
+        size = self.size
+        return mean_rise(self.duty, work, rate, capacity=size.heat_capacity, cooled_area=size.cooled_area)
 
 
 def declare_lubrication(d: Declaration) -> str:
@@ -761,11 +768,9 @@ def declare_pack_temperature(d: Declaration, built: BuiltPack) -> None:
     rise = d.derive(
         "peak_temperature_rise",
         "K",
-        heat.peak_temperature_rise(
-            start.friction_work, duty.engagements_per_hour, size.heat_capacity, duty.heat_transfer, size.cooled_area
-        ),
+        peak_rise(duty, start.friction_work, capacity=size.heat_capacity, cooled_area=size.cooled_area),
         symbol="dT_pk",
-        text="Steel plates over ambient just after an engagement, in steady repetition",
+        text=f"Steel plates over ambient just after an engagement, {duty.repetition}",
         source=f"lumped heat balance; {S1}, repeated switching",
     )
     d.at_most(
@@ -782,12 +787,10 @@ def declare_pack_temperature(d: Declaration, built: BuiltPack) -> None:
 def advise_mean_temperature(d: Declaration, built: BuiltPack) -> None:
     """Remark a mean temperature above what the lining stands continuously."""
     duty = built.duty
-    mean_rise = heat.mean_temperature_rise(
-        built.start.friction_work, duty.engagements_per_hour, duty.heat_transfer, built.size.cooled_area
-    )
     d.advise(
         "mean_temperature",
-        mean_rise > built.pair.part.optional("temp_continuous") - duty.ambient_temperature,
+        built.mean_rise(built.start.friction_work, duty.engagements_per_hour)
+        > built.pair.part.optional("temp_continuous") - duty.ambient_temperature,
         "the mean temperature of the pack is above what the lining stands continuously; choose a stronger cooling",
         source="Neale, Tribology Handbook, Table 7.4",
     )

@@ -85,3 +85,11 @@ def test_a_jacket_needs_a_body_that_stands():
 def test_a_powder_clutch_is_dry():
     with pytest.raises(synth.InputError, match=r"for lubrication dry: still_air or finned or fan .* or water"):
         powder(cooling="oil_bath")
+
+
+def test_a_row_of_starts_warms_less_than_starts_without_end():
+    endless, row = disc(), disc({"starts_in_row": "10"})
+    decays = 10 * 20 * endless.steps["cooled_area"] / (endless.steps["heat_capacity"] * 50 / 3600)
+    mean = -math.expm1(-decays) * endless.values["mean_temperature_rise"]
+    assert row.limits["mean_temperature"][0] == pytest.approx(mean)
+    assert row.values["mean_temperature_rise"] == row.limits["mean_temperature"][0]

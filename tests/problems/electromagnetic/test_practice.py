@@ -65,6 +65,7 @@ MAGNET_RULES = {
     "coil_aspect_min",
     "coil_aspect_max",
     "coil_voltage_min",
+    "coil_rise",
 }
 DISC_RULES = {"pressure_plate_stiffness", "release_clearance", "pressure_use"}
 
@@ -157,6 +158,8 @@ BINDING = [
     ("coil_aspect_max", LONG, "coil_aspect_max", 2.9, 3),
     ("coil_aspect_min", SHORT, "coil_aspect_min", 0.7, 0.6),
     ("coil_voltage_min", LONG, "voltage_use_min", 1, 0.85),
+    ("coil_rise", SHORT, "coil_rise_max", "5 K", "80 K"),
+    ("coil_in_oil", SHORT, "oil_temperature_limit", "60 degC", "150 degC"),
     ("pull_in_worn", SHORT, "pull_in_margin", 1.3, 1.02),
     ("surfaces_practice", SHORT | {"friction_surfaces": 14}, "friction_surfaces_max", 12, 14),
     ("core_slenderness", SHORT, "core_slenderness_max", 70, 80),

@@ -32,6 +32,7 @@ RULES = {
     "coil_voltage_min",
     "coil_aspect_min",
     "coil_aspect_max",
+    "coil_rise",
     "powder_spread",
     "powder_per_torque",
 }
@@ -115,6 +116,7 @@ BINDING = [
     ("coil_voltage_min", WIDE, "voltage_use_min", 0.85, 0.2),
     ("coil_aspect_min", HIGH, "coil_aspect_min", 0.5, 0.3),
     ("coil_aspect_max", WIDE, "coil_aspect_max", 2.5, 3),
+    ("coil_rise", HIGH, "coil_rise_max", "5 K", "200 K"),
     ("powder_spread", HIGH, "spread_acceleration", 14, 13),
     ("powder_per_torque", WIDE, "powder_per_torque_max", "5 g/(N*m)", "6 g/(N*m)"),
 ]
@@ -124,6 +126,17 @@ BINDING = [
 def test_every_rule_can_bind_and_can_be_widened(rule, sizes, requirement, narrow, wide):
     assert rule in missed(design(sizes, THEN | {requirement: narrow}))
     assert rule not in missed(design(sizes, THEN | {requirement: wide}))
+
+
+@pytest.mark.parametrize("coil", ["stationary", "rotating"])
+def test_the_rise_of_a_coil_by_its_own_loss_leaves_out_the_slip(coil):
+    cool, hot = (design(HIGH, {"slip_speed": slip}, coil=coil) for slip in ("0 1/min", "300 1/min"))
+    assert cool.limits["coil_rise"][0] == pytest.approx(cool.values["coil_temperature_rise"])
+    # A hotter coil loses more; the slip heat itself counts in the whole rise alone.
+    own, heat = hot.limits["coil_rise"][0], hot.values["slip_heat"]
+    assert own > cool.limits["coil_rise"][0]
+    whole = own + heat / hot.steps["coil_conductance"]
+    assert hot.values["coil_temperature_rise"] == pytest.approx(whole, rel=1e-9)
 
 
 def test_a_current_rises_faster_with_more_voltage():

@@ -189,6 +189,11 @@ CASES = [
     ),
     (heat.peak_temperature_rise, {**HEAT, "heat_capacity": "J/K", **COOLING}, "K"),
     (
+        positional(heat.row_share),
+        {"n": "-", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"},
+        "-",
+    ),
+    (
         heat.rise_after,
         {"n": "-", "work": "J", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"},
         "K",

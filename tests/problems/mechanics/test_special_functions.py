@@ -231,6 +231,7 @@ def test_the_table_is_complete():
         "sum_lipka",
         "sum_exact",
         "peak_rise_per_work",
+        "row_share",
         "reactive_friction_work",
         "reactive_slip_time",
         "reactive_peak_slip_power",

@@ -1,5 +1,7 @@
 """The complete multi-plate clutch and the rules of practice: worked numbers, and what each rule does."""
 
+import math
+
 import pytest
 
 import synth
@@ -239,3 +241,15 @@ def test_designs_by_practice_are_ones_that_are_built():
         assert 5 < found.values["mass"] < 20
         thinnest = min(found.parts[slot]["thickness"] for slot in ("inner_plate", "outer_plate"))
         assert found.values["ring_outer_diameter"] <= 100 * thinnest * (1 + 1e-9)
+
+
+def test_a_row_of_starts_is_counted_from_cold():
+    found, endless = design(LECTURE, {"starts_in_row": "3"}), design(LECTURE)
+    capacity, work = found.steps["heat_capacity"], found.values["friction_work"]
+    conductance = 150 * found.steps["cooled_area"]
+    decay = math.exp(-conductance / (capacity * 50 / 3600))
+    by_hand = work / capacity * (1 + decay + decay**2)
+    assert found.values["peak_temperature_rise"] == pytest.approx(by_hand, rel=1e-9)
+    assert found.limits["peak_temperature"][0] == found.values["peak_temperature_rise"]
+    mean = endless.limits["mean_temperature"][0] * (1 - decay**3)
+    assert found.limits["mean_temperature"][0] == pytest.approx(mean, rel=1e-9)
