@@ -107,7 +107,8 @@ def _ranked(request: ComparisonRequest, designs: Sequence[Mapping[str, Any]]) ->
     rows = []
     for x in designs:
         family = x["family"]
-        place = f"{links[family]}#design-{x['own_rank']}"
+        line = fronts[family].designs[x["own_rank"] - 1].group or x["own_rank"]
+        place = f"{links[family]}#design-{line}"
         named = Link(f"{titles[family]} #{x['own_rank']}", place)
         score = page_text(x["score"])
         values = [printed(in_its_unit(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]

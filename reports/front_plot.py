@@ -326,7 +326,7 @@ def _point(
     dot = _shape(x, y, shape, colour if full else "#ffffff", colour, "dot" if full else "hollow")
     drawn = f"<title>{escape(hint)}</title>{ring if knee else ''}{dot}"
     if linked:
-        return f'<a href="#design-{design.rank}">{drawn}</a>'
+        return f'<a href="#design-{design.group or design.rank}">{drawn}</a>'
     return f"<g>{drawn}</g>"
 
 

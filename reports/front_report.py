@@ -11,6 +11,7 @@ from typing import Any
 from synth.order.feasibility import binds, most_used
 from synth.results import Design, ParetoFront, foremost
 from synth.results.calculation import Calculation, NamedQuantity
+from synth.results.design import near_ones
 from synth.results.plain import finite
 from synth.results.report_request import About
 from synth.text.numbers import DIGITS, FULL_DIGITS, MINUS, gap_text, page_text, signed, used_share
@@ -114,6 +115,9 @@ class _Report:
         self.frame = request.front.frame
         self.quantities = request.calculation.quantities
         self.full = foremost(self.front, request.full)
+        # What is told in full, or has a sheet of its own, has a line to be found by.
+        named = {*(d.rank for d in self.full), *request.sheets}
+        self.lines = [d for d in self.front.designs if d.group is None or d.rank in named]
 
     def document(self) -> Document:
         level, head = front_state(self.front)
@@ -192,9 +196,11 @@ class _Report:
         for number, names in enumerate(self._column_groups()):
             columns = (Column("rank", number=True, width=4), *(self._column(name) for name in names))
             caption = "All designs of the front, the best rank first" + (" (continued)" if number else "")
-            rows = [self._ranked_row(design, names, number == 0) for design in self.front.designs]
+            rows = [self._ranked_row(design, names, number == 0) for design in self.lines]
             blocks.append(TableBlock.of(caption, columns, rows))
-        return blocks
+        near = [(d.rank, near_ones(d, self.front.designs)) for d in self.lines]
+        merged = tuple(f"#{rank}: {others}" for rank, others in near if others)
+        return [*blocks, Bullets(merged)] if merged else blocks
 
     def _column_groups(self) -> list[list[str]]:
         """Return the columns of the ranked table in groups that a page holds beside each other."""
@@ -218,7 +224,7 @@ class _Report:
         number = name in self.frame.units or name == SCORE
         unit = unit_text(self.frame.units.get(name, "-"))
         title = name.replace("_", " ") + (f" [{unit}]" if unit else "")
-        words = [*title.split(), *(str(self._ranked_cell(design, name)) for design in self.front.designs)]
+        words = [*title.split(), *(str(self._ranked_cell(design, name)) for design in self.lines)]
         return Column(title, number=number, width=float(max(map(len, words))))
 
     def _ranked_row(self, design: Design, names: Sequence[str], anchored: bool) -> TableRow:

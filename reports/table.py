@@ -11,7 +11,7 @@ from rich.table import Table
 
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
-from synth.results.design import reached_limits
+from synth.results.design import lines_of, near_ones, reached_limits
 from synth.results.hookspecs import FrontOfFamilies
 from synth.results.rating_tables import rating_row
 from synth.text.numbers import SHARE_DIGITS, column_texts
@@ -42,14 +42,13 @@ def print_front(
     calculation : Calculation, optional
         Of the front, to tell how the torque came about that designs are sized for.
     """
-    count = len(front.designs) if every else min(SHOWN, len(front.designs))
-    shown = front.designs[:count]
+    shown = lines_of(front.designs, every)[: None if every else SHOWN]
     _print_wrapped(console, f"{front.frame.title}: {_counted(front)}", 0)
     line = "" if calculation is None else sizing_line(calculation, front.designs[0])
     if line:
         _print_wrapped(console, line, 0)
     console.print()
-    for table in ranked_tables(front, count, console.width):
+    for table in ranked_tables(shown, console.width):
         console.print(table)
         console.print()
     shared = shared_parts(shown)
@@ -59,8 +58,16 @@ def print_front(
     for design in shown:
         if design.rank is not None and (design.rank <= EXPLAINED or design.note or every):
             _print_reason(front, design, console)
-    if count < len(front.designs):
-        console.print(f"{len(front.designs) - count} more with --all, and in designs.csv")
+        _print_near(design, front.designs, console, every)
+    if len(shown) < len(front.designs):
+        console.print(f"{len(front.designs) - len(shown)} more with --all, and in designs.csv")
+
+
+def _print_near(design: Design, designs: Sequence[Design], console: Console, every: bool) -> None:
+    """Print which designs stand on the line of one."""
+    near = "" if every else near_ones(design, designs)
+    if near:
+        _print_wrapped(console, f"#{design.rank}: {near}", 0)
 
 
 def _counted(front: ParetoFront) -> str:
@@ -125,18 +132,9 @@ class _Column:
         return max(len(line) for text in (*self.heading, *self.cells) for line in text.split("\n"))
 
 
-def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
-    """Return the first designs as tables that are no wider than ``width``; each begins with the rank.
-
-    Parameters
-    ----------
-    front : ParetoFront
-    count : int
-        How many designs.
-    width : int
-        Characters on a line.
-    """
-    frame, shown = front.frame, front.designs[:count]
+def ranked_tables(shown: Sequence[Design], width: int) -> list[Table]:
+    """Return designs of a front as tables that are no wider than ``width`` characters; each begins with the rank."""
+    frame = shown[0].frame
     names = _quantities(frame.headline, frame.objectives)
     if not frame.headline:
         names += [n for n, kind in frame.kinds.items() if kind in ("variable", "count") and n not in names]
@@ -204,8 +202,8 @@ def print_common_front(front: FrontOfFamilies, console: Console, every: bool = F
     console, every
         As for :func:`print_front`.
     """
-    count = len(front.designs) if every else min(SHOWN, len(front.designs))
-    shown = list(front.designs[:count])
+    lines = [k for k, d in enumerate(front.designs) if every or d.group is None][: None if every else SHOWN]
+    shown = [front.designs[k] for k in lines]
     families = dict.fromkeys(front.families)
     designs, kinds = _number(front.designs, "design", "designs"), _number(families, "family", "families")
     first = f"; #1 comes nearest to the best {_listed(map(words, front.objectives))}" if len(front.designs) > 1 else ""
@@ -214,7 +212,7 @@ def print_common_front(front: FrontOfFamilies, console: Console, every: bool = F
     one_each = [next(d for d, name in zip(front.designs, front.families, strict=True) if name == f) for f in families]
     names = _quantities(_shared_headline(one_each), front.objectives)
     columns = _number_columns(shown, names, len(front.objectives))
-    columns.insert(0, _column("family", "", list(front.families[:count])))
+    columns.insert(0, _column("family", "", [front.families[k] for k in lines]))
     if any(d.robust for d in front.designs):
         columns.append(_column("robust", "", [rating_row(d)[0] or "not rated" for d in shown]))
     for table in _side_by_side(shown, columns, console.width):
@@ -223,8 +221,9 @@ def print_common_front(front: FrontOfFamilies, console: Console, every: bool = F
     for design in shown:
         if design.note:
             _print_wrapped(console, f"#{design.rank}: {words(design.note)}", 0)
-    if count < len(front.designs):
-        console.print(f"{len(front.designs) - count} more with --all, and in designs.csv")
+        _print_near(design, front.designs, console, every)
+    if len(shown) < len(front.designs):
+        console.print(f"{len(front.designs) - len(shown)} more with --all, and in designs.csv")
 
 
 def _number(things: Sized, one: str, more: str) -> str:

@@ -182,6 +182,8 @@ class _Compared:
             "status": result["status"] if proven else "feasible",
             "gap": self.content["certificate"]["gap"] if proven else None,
             "note": str(entry["note"] or ""),
+            "group": entry.get("group"),
+            "near": "",
             "why": f"{title}: design {listed.rank} of the front of this family alone.",
             "family": family,
             "v": [number(listed.values.get(names.get(key, ""), math.nan), unit) for key, unit in self.units.items()],

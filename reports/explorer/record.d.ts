@@ -92,6 +92,8 @@ export interface Design {
   prices?: string[];
   remarks?: string[];
   alternatives?: string[];
+  group?: number | null;
+  near?: string;
   violated?: string[];
   off_grid?: Record<string, string>;
   next?: [string, string][];

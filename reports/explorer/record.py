@@ -9,7 +9,7 @@ from typing import Any
 from synth.drawing import Drawing
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
-from synth.results.design import reached_limits
+from synth.results.design import near_ones, reached_limits
 from synth.results.rating_tables import yield_percent
 from synth.results.report_request import About, ReportRequest
 from synth.text.numbers import typed_number
@@ -250,6 +250,8 @@ class RecordOf:
             "prices": [str(p["sentence"]) for p in prices if p.get("design") == d.rank and _matters(p)],
             "remarks": [*d.advice, *d.not_checked],
             "alternatives": list(d.alternatives),
+            "group": d.group,
+            "near": near_ones(d, self.front.designs),
             "violated": list(d.violated),
             "off_grid": dict(d.off_grid),
             "next": [[label(name), str(row)] for name, row in d.next_rows.items()],

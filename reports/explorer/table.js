@@ -99,6 +99,7 @@ export function tableView(x) {
       const cells = cellOf.map((cell) => cell(i));
       const names = model.names[i].length ? hidden(model.names[i].join(", ")) : null;
       if (names) first.append(names);
+      if (d.near) first.append(h("small", { class: "near", title: d.near }, ` +${d.near.split("#").length - 1}`), hidden(d.near));
       const bound = limits ? h("td", { class: "words last soft", title: bounds(d) }, bounds(d)) : null;
       const row = h("tr", null, first, cells, bound);
       row.dataset.i = String(i);
@@ -152,12 +153,16 @@ export function tableView(x) {
 
   function filter() {
     let count = 0;
+    let lines = 0;
     for (const i of sorted) {
       const kept = x.shown(i);
+      // Near-equals stand on the line of the one that leads them until all are asked for.
+      const line = kept && (most === Infinity || !x.model.record.designs[i].group);
       count += Number(kept);
-      rows[i].hidden = !kept || count > most;
+      lines += Number(line);
+      rows[i].hidden = !line || lines > most;
     }
-    more.hidden = count <= most;
+    more.hidden = count <= Math.min(lines, most);
     more.textContent = `Show all ${number(count)} designs`;
   }
 

@@ -194,6 +194,61 @@ class Ranking:
     scale: Scale
 
 
+@dataclass(frozen=True, kw_only=True)
+class ListSettings:
+    """How the designs of a front are listed.
+
+    Parameters
+    ----------
+    merge_within : float
+        Designs of the same parts, counts and choices that differ by no more in any objective are one line: less than
+        what masses and lengths of drawings differ by.
+    """
+
+    merge_within: float = 0.02
+
+
+LISTED = ListSettings()
+
+
+def merged(
+    values: np.ndarray, kinds: Sequence[object], scores: Sequence[float] | np.ndarray, within: float
+) -> list[list[int]]:
+    """Positions of designs in groups, those that come first leading: each joins the first leader that it is near to.
+
+    Parameters
+    ----------
+    values : array (designs, objectives)
+        Of objectives with another sign, or zero, only equal ones are near.
+    kinds : list
+        Only designs of one kind are near: of the same parts, counts and choices.
+    scores : list of float
+        The smallest comes first.
+    within : float
+        Near is within this share, in every objective.
+
+    Examples
+    --------
+    >>> values = np.array([[10, 100], [10.1, 100.5], [10.3, 99], [9.9, 101.9], [12, 80]])
+    >>> scores = Scale.of(values).scores(values, [1, 1])
+    >>> [[1 + k for k in group] for group in merged(values, ["a", "a", "a", "b", "a"], scores, 0.02)]
+    [[5], [3, 2], [1], [4]]
+    """
+    sizes, signs = np.abs(values), np.sign(values)
+    with np.errstate(divide="ignore"):
+        logarithms = np.where(sizes > 0, np.log(sizes), 0.0)
+    groups: list[list[int]] = []
+    for k in np.argsort(scores, kind="stable").tolist():
+        for group in groups:
+            near = np.abs(logarithms[k] - logarithms[group[0]]) <= math.log1p(within)
+            if kinds[k] == kinds[group[0]] and np.all(near & (signs[k] == signs[group[0]])):
+                group.append(k)
+                break
+        else:
+            groups.append([k])
+    return groups
+
+
 KNEE = "knee"
 AT_A_PRICE = ", whose last 0.5 % costs much"
 

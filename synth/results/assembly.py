@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from synth.order.feasibility import Status
-from synth.order.pareto import Scale, rank, senses_of
+from synth.order.pareto import LISTED, Scale, merged, rank, senses_of
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame
 from synth.results.front import ParetoFront
@@ -24,7 +24,7 @@ def ranked(
     complete: bool = False,
     scale: Scale | None = None,
 ) -> tuple[list[int], list[Design]]:
-    """Return designs in order of rank, with rank, score and note.
+    """Return designs in order of rank, with rank, score, note and group.
 
     Parameters
     ----------
@@ -45,11 +45,22 @@ def ranked(
     """
     if not designs:
         return [], []
-    ranking = rank(objectives, _objectives(designs, objectives), weights, complete, scale)
+    values = _objectives(designs, objectives)
+    ranking = rank(objectives, values, weights, complete, scale)
+    kinds = [_kind(designs[k]) for k in ranking.order]
+    groups = merged(values[ranking.order], kinds, range(len(designs)), LISTED.merge_within)
+    leaders = {k: group[0] + 1 for group in groups for k in group[1:]}
     return ranking.order, [
-        replace(designs[k], rank=place, score=float(ranking.scores[k]), note=ranking.notes[k])
-        for place, k in enumerate(ranking.order, start=1)
+        replace(designs[k], rank=j + 1, score=float(ranking.scores[k]), note=ranking.notes[k], group=leaders.get(j))
+        for j, k in enumerate(ranking.order)
     ]
+
+
+def _kind(design: Design) -> tuple[object, ...]:
+    """Family, options, parts, counts and choices of a design."""
+    counts = [design.values[name] for name, kind in design.frame.kinds.items() if kind == "count"]
+    frame, parts = design.frame, {slot: row.key for slot, row in design.parts.items()}
+    return frame.family, dict(frame.options), parts, counts, dict(design.choices)
 
 
 def scale_of(designs: Sequence[Design], objectives: Mapping[str, str], scale: Scale | None = None) -> Scale | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -12,10 +12,12 @@ from typing import Any
 from synth.errors import InputError
 from synth.folders.files import named_from, resolved_source, yaml_text
 from synth.order.feasibility import Status, binds
+from synth.order.pareto import LISTED
 from synth.results.next_row import NextRow
 from synth.results.notebook import notebook_html
 from synth.results.plain import finite
 from synth.results.ratings import DesignRating
+from synth.text.numbers import percent
 from synth.text.row_cells import Cell
 from synth.units import finite_from_si, header, in_words, typed_quantity, written_quantity
 
@@ -130,7 +132,8 @@ class Design:
     quantities, ``rows`` those of the user's own tables that it reads beside its parts. ``robust`` tells, where that was
     asked, how the design stands what scatters: ``holds``, ``verdict``, ``proof``, ``yield`` with ``yield_low`` and
     ``yield_high``, ``worst_limit``, and per limit its worst point. ``digits`` is how many of a variable its file needs
-    to say the same design (0: all of them); None: it says all of them as text, counts too.
+    to say the same design (0: all of them); None: it says all of them as text, counts too. ``group`` is the rank of a
+    better design of the same parts, counts and choices that is nearly the same in all objectives, if there is one.
     """
 
     frame: Frame
@@ -145,6 +148,7 @@ class Design:
     elasticity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     gap: float | None = None
     rank: int | None = None
+    group: int | None = None
     score: float | None = None
     note: str = ""
     alternatives: tuple[str, ...] = ()
@@ -266,3 +270,23 @@ def cell_value(value: float, unit: str) -> float | None:
 def reached_limits(design: Design) -> list[str]:
     """Return the limits that a design reaches."""
     return [name for name, used in design.utilisation.items() if binds(used, design.frame.limit_senses[name])]
+
+
+def lines_of(designs: Sequence[Design], every: bool = False) -> list[Design]:
+    """Designs that have a line in lists: without those that are nearly the same as a better one, or ``every`` one."""
+    return [design for design in designs if every or design.group is None]
+
+
+def near_ones(design: Design, designs: Sequence[Design]) -> str:
+    """Return how many designs are nearly the same as one that leads them, and which; empty where none is."""
+    ranks = [f"#{d.rank}" for d in designs if d.group is not None and d.group == design.rank]
+    return f"and {len(ranks)} within {percent(LISTED.merge_within)}: {', '.join(ranks)}" if ranks else ""
+
+
+def with_groups(
+    columns: Sequence[str], rows: Sequence[list[Any]], designs: Sequence[Design]
+) -> tuple[list[str], list[list[Any]]]:
+    """Return a table of designs with the rank of the one that leads each, last, where any two are nearly the same."""
+    if len(lines_of(designs)) == len(designs):
+        return list(columns), list(rows)
+    return [*columns, "group"], [[*row, d.group or d.rank] for row, d in zip(rows, designs, strict=True)]

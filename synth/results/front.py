@@ -16,7 +16,7 @@ from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, PartRow, design_columns, design_row
+from synth.results.design import Design, Frame, PartRow, design_columns, design_row, with_groups
 from synth.results.door import door
 from synth.results.drawings import front_picture, report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, KEPT, design_record, record_text, result_digest
@@ -318,7 +318,7 @@ class ParetoFront:
         if any(d.robust for d in self.designs):
             columns += COLUMNS
             rows = [[*row, *rating_row(d)] for row, d in zip(rows, self.designs, strict=True)]
-        return columns, rows
+        return with_groups(columns, rows, self.designs)
 
     def _repr_html_(self) -> str:
         """Show the front in a notebook: how far it is proven, its drawing, and the ranked designs."""

@@ -35,6 +35,7 @@ class DesignEntry(msgspec.Struct, frozen=True, kw_only=True):
     """A design of a front; the docstring of :class:`synth.results.Design` says what its fields mean."""
 
     rank: int
+    group: int | None = None
     score: float
     status: Status
     gap: float | None

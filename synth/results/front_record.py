@@ -52,6 +52,7 @@ def design_record(design: Design) -> dict[str, Any]:
     """Entry of a design in front.json."""
     return {
         "rank": design.rank,
+        **({} if design.group is None else {"group": design.group}),
         "score": design.score,
         "status": design.status.value,
         "gap": design.gap,

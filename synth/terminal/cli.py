@@ -226,7 +226,7 @@ def run(
     *,
     spec: SpecFile,
     folder: Folder = None,
-    every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Show all designs: near-equals, and more than ten.")] = False,
     more: Annotated[
         Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
     ] = None,
@@ -242,7 +242,7 @@ def run(
     from synth.question.spec import read_spec
     from synth.terminal.console import explanation_text
 
-    style = csv_style(csv, "--csv")
+    style, every = csv_style(csv, "--csv"), every or options.points is not None
     asked = read_spec(spec).merged(**options.of_spec())
     must_be_a_question(asked)
     asked = asked.merged(catalogs=own_tables(asked.catalogs, asked.folder, encoding, visible_rows))

@@ -140,3 +140,23 @@ def test_what_people_decide_by_stands_beside_the_objectives() -> None:
 def test_an_end_that_costs_much_for_little_is_told_to() -> None:
     ends = [design(1, 10, 1000), design(2, 9.99, 3000, note="smallest mass, whose last 0.5 % costs much")]
     assert why(front(*ends), ends[1]).startswith("smallest mass, whose last 0.5 % costs much; 0.1 % less mass")
+
+
+def test_near_equals_stand_on_the_line_of_the_one_that_leads_them() -> None:
+    designs = [design(k, 10 + k / 100, 2000) for k in range(1, 14)]
+    designs = [replace(d, group=None if d.rank in (1, 5) else 1 if (d.rank or 0) < 5 else 5) for d in designs]
+    shown: list[str] = []
+    for every in (False, True):
+        stream = io.StringIO()
+        console = Console(file=stream, width=100, markup=False, highlight=False)
+        print_front(front(*designs), console, every=every)
+        shown.append(stream.getvalue())
+    assert "#1: and 3 within 2 %: #2, #3, #4\n" in shown[0]
+    assert "#5: and 8 within 2 %: #6," in shown[0]
+    assert "11 more with --all" in shown[0]
+    assert "#13:" in shown[1]
+    assert "within 2 %" not in shown[1]
+    columns, rows = front(*designs).table()
+    assert columns[-1] == "group"
+    assert [row[-1] for row in rows] == [1] * 4 + [5] * 9
+    assert front(*designs[:1], designs[4]).table()[0][-1] != "group"

@@ -15,6 +15,7 @@ import synth
 from synth.order.pareto import rank
 from synth.results import ParetoFront
 from synth.results.assembly import front_of, ranked
+from synth.results.design import PartRow
 from synth.results.ratings import RatingCounts
 from synth.results.record import UNSET
 from synth.results.statistics import SearchStatistics
@@ -107,3 +108,27 @@ def test_statistics_cannot_be_changed(front: ParetoFront, change: Any) -> None:
     with pytest.raises((TypeError, AttributeError)):
         change(front.statistics)
     assert front.statistics == before
+
+
+def test_designs_of_the_same_parts_that_hardly_differ_are_a_group(front: ParetoFront, tmp_path: Any) -> None:
+    first = next(d for d in front.designs if d.parts)
+    names, near = list(front.frame.objectives), []
+    for share in (1.0, 1.01, 1.03, 1.015):
+        values = {**first.values, **{n: share * first.values[n] for n in names}}
+        near.append(replace(first, values=values, objectives={n: values[n] for n in names}))
+    other = {slot: replace_row(row) for slot, row in first.parts.items()}
+    near.append(replace(near[1], parts=other))
+    order, designs = ranked(near, {n: "min" for n in names}, [1.0] * len(names))
+    assert order == [0, 1, 4, 3, 2]
+    assert [d.group for d in designs] == [None, 1, None, 1, None]
+    assert [d.group for d in ranked([designs[1], designs[4]], {n: "min" for n in names}, [1.0] * len(names))[1]] == [
+        None,
+        1,
+    ]
+    saved = synth.load_front(replace(front, designs=designs).save(tmp_path / "front"))
+    assert [d.group for d in saved.designs] == [d.group for d in designs]
+
+
+def replace_row(row: Any) -> Any:
+    """Return the row of a part under another designation."""
+    return PartRow(row["table"], row["hash"], {**row, "designation": "another"})

@@ -721,3 +721,13 @@ def test_the_first_by_the_ideal_of_all_is_searched_for():
     own = compare([Solid], {"load": LOAD}, catalogs=OWN, points=3)
     both = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=3)
     assert own.designs[0].objectives != both.designs[0].objectives
+
+
+def test_what_stands_on_the_common_front_stands_on_that_of_its_family(tmp_path):
+    found = compare([Solid, Tube, Padded], {"load": LOAD}, catalogs=OWN, points=4)
+    fronts = {x.family: x.front for x in found.outcomes}
+    for design, family in zip(found.designs, found.families, strict=True):
+        assert any(d.objectives == design.objectives for d in fronts[family].designs)
+    assert max(len(fronts[name].designs) for name in ("solid", "tube")) > 4
+    for name, family in (("solid", Solid), ("tube", Tube)):
+        assert fronts[name].verify(family, OWN).holds

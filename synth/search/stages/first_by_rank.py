@@ -46,7 +46,8 @@ def find_first(state: FrontState, weights: Sequence[float]) -> None:
 def nearest_among(state: FrontState, signed: np.ndarray, weights: Sequence[float], deadline: float) -> list[Candidate]:
     """Return the design of a finished search that comes first among designs of others, if none of those does.
 
-    What the others reach already cuts off all that comes no nearer to the ideal of all, so the tree is small.
+    What the others reach already cuts off all that comes no nearer to the ideal of all, so the tree is small. Where it
+    closes nothing improves the design in every objective, as that would come nearer; where it does not there is none.
 
     Parameters
     ----------
@@ -70,10 +71,11 @@ def nearest_among(state: FrontState, signed: np.ndarray, weights: Sequence[float
         return []
     state.progress.enter("against the others")
     clock = Clock(deadline, state.progress.working)
-    branch_and_bound(form, state.pool, rule, clock, state.rng, min(limits.first_nodes, state.node_limit))
+    node_limit = min(limits.first_nodes, state.node_limit)
+    outcome = branch_and_bound(form, state.pool, rule, clock, state.rng, node_limit)
     phi = form.archive.phi[:, :m]
     first = scored.best(phi)
-    nearer = scored.scores(phi[[first]])[0] < least * (1.0 - limits.first_share)
+    nearer = outcome.closed and scored.scores(phi[[first]])[0] < least * (1.0 - limits.first_share)
     return polish_variables(form, [form.archive[first]], m, range(m)) if nearer else []
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
+from msgspec import structs
 
 from synth.order.margins import MARGINS
 from synth.order.pareto import Scale, extremes, senses_of, spread_subset
 from synth.results import Design
+from synth.results.assembly import ranked, scale_of
 from synth.studies.families.competitor import Competitor
 
 
@@ -46,6 +49,19 @@ class CommonFront:
         """Designs that no known design dominates or equals."""
         known = self.everything()
         return [d for d, point in zip(designs, self.signed(designs), strict=True) if not beaten(known, point).any()]
+
+    def take(self, member: Competitor, fresh: Sequence[Design], proven: bool) -> None:
+        """Add designs of a family; those that its own proof covers stand on its own front as well."""
+        member.designs += fresh
+        if not fresh or not proven:
+            return
+        better, front = self.signed(fresh), member.front
+        pairs = zip(front.designs, self.signed(front.designs), strict=True)
+        kept, chosen = [d for d, x in pairs if not beaten(better, x).any()], front.frame.objectives
+        _, designs = ranked([*kept, *fresh], chosen, self.weights, front.complete, front.scale)
+        settings = structs.replace(front.settings, points=max(self.points, len(designs)))
+        scale = scale_of(designs, chosen, front.scale)
+        member.front = replace(front, designs=designs, scale=scale, settings=settings)
 
     def everything(self) -> np.ndarray:
         """Return the objectives of all designs that are known, as ``signed`` does."""

@@ -270,9 +270,9 @@ class _Comparing:
             return
         nearest_stand = True
         for member in able:
-            found = nearest_among(member.state, self.front.everything(), self.front.weights, self.deadline)
-            fresh, all_stand = self._standing(member, found)
-            member.designs += fresh
+            nearer = nearest_among(member.state, self.front.everything(), self.front.weights, self.deadline)
+            fresh, all_stand = self._standing(member, nearer)
+            self.front.take(member, fresh, proven=True)
             nearest_stand = nearest_stand and all_stand
         for _ in range(self.limits.rounds):
             quiet, closed = True, nearest_stand
@@ -283,7 +283,7 @@ class _Comparing:
                     reply = challenge(member.state, self.front.signed(others), self.deadline)
                     member.amounts = np.maximum(member.amounts, reply.amounts)
                     fresh, all_stand = self._standing(member, reply.better)
-                    member.designs += fresh
+                    self.front.take(member, fresh, reply.closed)
                     closed = closed and reply.closed and all_stand
                     quiet = quiet and not fresh
             if quiet:
@@ -292,9 +292,9 @@ class _Comparing:
                 return
         self.proven = False
 
-    def _standing(self, member: Competitor, found: Sequence[Candidate]) -> tuple[list[Design], bool]:
+    def _standing(self, member: Competitor, candidates: Sequence[Candidate]) -> tuple[list[Design], bool]:
         """New designs of a family that no known design beats and that stand the range; whether all found do."""
-        useful = self.front.useful(further_designs(member.state, found)) if found else []
+        useful = self.front.useful(further_designs(member.state, candidates)) if candidates else []
         fresh = member.standing(useful, self.deadline)
         return fresh, len(fresh) == len(useful)
 

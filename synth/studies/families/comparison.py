@@ -15,6 +15,7 @@ from synth.order.feasibility import Status
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.results.assembly import without_design
 from synth.results.certificate import all_of, none_of
+from synth.results.design import with_groups
 from synth.results.drawings import front_picture
 from synth.results.loading import COMPARISON
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -176,7 +177,8 @@ class Comparison:
             for d, name, values in zip(self.designs, self.families, known, strict=True)
         ]
         columns = ["rank", "score", "family", "status", "gap", "note", "alternatives", *every]
-        return [*columns, *(COLUMNS if rated else ())], rows
+        columns += COLUMNS if rated else ()
+        return with_groups(columns, rows, self.designs)
 
     def _family_table(self) -> tuple[list[str], list[list[Any]]]:
         columns = ["family", "title", "outcome", "listed", "why", "designs", "certificate", "gap", "combinations"]
@@ -217,6 +219,7 @@ class Comparison:
             "designs": [
                 {
                     "rank": d.rank,
+                    **({} if d.group is None else {"group": d.group}),
                     "score": d.score,
                     "family": name,
                     "note": d.note,
