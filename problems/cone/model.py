@@ -128,7 +128,7 @@ class ConeClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None, kind=friction.Duty)
+        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None, kind=layer_of.kind)
         if duty.cooling != COOLING:
             d.advise(
                 "cooling_not_counted",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Block, Declaration, Option, Requirement
 
-from ..sources import DRIVE, S1, TYPICAL
+from ..sources import DRIVE, S1
+from . import factors
 
 SAME = 0.01  # share by which a power and a torque that are both stated may differ
 LOADS = ("load_torque", "power")
@@ -20,23 +22,41 @@ def sized_by_load(block: Block) -> bool:
     return block.specifies(*LOADS) and not block.specifies("required_torque")
 
 
+def _source_of_shock(drive: Drive) -> str:
+    """Where the shock factor is from."""
+    typed = drive.specifies("safety_factor")
+    return f"{S1}, n" if typed else factors.source_of_shock(drive.declaration, drive.driver_class, drive.driven_class)
+
+
 class Drive(Block):
     """Speed and torque of a drive, all in SI; None where a word says nothing in the question."""
 
     group = "duty"
 
+    driver_class = Option(
+        factors.drivers,
+        "electric motor",
+        text="What drives; gives the default of safety factor with the class of the driven machine",
+        source=f"table {factors.TABLE}, {factors.BY_CLASS}",
+    )
+    driven_class = Option(
+        factors.machines,
+        "medium",
+        text="What is driven: a class of shock, or a machine of the table by name",
+        source=f"table {factors.TABLE}, {factors.BY_CLASS}, {factors.CLASS_OF} and {factors.BY_MACHINE}",
+    )
     driver_speed = Requirement(
         "1/min", lower=0.1, upper=60000, symbol="omega1", text="Speed of the driving side", source=DRIVE
     )
     safety_factor = Requirement(
         "-",
-        1.5,
+        lambda drive: factors.shock_factor(drive.declaration, drive.driver_class, drive.driven_class),
         lower=1,
         upper=5,
         optional=lambda drive: not sized_by_load(drive),
         symbol="n",
-        text="Shock factor of the load: required torque over load torque",
-        source=TYPICAL,
+        text="Shock factor of the load: required torque over load torque; by default that of driver and driven machine",
+        source=_source_of_shock,
     )
     power = Requirement(
         "kW",
@@ -92,9 +112,7 @@ class Drive(Block):
 class Start(Drive):
     """Drive of a clutch that starts its load, whose torque counts as well, all in SI."""
 
-    safety_factor = Requirement(
-        "-", 1.5, lower=1, upper=5, symbol="n", text="Shock factor of the load", source=f"{S1}, n"
-    )
+    safety_factor = replace(Drive.safety_factor, optional=False, text="Shock factor of the load")
     load_torque = Requirement(
         "N*m",
         lambda drive: drive.load_of_rating if drive.sized_by_rating else drive.torque_of_power,
@@ -135,6 +153,7 @@ class Start(Drive):
 
 def refuse_contradictions(d: Declaration, drive: Drive) -> None:
     """Refuse words for the torque that contradict each other."""
+    _remark_unused_classes(d, drive)
     if drive.specifies("required_torque"):
         if drive.specifies("safety_factor") and not drive.specifies(*LOADS):
             text = "safety_factor is not used: it belongs to load_torque, and required_torque has all factors in it"
@@ -160,3 +179,18 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
             abs(of_power - drive.load_torque) > SAME * of_power,
             "one of power and load_torque; this power at its speed is another torque (T = P/omega)",
         )
+
+
+def _remark_unused_classes(d: Declaration, drive: Drive) -> None:
+    """Remark classes of driver or machine that no factor is read for."""
+    classes = {"driver_class": drive.driver_class, "driven_class": drive.driven_class}
+    unused = [name for name, chosen in classes.items() if chosen != getattr(type(drive), name).default]
+    reason = "required_torque has all factors in it"
+    if drive.specifies("safety_factor"):
+        reason = "safety_factor is stated"
+    elif drive.safety_factor is not None:
+        alone = len(factors.rows_of(d, drive.driver_class, drive.driven_class)) > 1
+        unused = [name for name in unused if alone and name == "driver_class"]
+        reason = f"the factor of {drive.driven_class} holds whatever drives it"
+    if unused:
+        d.advise("class_unused", True, f"{' and '.join(unused)} not used: {reason}")

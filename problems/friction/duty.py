@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
 from ..duty import WORDS, Start, refuse_contradictions
+from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1, TYPICAL
@@ -247,7 +248,20 @@ class DutyOfPlates(Duty):
         return required / self.surface_factor if self.guide_model == "cz" else required
 
 
-class DutyOfPack(DutyOfPlates):
+class DutyByRate(Duty):
+    """A duty whose factors follow from the switching rate."""
+
+    group = "duty"
+
+    switching_factor = replace(
+        Duty.switching_factor,
+        default=lambda duty: switching_factor(duty.declaration, duty.engagements_per_hour),
+        text="Engagement-count factor; by default that of engagements per hour: 1 up to 100, 0.4 above 360",
+        source=f"table {TABLE}, {BY_RATE}",
+    )
+
+
+class DutyOfPack(DutyOfPlates, DutyByRate):
     """A duty whose release gap follows from the pack where it is not given."""
 
     group = "model"
@@ -263,7 +277,7 @@ class DutyOfPack(DutyOfPlates):
     )
 
 
-class DutyOfDiscs(Duty):
+class DutyOfDiscs(DutyByRate):
     """A duty of discs by the rules of practice, which come free although they run out."""
 
     group = "model"
