@@ -3,5 +3,17 @@
 from __future__ import annotations
 
 from .drive import WORDS, Drive, Start, refuse_contradictions, sized_by_load
+from .machine import INERT, MOVED, MovedMachine, declare_gravity, of_drive
 
-__all__ = ["WORDS", "Drive", "Start", "refuse_contradictions", "sized_by_load"]
+__all__ = [
+    "INERT",
+    "MOVED",
+    "WORDS",
+    "Drive",
+    "MovedMachine",
+    "Start",
+    "declare_gravity",
+    "of_drive",
+    "refuse_contradictions",
+    "sized_by_load",
+]

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
-from ..duty import WORDS, Start, refuse_contradictions
+from ..duty import MOVED, WORDS, Start, refuse_contradictions
 from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
@@ -18,6 +18,7 @@ from ..sources import S0, S1, TYPICAL
 COMMON = (
     *WORDS,
     "driven_inertia",
+    *MOVED,
     "switching_factor",
     "speed_factor",
     "engagements_per_hour",
@@ -69,7 +70,14 @@ class Duty(Start):
         group="practice",
     )
     driven_inertia = Requirement(
-        "kg*m2", lower=1e-6, upper=1e5, symbol="J2", text="Driven inertia at the clutch shaft", source=f"{S1}, J2"
+        "kg*m2",
+        lambda duty: duty.inertia_of_machine,
+        lower=1e-6,
+        upper=1e5,
+        symbol="J2",
+        text="Driven inertia at the clutch shaft; by default that of the machine",
+        source=f"{S1}, J2",
+        follows=True,
     )
     switching_factor = Requirement(
         "-",
