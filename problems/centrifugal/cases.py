@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES, load_of
+from ..cases import SHAFTS, SOURCES, inertia_of, load_of
 
 NAMES = Path(__file__).parent
 
@@ -71,6 +71,7 @@ LEVERS = {
     "lining_inner_radius": "60 mm",
     "lining_outer_radius": "76.5 mm",
 }
+DRIVE = {**load_of(60), **inertia_of(40, 0.5)}  # in other words
 RAMPS = {**ENGINE, "required_torque": "60 N*m", "contact_speed_min": "95 rad/s"}
 CAPPED = {**RAMPS, "required_torque": "90 N*m", "lining_wear": "0.4 mm", "driven_inertia": "0.1 kg*m2"}
 STIFF = {
@@ -194,7 +195,12 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=RAMPS,
-        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        optional={
+            **load_of(60),
+            **inertia_of(40, 0.5),
+            "engagement_heat_limit": "0.6 J/mm2",
+            "outer_diameter_limit": "200 mm",
+        },
         feasible={
             "engine": Case(
                 options=SOURCES,
@@ -266,7 +272,12 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=RAMPS,
-        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        optional={
+            **load_of(60),
+            **inertia_of(40, 0.5),
+            "engagement_heat_limit": "0.6 J/mm2",
+            "outer_diameter_limit": "200 mm",
+        },
         feasible={
             "balls": Case(
                 options=SOURCES,
@@ -321,7 +332,12 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=ENGINE,
-        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        optional={
+            **load_of(60),
+            **inertia_of(40, 0.5),
+            "engagement_heat_limit": "0.6 J/mm2",
+            "outer_diameter_limit": "260 mm",
+        },
         feasible={
             "engine": Case(
                 options=SOURCES,
@@ -354,7 +370,12 @@ CASES = {
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm", "edge_pressure_ratio": "1"}},
         constants=BUILT,
         requirements=ENGINE,
-        optional={**load_of(60), "engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        optional={
+            **load_of(60),
+            **inertia_of(40, 0.5),
+            "engagement_heat_limit": "0.6 J/mm2",
+            "outer_diameter_limit": "260 mm",
+        },
         feasible={
             "engine": Case(
                 options=SOURCES,

@@ -8,7 +8,7 @@ from typing import Any
 from synth.declaration import Declaration, Requirement
 
 from ..components.shaft.model import ShaftRequirements, declare_shaft
-from ..duty import WORDS, Drive, refuse_contradictions
+from ..duty import INERT, MOVED, WORDS, Drive, MovedMachine, of_drive, refuse_contradictions
 from ..mechanics import centrifugal
 from ..mechanics.shaft import shaft_diameter
 from ..practice import UNSOURCED
@@ -35,6 +35,7 @@ COMMON = (
     "idle_margin_min",
     "contact_speed_max",
     "driven_inertia",
+    *MOVED,
     "engagement_heat_limit",
     "hub_radius",
     "outer_diameter_limit",
@@ -80,7 +81,7 @@ class Load(Drive):
         return self.torque_reserve * self.required_torque
 
 
-class Duty(Load):
+class Duty(Load, MovedMachine):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
@@ -124,12 +125,14 @@ class Duty(Load):
     )
     driven_inertia = Requirement(
         "kg*m2",
-        0.5,
+        lambda duty: duty.inertia_of_machine if duty.specifies(*INERT) else 0.5,
         lower=0,
         upper=1e4,
         symbol="J_load",
-        text=f"Inertia on the driven side that an engagement brings up to speed ({TYPICAL})",
+        text=f"Inertia on the driven side that an engagement brings up to speed; that of the machine, or 0.5 "
+        f"({TYPICAL})",
         source=TYPICAL,
+        follows=True,
     )
     engagement_heat_limit = Requirement(
         "J/mm2",
@@ -174,16 +177,7 @@ class Duty(Load):
         source=TYPICAL,
         group="model",
     )
-    outer_diameter_limit = Requirement(
-        "mm",
-        lower=20,
-        upper=3000,
-        optional=True,
-        symbol="D_max",
-        text="Largest outside diameter",
-        source=DRIVE,
-        group="envelope",
-    )
+    outer_diameter_limit = of_drive("mm", 20, 3000, "D_max", "Largest outside diameter", group="envelope")
     ring_ratio_min = Requirement(
         "-",
         0.55,
@@ -236,9 +230,7 @@ class WholeDuty(Duty, Shaft):
     group = "envelope"
 
     hub_radius = replace(Duty.hub_radius, default=lambda block: block.hub_diameter / 2, source=UNSOURCED)
-    length_limit = Requirement(
-        "mm", lower=2, upper=5000, optional=True, symbol="L_max", text="Largest length", source=DRIVE
-    )
+    length_limit = of_drive("mm", 2, 5000, "L_max", "Largest length")
 
 
 def declare_duty(d: Declaration) -> Duty:

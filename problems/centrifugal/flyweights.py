@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..duty import declare_gravity
 from ..mechanics import centrifugal
 from ..sources import NOT_IN_S4, S4, TYPICAL
 
@@ -167,8 +168,7 @@ def advise_gravity(d: Declaration, *, rest_radius: Any, start_speed: Any) -> Non
     start_speed : symbol
         Speed at which they leave their rest [rad/s].
     """
-    gravity = centrifugal.STANDARD_GRAVITY
-    d.constant("gravity", "m/s2", gravity, symbol="g_n", text="Standard gravity", source="CGPM 1901")
+    declare_gravity(d)
     d.advise(
         "gravity_at_start",
         centrifugal.gravity_ratio(rest_radius, start_speed) < 10,

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES, power_of
+from ..cases import SHAFTS, SOURCES, inertia_of, power_of
 
 NAMES = Path(__file__).parent
 
@@ -78,6 +78,7 @@ CASES = {
         },
         optional={
             **power_of(200),
+            **inertia_of(200, 2),
             "startup_torque": "340 N*m",
             "overload_torque": "2000 N*m",
             "actuation_force_limit": "30 kN",

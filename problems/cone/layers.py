@@ -11,7 +11,7 @@ from synth.declaration import Declaration
 from .. import cost, practice
 from ..components.lining.allowed import Makers, Practice
 from ..components.lining.model import Pair
-from ..friction.duty import Duty, Size
+from ..friction.duty import Duty, DutyByRate, Size
 from ..practice import by_scope
 from . import body
 from . import formulas as cone
@@ -21,6 +21,7 @@ from .body import DERIVED, Cone, ConeBody, Cones
 class Sources:
     """The cones by the formulas of their sources, with nothing around them."""
 
+    kind: ClassVar[type[Duty]] = Duty
     linings: ClassVar[type[Makers]] = Makers
     mass_of: ClassVar[str] = "Both shells and the lining, times the mass factor of the layout"
     along: ClassVar[str] = "Length of the cone and what the layout adds to it"
@@ -87,6 +88,7 @@ class Complete(WithBody):
 class Ruled(WithBody):
     """Cones by rules of practice."""
 
+    kind = DutyByRate
     linings = Practice
 
     def __init__(self, d: Declaration, duty: Duty) -> None:

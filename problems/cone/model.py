@@ -15,7 +15,7 @@ from synth.text.numbers import number_text, typed_number
 from .. import friction, practice
 from ..components.lining import wear
 from ..components.lining.model import Pair, declare_friction_pair, declare_surface_loads
-from ..duty import cooling, coverage
+from ..duty import cooling, coverage, of_drive
 from ..friction import startup_curves
 from ..mechanics import heat, plates
 from ..sources import ARCHARD, LIST_S0, NEALE, S1, SHAFT, TYPICAL
@@ -82,15 +82,8 @@ class Wants(Block):
         source="premise of the cone model",
         group="model",
     )
-    bearing_force_limit = Requirement(
-        "N",
-        lower=1,
-        upper=1e6,
-        optional=True,
-        symbol="F_bearing_max",
-        text="Largest axial load of the shaft bearings",
-        source="requirement of the drive",
-        group="actuator",
+    bearing_force_limit = of_drive(
+        "N", 1, 1e6, "F_bearing_max", "Largest axial load of the shaft bearings", group="actuator"
     )
     temperature_rise_limit = Requirement(
         "K",
@@ -128,7 +121,7 @@ class ConeClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None, kind=friction.Duty)
+        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None, kind=layer_of.kind)
         if duty.cooling != COOLING:
             d.advise(
                 "cooling_not_counted",

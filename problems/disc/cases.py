@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import COVER, SHAFTS, SOURCES, power_of
+from ..cases import COVER, SHAFTS, SOURCES, inertia_of, power_of
 
 NAMES = Path(__file__).parent
 
@@ -63,6 +63,7 @@ CASES = {
         },
         optional={
             **power_of(60),
+            **inertia_of(60, 0.7),
             "startup_torque": "120 N*m",
             "overload_torque": "600 N*m",
             "actuation_force_limit": "8 kN",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-STARTING = ("driven_inertia", "slip_time_limit", "startup_torque")
+from .machine import MOVED
+
+STARTING = ("driven_inertia", *MOVED, "slip_time_limit", "startup_torque")
 SOFTNESS = ("jerk_limit", "acceleration_limit")
 FACTORS = ("engagements_per_hour", "switching_factor", "speed_factor")  # they count engagements, or wear by slip
 SPEEDS = ("idle_speed", "contact_speed_min", "contact_speed_max", "full_torque_speed")

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import COVER, MAGNETS, SHAFTS, SOURCES, power_of
+from ..cases import COVER, MAGNETS, SHAFTS, SOURCES, inertia_of, power_of
 
 NAMES = Path(__file__).parent
 
@@ -58,6 +58,7 @@ CASES = {
         requirements=DRUM,
         optional={
             **power_of(30),
+            **inertia_of(30, 0.05),
             "surface_factor": "1",
             "startup_torque": "36 N*m",
             "overload_torque": "200 N*m",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from synth.declaration import Declaration, Option, Requirement
 
-from ..duty import COOLING, WORDS, Start, cooling, refuse_contradictions
+from ..duty import COOLING, MOVED, WORDS, Start, cooling, refuse_contradictions
+from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import DRIVE, S0, S1, TYPICAL
@@ -16,6 +17,7 @@ from ..sources import DRIVE, S0, S1, TYPICAL
 COMMON = (
     *WORDS,
     "driven_inertia",
+    *MOVED,
     "switching_factor",
     "speed_factor",
     "engagements_per_hour",
@@ -62,7 +64,14 @@ class Duty(Start):
         group="practice",
     )
     driven_inertia = Requirement(
-        "kg*m2", lower=1e-6, upper=1e5, symbol="J2", text="Driven inertia at the clutch shaft", source=f"{S1}, J2"
+        "kg*m2",
+        lambda duty: duty.inertia_of_machine,
+        lower=1e-6,
+        upper=1e5,
+        symbol="J2",
+        text="Driven inertia at the clutch shaft; by default that of the machine",
+        source=f"{S1}, J2",
+        follows=True,
     )
     switching_factor = Requirement(
         "-",
@@ -262,7 +271,20 @@ class DutyOfPlates(DutyInRows):
         return required / self.surface_factor if self.guide_model == "cz" else required
 
 
-class DutyOfPack(DutyOfPlates):
+class DutyByRate(Duty):
+    """A duty whose factors follow from the switching rate."""
+
+    group = "duty"
+
+    switching_factor = replace(
+        Duty.switching_factor,
+        default=lambda duty: switching_factor(duty.declaration, duty.engagements_per_hour),
+        text="Engagement-count factor; by default that of engagements per hour: 1 up to 100, 0.4 above 360",
+        source=f"table {TABLE}, {BY_RATE}",
+    )
+
+
+class DutyOfPack(DutyOfPlates, DutyByRate):
     """A duty whose release gap follows from the pack where it is not given."""
 
     group = "model"
@@ -278,7 +300,7 @@ class DutyOfPack(DutyOfPlates):
     )
 
 
-class DutyOfDiscs(DutyInRows):
+class DutyOfDiscs(DutyInRows, DutyByRate):
     """A duty of discs by the rules of practice, which come free although they run out."""
 
     group = "model"

@@ -35,7 +35,6 @@ POWDER_CONSTANTS = {
     POWDER + "SHIELD_DENSITY": (1, -3, 0, 0, 0),
     POWDER + "SHIELD_THICKNESS": (0, 1, 0, 0, 0),
     POWDER + "SHAFT_ENDS": (0, 1, 0, 0, 0),
-    POWDER + "GRAVITY": (0, 1, -2, 0, 0),
 }
 
 CASES = {

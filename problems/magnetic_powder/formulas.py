@@ -22,7 +22,6 @@ from ..mechanics import Quantity, magnetics
 from ..mechanics.magnetics import gap_field
 
 IRON_DENSITY = 7870.0  # of solid iron [kg/m3]
-GRAVITY = 9.80665  # [m/s2]
 # What closes a powder clutch and carries it: proportions of practice, of no source that could be opened.
 SHIELD_DENSITY = 2700.0  # light metal [kg/m3]
 SHIELD_THICKNESS = 8e-3  # of one shield [m]

@@ -12,6 +12,7 @@ from synth.declaration import Block, Declaration, Part, Requirement
 from .. import cost
 from ..components.coil import model as coil_blocks
 from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
+from ..mechanics import centrifugal
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
 from . import formulas as powder
@@ -222,7 +223,7 @@ class Ruled(WithBody):
         d.at_least(
             "powder_spread",
             wants.driver_speed**2 * built.circuit.layout.gap_radius,
-            rules.spread_acceleration * powder.GRAVITY,
+            rules.spread_acceleration * centrifugal.STANDARD_GRAVITY,
             "m/s2",
             text="The powder is thrown out all around the gap",
             source=f"{UNSOURCED}; {S4}, check X11",

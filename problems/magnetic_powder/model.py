@@ -13,8 +13,8 @@ from synth.declaration import Choice, Declaration, Part, Requirement
 
 from .. import practice
 from ..components.coil import model as coil_blocks
-from ..duty import COOLING, WORDS, Drive, cooling, coverage, refuse_contradictions
-from ..mechanics import magnetics
+from ..duty import COOLING, WORDS, Drive, cooling, coverage, declare_gravity, of_drive, refuse_contradictions
+from ..mechanics import centrifugal, magnetics
 from ..practice import UNSOURCED
 from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -161,26 +161,8 @@ class Wants(Drive):
         source=f"{S4}, 250 to 400 g",
         group="actuator",
     )
-    outer_diameter_limit = Requirement(
-        "mm",
-        lower=20,
-        upper=2000,
-        optional=True,
-        symbol="D_max",
-        text="Largest outside diameter",
-        source="requirement of the drive",
-        group="envelope",
-    )
-    length_limit = Requirement(
-        "mm",
-        lower=10,
-        upper=2000,
-        optional=True,
-        symbol="L_max",
-        text="Largest length of the body",
-        source="requirement of the drive",
-        group="envelope",
-    )
+    outer_diameter_limit = of_drive("mm", 20, 2000, "D_max", "Largest outside diameter", group="envelope")
+    length_limit = of_drive("mm", 10, 2000, "L_max", "Largest length of the body", group="envelope")
 
 
 class MagneticPowderClutch(DesignProblem):
@@ -573,7 +555,7 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
     warning = SURFACE_WARNING - 273.15
     text = "Surface temperature that one maker names as the limit of powder clutches"
     d.constant("surface_warning", "degC", warning, symbol="T_warn", text=text, source=f"{S4} [P9]")
-    d.constant("gravity", "m/s2", powder.GRAVITY, symbol="g_n", text="Standard gravity", source="CGPM 1901")
+    declare_gravity(d)
     d.advise(
         "hot_surface",
         rise + wants.ambient_temperature > SURFACE_WARNING,
@@ -583,7 +565,7 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
     )
     d.advise(
         "powder_not_spread",
-        wants.driver_speed**2 * layout.gap_radius < 10 * powder.GRAVITY,
+        wants.driver_speed**2 * layout.gap_radius < 10 * centrifugal.STANDARD_GRAVITY,
         "the centrifugal acceleration in the gap is below 10 g: the powder may lie at the bottom instead of all around",
         source=f"{S4}, checks X6 and X11",
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.testing import Case, FamilyCases, Instance, KnownDesign
 
-from ..cases import SHAFTS, SOURCES, power_of
+from ..cases import SHAFTS, SOURCES, inertia_of, power_of
 
 NAMES = Path(__file__).parent
 
@@ -64,6 +64,7 @@ CASES = {
         requirements=HOIST,
         optional={
             **power_of(600),
+            **inertia_of(600, 30),
             "surface_factor": "1",
             "startup_torque": "1080 N*m",
             "overload_torque": "4000 N*m",

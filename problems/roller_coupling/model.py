@@ -14,7 +14,7 @@ from synth import Design, DesignProblem
 from synth.declaration import Declaration, Requirement
 
 from .. import practice
-from ..duty import WORDS, Drive, coverage, refuse_contradictions
+from ..duty import WORDS, Drive, coverage, of_drive, refuse_contradictions
 from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
@@ -104,35 +104,10 @@ class Wants(Drive):
         source=f"{S3}, chapter XII, h",
         group="duty",
     )
-    outer_diameter_limit = Requirement(
-        "mm",
-        lower=20,
-        upper=5000,
-        optional=True,
-        symbol="D_max",
-        text="Largest diameter that the float sweeps",
-        source=DRIVE,
-        group="envelope",
-    )
-    mass_limit = Requirement(
-        "kg",
-        lower=0.01,
-        upper=1e5,
-        optional=True,
-        symbol="mass_max",
-        text="Largest mass",
-        source=DRIVE,
-        group="envelope",
-    )
-    vibration_limit = Requirement(
-        "N",
-        lower=1e-3,
-        upper=1e9,
-        optional=True,
-        symbol="vib_max",
-        text="Largest amplitude of the force on each shaft at twice the speed",
-        source=DRIVE,
-        group="duty",
+    outer_diameter_limit = of_drive("mm", 20, 5000, "D_max", "Largest diameter that the float sweeps", group="envelope")
+    mass_limit = of_drive("kg", 0.01, 1e5, "mass_max", "Largest mass", group="envelope")
+    vibration_limit = of_drive(
+        "N", 1e-3, 1e9, "vib_max", "Largest amplitude of the force on each shaft at twice the speed", group="duty"
     )
     guide_angle = Requirement(
         "deg",

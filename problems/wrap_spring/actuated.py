@@ -11,7 +11,7 @@ from synth.declaration import Block, Declaration, Requirement
 from .. import practice
 from ..components.wrap_spring import body, formulas, requirements
 from ..components.wrap_spring.model import Built, Size, WrapSpring, declare_spring
-from ..duty import coverage
+from ..duty import coverage, of_drive
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, TYPICAL
 from . import curves
@@ -58,25 +58,9 @@ class Wants(Block):
         source=DRIVE,
         group="duty",
     )
-    actuator_torque_limit = Requirement(
-        "N*m",
-        lower=1e-4,
-        upper=1e4,
-        optional=True,
-        symbol="T0_max",
-        text="Largest energising torque",
-        source=DRIVE,
-        group="actuator",
-    )
-    wrap_angle_limit = Requirement(
-        "rad",
-        lower=0.01,
-        upper=50,
-        optional=True,
-        symbol="phi_max",
-        text="Largest angle until the coils are closed; 3 rad is usual",
-        source=DRIVE,
-        group="duty",
+    actuator_torque_limit = of_drive("N*m", 1e-4, 1e4, "T0_max", "Largest energising torque", group="actuator")
+    wrap_angle_limit = of_drive(
+        "rad", 0.01, 50, "phi_max", "Largest angle until the coils are closed; 3 rad is usual", group="duty"
     )
     fixed_coils = Requirement(
         "-",

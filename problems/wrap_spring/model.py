@@ -14,7 +14,7 @@ from .. import practice
 from ..components.lining import wear
 from ..components.wrap_spring import body, formulas, requirements
 from ..components.wrap_spring.model import Built, WrapSpring, declare_spring
-from ..duty import coverage, sized_by_load
+from ..duty import coverage, of_drive, sized_by_load
 from ..practice import UNSOURCED
 from ..sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from . import curves
@@ -70,14 +70,8 @@ class Wants(Block):
     overrun_duty = Requirement(
         "-", 1, lower=0, upper=1, symbol="duty", text="Part of the time spent overrunning", source=DRIVE
     )
-    drag_torque_limit = Requirement(
-        "N*m",
-        lower=1e-4,
-        upper=1e4,
-        optional=True,
-        symbol="drag_max",
-        text="Largest drag when overrunning; a twentieth of required torque is usual",
-        source=DRIVE,
+    drag_torque_limit = of_drive(
+        "N*m", 1e-4, 1e4, "drag_max", "Largest drag when overrunning; a twentieth of required torque is usual"
     )
     hub_shear_limit = Requirement(
         "N/mm2",

@@ -52,6 +52,12 @@ class OptionRecord:
     default: str
     chosen: str
     group: str
+    structural: bool = True  # whether what is declared may depend on it; else numbers alone do
+
+    @property
+    def structures(self) -> tuple[str, ...]:
+        """Choices with which other names may be declared."""
+        return self.choices if self.structural else ()
 
 
 @dataclass(frozen=True)

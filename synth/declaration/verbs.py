@@ -49,6 +49,16 @@ ca.GlobalOptions.setNumpyMode(-1)
 
 SWITCHED = {"yes": "on", "no": "off"}  # YAML does not tell a bare on from yes
 
+
+def labels_meant(word: object, labels: Sequence[str]) -> Sequence[str]:
+    """Labels that a word may mean: itself, else the same but for case, else all that begin with it."""
+    if not isinstance(word, str) or not word or word in labels:
+        return [x for x in labels if x == word]
+    folded = word.casefold()
+    same = [x for x in labels if x.casefold() == folded]
+    return same or [x for x in labels if x.casefold().startswith(folded)]
+
+
 Declared = TypeVar("Declared")  # what the attribute of a block is
 
 
@@ -84,7 +94,8 @@ class Requirement(BlockField[Quantity]):
     """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
 
     ``default`` may be a function that takes the block and returns the default from other fields, or None; ``optional``
-    one that tells from what is given whether the requirement is in force only where it is stated.
+    one that tells from what is given whether the requirement is in force only where it is stated; ``source`` one that
+    returns where the default is from.
     """
 
     unit: str
@@ -94,14 +105,16 @@ class Requirement(BlockField[Quantity]):
     optional: bool | Callable[[Any], bool] = False
     symbol: str | None = None
     text: str = ""
-    source: str = ""
+    source: str | Callable[[Any], str] = ""
     group: str = ""
     follows: bool = False
 
     def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
         optional = self.optional(block) if callable(self.optional) else self.optional
-        record = {**vars(self), "default": default, "optional": optional, "group": self.group or group}
+        source = self.source(block) if callable(self.source) else self.source
+        record = {**vars(self), "default": default, "optional": optional, "source": source}
+        record["group"] = self.group or group
         return block.declaration.requirement(name, **record)
 
 
@@ -109,10 +122,11 @@ class Requirement(BlockField[Quantity]):
 class Option(BlockField[str]):
     """An option as field of a :class:`Block`, whose attribute is the word chosen; see :meth:`Declaration.option`.
 
-    The choices are words, or the designations of a ``table``.
+    The choices are words, or the designations of a ``table``, or a function that takes the declaration and returns
+    words that decide numbers alone.
     """
 
-    choices: tuple[str, ...] = ()
+    choices: tuple[str, ...] | Callable[[Declaration], tuple[str, ...]] = ()
     default: str | Callable[[Any], str] = ""
     table: str = ""
     symbol: str | None = None
@@ -123,8 +137,11 @@ class Option(BlockField[str]):
     def declared(self, block: Block, name: str, default: str, group: str) -> str:
         """Declare the option; return the chosen word."""
         d = block.declaration
-        choices = d.designations(self.table) if self.table else self.choices
-        return d.option(name, choices, default, self.symbol, self.text, self.source, self.group or group)
+        words = self.choices(d) if callable(self.choices) else self.choices
+        choices = d.designations(self.table) if self.table else words
+        return d.option(
+            name, choices, default, self.symbol, self.text, self.source, self.group or group, not callable(self.choices)
+        )
 
 
 @dataclass(frozen=True)
@@ -428,8 +445,12 @@ class Declaration:
         text: str = "",
         source: str = "",
         group: str = "",
+        structural: bool = True,
     ) -> str:
-        """Declare a structural choice of the user and return the chosen string; ``group`` as of requirements."""
+        """Declare a choice of the user and return the chosen string; ``group`` as of requirements.
+
+        One that is not ``structural`` decides numbers alone, and no names.
+        """
         symbol = self._claim(name, symbol)
         labels = tuple(choices)
         if default not in labels:
@@ -442,9 +463,12 @@ class Declaration:
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         if isinstance(chosen, str) and chosen not in labels and SWITCHED.get(chosen) in labels:
             chosen = SWITCHED[chosen]
-        if chosen not in labels:
-            raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
-        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen, group)
+        meant = labels_meant(chosen, labels)
+        if len(meant) != 1:
+            between = "; " if any("," in label for label in labels) else ", "
+            raise InputError(f"option {name}", chosen, "one of " + between.join(meant or labels), ("options", name))
+        (chosen,) = meant
+        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen, group, structural)
         return str(chosen)
 
     def designations(self, table: str) -> tuple[str, ...]:

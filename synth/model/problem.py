@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 from synth.declaration import Declaration, DeclarationError, declaring
-from synth.declaration.verbs import SWITCHED
 from synth.errors import InputError
 from synth.model.hookspecs import FamilyHooks
 from synth.model.model import Model
@@ -72,8 +71,6 @@ class DesignProblem(FamilyHooks):
 
     def option(self, name: str) -> str:
         """Option that is in force: the one given, or the default."""
-        if (chosen := self.options.get(name)) is not None and chosen not in SWITCHED:
-            return chosen
         traced = next(iter(self._models.values()), None)
         declared = self.declaration(frozenset(), Catalogs()) if traced is None else traced[0].declaration
         return declared.options[name].chosen
@@ -104,7 +101,7 @@ class DesignProblem(FamilyHooks):
                 return f"{word} is there where {requirement.name} is given"
         for option in declared.options.values():
             others = {name: label for name, label in self.options.items() if name not in (option.name, option.symbol)}
-            for label in option.choices:
+            for label in option.structures:
                 if self._declares(word, {**others, option.name: label}, present, catalogs):
                     return f"{word} is there with {option.name}: {label}"
         return ""

@@ -123,7 +123,7 @@ def _refuse_of_other_options(
     found, groups = dict[str, list[str]](), set[str]()
     family: Any = problem.declared_by
     for option in model.declaration.options.values():
-        for label in option.choices:
+        for label in option.structures:
             if label == option.chosen:
                 continue
             others = {k: v for k, v in problem.options.items() if k not in (option.name, option.symbol)}

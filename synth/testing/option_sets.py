@@ -23,7 +23,7 @@ from synth.question.objectives import chosen_objectives, with_ties
 from synth.search.formulation import Formulation
 from synth.special import expanded
 from synth.testing.properties import Properties
-from synth.testing.records import cases_of, question, question_to
+from synth.testing.records import cases_of, question
 from synth.text.row_cells import named_column
 from synth.units import parse_unit
 
@@ -221,7 +221,7 @@ def traced_again(instance: Instance, constants: Mapping[str, tuple[int, ...]], s
             value = getattr(importlib.import_module(module), name)
             patch.setattr(f"{module}.{name}", value * np.prod(scale ** np.array(exponents, dtype=float)))
         chosen = {name: option.chosen for name, option in instance.model.declaration.options.items()}
-        return question_to(type(instance.problem)(**chosen), chosen, optional=True).model
+        return type(instance.problem)(**chosen).model(instance.values.given, instance.catalogs)
 
 
 @of_an_option_set

@@ -128,6 +128,18 @@ def test_an_unknown_choice_names_those_there_are():
         declaration(shape=True).option("shape", ("round", "square"), "round")
 
 
+@pytest.mark.parametrize(("written", "meant"), [("ROUND", "round"), ("sq", "square"), ("Roundish", "roundish")])
+def test_a_choice_may_be_shortened_in_any_case(written, meant):
+    assert declaration(shape=written).option("shape", ("round", "square", "roundish"), "square") == meant
+
+
+def test_a_beginning_of_several_choices_names_those_that_begin_so():
+    with pytest.raises(synth.InputError, match=r"got 'l'; expected one of lift, lorry$"):
+        declaration(shape="l").option("shape", ("lift", "crane", "lorry"), "lift")
+    with pytest.raises(synth.InputError, match=r"got ''; expected one of lift, crane$"):
+        declaration(shape="").option("shape", ("lift", "crane"), "lift")
+
+
 def test_an_unknown_option_is_refused_at_the_end():
     d = declaration(colour="red")
     d.option("shape", ("round", "square"), "round", symbol="sh")

@@ -9,7 +9,7 @@ from typing import Any
 from synth.declaration import Block, Declaration, Option, Requirement
 from synth.text.numbers import typed_number
 
-from ...duty import WORDS, Drive, refuse_contradictions
+from ...duty import WORDS, Drive, of_drive, refuse_contradictions
 from ...sources import ARCHARD, DRIVE, NOT_IN_S2, S2, SHAFT, TYPICAL
 from .models import MODELS
 
@@ -126,26 +126,8 @@ class Duty(Drive):
     bore_diameter = Requirement(
         "mm", lower=1, upper=500, symbol="d_bore", text="Shaft bore of the hubs", source=DRIVE, group="envelope"
     )
-    outer_diameter_limit = Requirement(
-        "mm",
-        lower=3,
-        upper=1000,
-        optional=True,
-        symbol="D_max",
-        text="Largest outside diameter",
-        source=DRIVE,
-        group="envelope",
-    )
-    length_limit = Requirement(
-        "mm",
-        lower=2,
-        upper=2000,
-        optional=True,
-        symbol="L_max",
-        text="Largest length of the spring",
-        source=DRIVE,
-        group="envelope",
-    )
+    outer_diameter_limit = of_drive("mm", 3, 1000, "D_max", "Largest outside diameter", group="envelope")
+    length_limit = of_drive("mm", 2, 2000, "L_max", "Largest length of the spring", group="envelope")
     gap_coils = Requirement(
         "-",
         0.5,

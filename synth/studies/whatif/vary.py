@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from synth.declaration.verbs import labels_meant
 from synth.errors import InputError, at, shortened
 from synth.model.model import Model
 from synth.order.margins import MARGINS
@@ -171,7 +172,7 @@ def _in_place(place: str, word: str, key: str, values: object, model: Model) -> 
         name = model.name_of(word, "vary", list(d.options), "an option", ())
         words = _words(key, values, several=False)
         for label in words:
-            if label not in d.options[name].choices:
+            if len(labels_meant(label, d.options[name].choices)) != 1:
                 raise InputError(f"vary {key}", label, "one of " + ", ".join(d.options[name].choices))
         return Varied("option", name, "", "", words)
     if word in KEYS[2:]:
