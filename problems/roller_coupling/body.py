@@ -7,27 +7,65 @@ from typing import Any
 
 import numpy as np
 
-from synth.declaration import Block, Choice, Declaration, Part, Requirement
+from synth.declaration import Block, Choice, Declaration, Part, Requirement, Variable
 from synth.errors import InputError
 
 from ..components.shaft.model import ShaftRequirements, declare_shaft, shaft_for
 from ..practice import UNSOURCED
+from ..sources import EXTENDS_S3, S3
 from . import formulas
 
 SHAFT_FACTOR = 1.5  # torque for which the shaft is sized over the torque to transmit: shocks of the drive
 RIM_PRACTICE = 5.0  # mm
+# Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
+ARM_RADIUS_MIN, ARM_RADIUS_MAX = 15.0, 200.0
+CONTACT_LENGTH_MIN = 3.0
 ROLLERS = "guide_rolling_bearings"
+
+
+class Sizes(Block):
+    """Sizes of arms and float, all in SI, and the offset that they allow."""
+
+    arm_radius = Variable(
+        "mm", ARM_RADIUS_MIN, ARM_RADIUS_MAX, grid=0.5, symbol="r", text="Radius of the pins", source=f"{S3}, r"
+    )
+    guide_half_length = Variable(
+        "mm",
+        15,
+        400,
+        grid=0.5,
+        symbol="K",
+        text="From the centre of the float to the end of a guide",
+        source=f"{S3}, K",
+    )
+    contact_length = Variable(
+        "mm",
+        CONTACT_LENGTH_MIN,
+        30,
+        grid=0.5,
+        symbol="l",
+        text="Length on which a roller bears on the guide",
+        source=f"{S3}, l",
+    )
+    rim = Variable(
+        "mm",
+        3,
+        60,
+        grid=0.5,
+        symbol="t",
+        text="Rim of the float around the corners of the guide ends",
+        source=EXTENDS_S3,
+    )
+    offset_capacity = Variable(
+        "mm", 0.1, 80, symbol="e_cap", text="Offset up to which all clearances are kept", source=f"{S3}, eq. (18b)"
+    )
 
 
 @dataclass(frozen=True)
 class Unknowns:
     """What the search decides."""
 
-    arm_radius: Any
-    guide_half_length: Any
-    contact_length: Any
-    rim: Any
-    offset_capacity: Any
+    sizes: Sizes
     balance: Choice
     roller: Part
     material: Part
@@ -156,14 +194,8 @@ def declare_body(d: Declaration, *, wants: CouplingBodyRequirements, part_mass: 
     arm_radius : symbol
         Radius of the pins [m].
     """
-    d.derive(
-        "part_mass",
-        "kg",
-        part_mass,
-        symbol="m_part",
-        text="Float, counter float, rollers with pins, and arms",
-        source="geometry",
-    )
+    text = "Float, counter float, rollers with pins, and arms"
+    d.derive("part_mass", "kg", part_mass, symbol="m_part", text=text, source="geometry")
     d.derive(
         "backlash",
         "deg",
@@ -176,12 +208,12 @@ def declare_body(d: Declaration, *, wants: CouplingBodyRequirements, part_mass: 
 
 def declare_rules(d: Declaration, rules: CouplingRules, unknowns: Unknowns, float_radius: Any) -> None:
     """Declare the limits that an engineer adds to a coupling, with a float of a radius R_f [m]."""
-    roller, width = unknowns.roller, d.derived["float_width"].sx
+    roller, sizes, width = unknowns.roller, unknowns.sizes, d.derived["float_width"].sx
     bridges = "The bridges at the guide ends stand the bending over the width of a guide"
     bear, slender = "The rollers bear on enough of their width", rules.float_slenderness_min * 2 * float_radius
     for name, value, least, text in (
-        ("rim_practice", unknowns.rim, rules.rim_ratio * roller.outer_diameter, bridges),
-        ("contact_length_min", unknowns.contact_length, rules.contact_share_min * roller.contact_width, bear),
+        ("rim_practice", sizes.rim, rules.rim_ratio * roller.outer_diameter, bridges),
+        ("contact_length_min", sizes.contact_length, rules.contact_share_min * roller.contact_width, bear),
         ("float_slenderness", width, slender, "The float is no sheet"),
     ):
         d.at_least(name, value, least, "mm", text=text, source=UNSOURCED)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +17,19 @@ from . import motion as kinematics
 
 if TYPE_CHECKING:
     import pandas as pd
+
+# Panels by their labels: how the columns in them begin.
+PANELS = {
+    "roller gap [mm]": "gap",
+    "at offset capacity [mm]": "least",
+    "contact force [N]": "contact force",
+    "pin force [N]": "pin force",
+    "force on shaft 1 [N]": "force on shaft 1",
+    "float centre [mm]": "float centre",
+    "lead [deg]": "lead",
+    "speed [1/min]": "driven speed",
+    "slide [mm]": "slide",
+}
 
 
 def pin_force(spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
@@ -72,23 +85,19 @@ def angled_shafts(spec: Mapping[str, Any]) -> pd.DataFrame:
     import pandas as pd
 
     motion = _turn(spec)
-    frame = pd.DataFrame(
-        {
-            "driving angle [deg]": np.degrees(motion.driving_angle),
-            "lead of the driven shaft [deg]": np.degrees(motion.lead),
-            "driven speed [1/min]": motion.speed_ratio * spec["driver_speed"] * 30 / math.pi,
-            "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
-        }
-    )
+    speed = motion.speed_ratio * spec["driver_speed"] * 30 / math.pi
+    columns = _angles(motion, {}, {"driven speed [1/min]": speed})
+    frame = pd.DataFrame(columns)
     frame.attrs = {
         "title": f"One turn with shafts at {number_text(math.degrees(spec['shaft_angle']), 3)} deg",
-        "panels": [
-            {"label": label, "columns": [column]}
-            for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)
-        ],
+        "panels": _panels(columns, "lead [deg]", "speed [1/min]", "slide [mm]"),
         "source": f"{S3}, eq. (23) to (25), generalised",
     }
     return frame
+
+
+def _panels(columns: Iterable[str], *labels: str) -> list[dict[str, Any]]:
+    return [{"label": x, "columns": [c for c in columns if c.startswith(PANELS[x])]} for x in labels]
 
 
 def _turn(spec: Mapping[str, Any], offset: float | None = None) -> kinematics.Turn:
@@ -98,77 +107,82 @@ def _turn(spec: Mapping[str, Any], offset: float | None = None) -> kinematics.Tu
     return kinematics.turn(spec["offset"], spec["float_distance"], spec["shaft_angle"], spec["guide_angle"])
 
 
-def one_turn(spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
-    """Return positions of the float, roller gaps and forces of a design over one turn, from exact kinematics."""
-    import pandas as pd
+def _angles(motion: kinematics.Turn, centre: Mapping[str, Any], speed: Mapping[str, Any]) -> dict[str, Any]:
+    """Columns of the angles and of the slide, with those of the float and of the speed between them."""
+    return {
+        "driving angle [deg]": np.degrees(motion.driving_angle),
+        **centre,
+        "lead of the driven shaft [deg]": np.degrees(motion.lead),
+        **speed,
+        "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
+    }
 
-    values, angle = design.values, spec["guide_angle"]
-    diameter = design.parts["roller"]["outer_diameter"]
-    sizes = (values["arm_radius"], values["guide_half_length"], diameter)
-    motion = _turn(spec)
+
+def _clearances(spec: Mapping[str, Any], design: Design, motion: kinematics.Turn) -> dict[str, Any]:
+    """Columns of gaps, run-in and run-out at the offset of the shafts, and of the least at the offset capacity."""
+    values = design.values
+    sizes = (values["arm_radius"], values["guide_half_length"], design.parts["roller"]["outer_diameter"])
     found = kinematics.clearances(motion, *sizes)
     widest = kinematics.clearances(_turn(spec, values["offset_capacity"]), *sizes)
-    balanced = design.choices["balance"] == "yes"
-    roller_mass = design.steps["roller_mass"]
-    force = kinematics.forces(
+    pairs = ("1a-2a", "1a-2b", "1b-2a", "1b-2b")
+    columns = {f"gap {pair} [mm]": 1000 * found.gaps[:, k] for k, pair in enumerate(pairs)}
+    for k, guide in enumerate(("I", "II")):
+        columns[f"run-in, guide {guide} [mm]"] = 1000 * found.run_in[:, k]
+        columns[f"run-out, guide {guide} [mm]"] = 1000 * found.run_out[:, k]
+    for name, clear in (("roller gap", widest.gaps), ("run-in", widest.run_in), ("run-out", widest.run_out)):
+        columns[f"least {name} at offset capacity [mm]"] = 1000 * clear.min(axis=1)
+    return columns
+
+
+def _of_forces(force: kinematics.Forces) -> dict[str, Any]:
+    """Columns of the forces on rollers, pins and shaft 1, and of the torque that is driven."""
+    rollers = list(enumerate(("1a", "1b", "2a", "2b")))
+    return {
+        **{f"contact force {name} [N]": force.contact[:, k] for k, name in rollers},
+        **{f"pin force {name} [N]": force.pins[:, k] for k, name in rollers},
+        "force on shaft 1, x [N]": force.first_shaft[:, 0],
+        "force on shaft 1, y [N]": force.first_shaft[:, 1],
+        "driven torque [N*m]": force.driven_torque,
+    }
+
+
+def _forces(spec: Mapping[str, Any], design: Design, motion: kinematics.Turn) -> kinematics.Forces:
+    values = design.values
+    return kinematics.forces(
         motion,
         values["arm_radius"],
         spec["required_torque"],
         spec["driver_speed"],
         values["float_mass"],
-        roller_mass,
-        values["float_mass"] if balanced else 0.0,
+        design.steps["roller_mass"],
+        values["float_mass"] if design.choices["balance"] == "yes" else 0.0,
     )
-    gaps = [f"gap {pair} [mm]" for pair in ("1a-2a", "1a-2b", "1b-2a", "1b-2b")]
-    widest_names = ["least roller gap", "least run-in", "least run-out"]
-    at_capacity = [f"{name} at offset capacity [mm]" for name in widest_names]
-    rollers = ("1a", "1b", "2a", "2b")
-    columns: dict[str, Any] = {
-        "driving angle [deg]": np.degrees(motion.driving_angle),
-        "float centre x [mm]": 1000 * motion.centre[:, 0],
-        "float centre y [mm]": 1000 * motion.centre[:, 1],
-        "lead of the driven shaft [deg]": np.degrees(motion.lead),
-        "speed ratio [-]": motion.speed_ratio,
-        "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
-    }
-    columns |= {name: 1000 * found.gaps[:, k] for k, name in enumerate(gaps)}
-    for k, guide in enumerate(("I", "II")):
-        columns[f"run-in, guide {guide} [mm]"] = 1000 * found.run_in[:, k]
-        columns[f"run-out, guide {guide} [mm]"] = 1000 * found.run_out[:, k]
-    nearest = (widest.gaps, widest.run_in, widest.run_out)
-    columns |= {name: 1000 * x.min(axis=1) for name, x in zip(at_capacity, nearest, strict=True)}
-    columns |= {f"contact force {name} [N]": force.contact[:, k] for k, name in enumerate(rollers)}
-    columns |= {f"pin force {name} [N]": force.pins[:, k] for k, name in enumerate(rollers)}
-    columns["force on shaft 1, x [N]"] = force.first_shaft[:, 0]
-    columns["force on shaft 1, y [N]"] = force.first_shaft[:, 1]
-    columns["driven torque [N*m]"] = force.driven_torque
-    frame = pd.DataFrame(columns)
 
+
+def one_turn(spec: Mapping[str, Any], design: Design) -> pd.DataFrame:
+    """Return positions of the float, roller gaps and forces of a design over one turn, from exact kinematics."""
+    import pandas as pd
+
+    values, motion = design.values, _turn(spec)
+    force = _forces(spec, design, motion)
+    centre = {f"float centre {axis} [mm]": 1000 * motion.centre[:, k] for k, axis in enumerate("xy")}
+    columns = _angles(motion, centre, {"speed ratio [-]": motion.speed_ratio})
+    columns |= _clearances(spec, design, motion) | _of_forces(force)
+    frame = pd.DataFrame(columns)
     steady, vibration = kinematics.steady_and_vibrating(force.first_shaft)
-    normal = values["tangential_force"] + values["centrifugal_force"]
-    least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], angle) - diameter
-    panels = [
-        {"label": "roller gap [mm]", "columns": gaps},
-        {"label": "at offset capacity [mm]", "columns": at_capacity},
-        {"label": "contact force [N]", "columns": [c for c in frame.columns if c.startswith("contact force")]},
-        {"label": "pin force [N]", "columns": [c for c in frame.columns if c.startswith("pin force")]},
-        {"label": "force on shaft 1 [N]", "columns": [c for c in frame.columns if c.startswith("force on shaft 1")]},
-        {"label": "float centre [mm]", "columns": ["float centre x [mm]", "float centre y [mm]"]},
-    ]
-    if spec["shaft_angle"] > 0:
-        panels += [
-            {"label": "lead [deg]", "columns": ["lead of the driven shaft [deg]"]},
-            {"label": "slide [mm]", "columns": ["slide along shaft 2 [mm]"]},
-        ]
+    least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], spec["guide_angle"])
+    least_gap = float(least - design.parts["roller"]["outer_diameter"])
+    tangential, centrifugal = values["tangential_force"], values["centrifugal_force"]
+    labels = list(PANELS)[:6] + (["lead [deg]", "slide [mm]"] if spec["shaft_angle"] > 0 else [])
     frame.attrs = {
         "title": "One turn of the roller coupling",
         "x": "driving angle [deg]",
-        "panels": panels,
+        "panels": _panels(columns, *labels),
         "lines": [
             {"panel": 0, "y": 1000 * spec["roller_gap_min"], "label": "roller_gap_min"},
-            {"panel": 1, "y": 1000 * float(least), "label": "least gap, eq. (18)"},
-            {"panel": 2, "y": normal, "label": "F + Q"},
-            {"panel": 2, "y": values["tangential_force"] - values["centrifugal_force"], "label": "F - Q"},
+            {"panel": 1, "y": 1000 * least_gap, "label": "least gap, eq. (18)"},
+            {"panel": 2, "y": tangential + centrifugal, "label": "F + Q"},
+            {"panel": 2, "y": tangential - centrifugal, "label": "F - Q"},
             {"panel": 3, "y": values["pin_force"], "label": "pin_force"},
         ],
         "source": f"exact kinematics; closed forms: {S3}, eq. (14), (18) to (25)",

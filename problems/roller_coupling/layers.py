@@ -14,19 +14,16 @@ from . import body, formulas
 from .body import Unknowns
 
 if TYPE_CHECKING:
-    from .model import Wants
+    from .model import Loads, Wants
 
 
 @dataclass(frozen=True)
 class Built:
-    """Parts of a coupling that are declared: masses [kg], width of the float [m], number of counter floats."""
+    """Parts of a coupling that are declared, and their mass [kg]."""
 
     wants: Wants
     unknowns: Unknowns
-    width: Any
-    counter: Any
-    float_mass: Any
-    roller_mass: Any
+    loads: Loads
     part_mass: Any
 
 
@@ -60,21 +57,20 @@ class WithBody(Sources):
 
     def extend(self, d: Declaration, built: Built) -> Any:
         """Declare length, bosses, backlash and cost; none of the mass counts."""
-        around, wants, roller = self._body, built.wants, built.unknowns.roller
-        body.declare_body(d, wants=around, part_mass=built.part_mass, arm_radius=built.unknowns.arm_radius)
-        long = formulas.coupling_length(
-            built.width, roller.width, wants.pin_gap, roller.bore, around.shaft_diameter, built.counter
-        )
+        around, wants, roller, loads = self._body, built.wants, built.unknowns.roller, built.loads
+        body.declare_body(d, wants=around, part_mass=built.part_mass, arm_radius=built.unknowns.sizes.arm_radius)
+        width, shaft = d.derived["float_width"].sx, around.shaft_diameter
+        long = formulas.coupling_length(width, roller.width, wants.pin_gap, roller.bore, shaft, loads.counter)
         text = "Over the bosses of both arms, with a counter float beside the float"
         d.derive("length", "mm", long, symbol="L", text=text, source="geometry")
         bosses = 2 * around.boss_mass(wants.steel_density)
         name_boss(d, around)
         d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Bosses of both arms", source="geometry")
-        material, floats = built.unknowns.material, 1 + built.counter
-        price, weight = material.filled("relative_cost_per_kg", 1.0), built.float_mass * floats
+        material, floats = built.unknowns.material, 1 + loads.counter
+        price, weight = material.filled("relative_cost_per_kg", 1.0), loads.float_mass * floats
         special = [
             cost.Special("floats", material, amount=weight, mass=weight, factor=price),
-            cost.Special("rollers", roller, amount=4, mass=4 * built.roller_mass, pieces=4, piece_factor=cost.ROLLER),
+            cost.Special("rollers", roller, amount=4, mass=4 * loads.roller_mass, pieces=4, piece_factor=cost.ROLLER),
         ]
         # Arms, rollers with their pins, float and counter float.
         cost.declare_cost(d, mass=built.part_mass + bosses, parts=2 + 4 + floats, special=special)

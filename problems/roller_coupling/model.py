@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth import Design, DesignProblem
-from synth.declaration import Declaration, Requirement
+from synth.declaration import Block, Declaration, Option, Requirement
 
 from .. import practice
 from ..duty import WORDS, Drive, coverage, of_drive, refuse_contradictions
@@ -19,7 +19,7 @@ from ..mechanics import contact as hertz
 from ..sources import DRIVE, EXTENDS_S3, ISO_76, JOHNSON, S3, SHAFT, TYPICAL
 from . import body as coupling_body
 from . import curves, formulas
-from .body import Unknowns
+from .body import ARM_RADIUS_MAX, ARM_RADIUS_MIN, CONTACT_LENGTH_MIN, Sizes, Unknowns
 from .layers import LAYERS, Built, Sources
 
 if TYPE_CHECKING:
@@ -27,9 +27,7 @@ if TYPE_CHECKING:
 
     from synth.drawing import Drawing
 
-# Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
-ARM_RADIUS_MIN, ARM_RADIUS_MAX = 15.0, 200.0
-CONTACT_LENGTH_MIN = 3.0
+ELLIPSE = "Hamrock and Brewe (1983)"
 # Remarks only: below this modulus a float material counts as plastic, and above this pressure plastic creeps [Pa].
 PLASTIC_MODULUS, PLASTIC_PRESSURE = 20e9, 100e6
 # Remark only: from this amplitude of the roller's turning on, its rating life is worth a calculation [rad].
@@ -61,6 +59,37 @@ GUIDES = {
         "joints need grease as any pin joint"
     ),
 }
+
+
+class Options(Block):
+    """Options of the coupling; the default of the contact goes by the kind of rollers."""
+
+    group = "model"
+
+    guide = Option(
+        tuple(GUIDES),
+        "roller",
+        symbol="gd",
+        text="How the arms are joined to the float: by rollers, or as in the predecessors that the source "
+        "describes (advice only, they are not sized)",
+        source=f"{S3}, chapters X and XI",
+    )
+    sideways_removable = Option(
+        ("no", "yes"),
+        "no",
+        symbol="sw",
+        text="yes: an arm can be pulled out sideways through the other guide, shafts staying in place",
+        source=f"{S3}, eq. (21)",
+        group="duty",
+    )
+    roller_contact = Option(
+        tuple(CONTACT_ROWS),
+        "line",
+        symbol="rc",
+        text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact; either: "
+        "both, each row by its own tread",
+        source=f"{S3}, XIV.3",
+    )
 
 
 class Wants(Drive):
@@ -287,14 +316,16 @@ class Wants(Drive):
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces of a design, and the radius of the float."""
+    """Forces of a design [N], and what moves: mass of a roller and of a float [kg], number of counter floats."""
 
     tangential: Any
     centrifugal: Any
     normal: Any
     pin: Any
     vibration: Any
-    float_radius: Any
+    float_mass: Any
+    roller_mass: Any
+    counter: Any
 
 
 class RollerCoupling(DesignProblem):
@@ -328,48 +359,23 @@ class RollerCoupling(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
         kind = layer_of.roller_kind(d)
-        track = kind == "track"
-        guide = d.option(
-            "guide",
-            tuple(GUIDES),
-            "roller",
-            symbol="gd",
-            text="How the arms are joined to the float: by rollers, or as in the predecessors that the source "
-            "describes (advice only, they are not sized)",
-            source=f"{S3}, chapters X and XI",
-            group="model",
-        )
-        removable = d.option(
-            "sideways_removable",
-            ("no", "yes"),
-            "no",
-            symbol="sw",
-            text="yes: an arm can be pulled out sideways through the other guide, shafts staying in place",
-            source=f"{S3}, eq. (21)",
-            group="duty",
-        )
-        contact = d.option(
-            "roller_contact",
-            ("line", "crowned", "either"),
-            DEFAULT_CONTACT.get(kind, "line"),
-            symbol="rc",
-            text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact; either: "
-            "both, each row by its own tread",
-            source=f"{S3}, XIV.3",
-            group="model",
-        )
+        options = d.block(Options, roller_contact=DEFAULT_CONTACT.get(kind, "line"))
         wants = d.block(Wants, **layer_of.defaults)
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
-        unknowns = self._declare_unknowns(d, contact=contact, track=track)
-        self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)
-        loads = self._declare_loads(d, wants=wants, unknowns=unknowns, layer=layer)
-        self._declare_clearances(d, wants=wants, unknowns=unknowns, removable=removable)
-        self._declare_contact(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
+        unknowns = self._declare_unknowns(d, contact=options.roller_contact, track=kind == "track")
+        self._refuse_uncovered(d, wants=wants, unknowns=unknowns, options=options)
+        self._refuse_impossible(d, wants=wants, unknowns=unknowns, options=options)
+        loads = self._declare_loads(d, wants=wants, unknowns=unknowns)
+        self._declare_motion(d, wants=wants, radius=unknowns.sizes.arm_radius)
+        radius = self._declare_size(d, wants=wants, unknowns=unknowns, loads=loads, layer=layer)
+        self._limit_clearances(d, wants=wants, unknowns=unknowns, options=options)
+        self._declare_contact(d, wants=wants, unknowns=unknowns, loads=loads, contact=options.roller_contact)
         self._declare_pins(d, wants=wants, unknowns=unknowns, loads=loads)
         self._limit_float(d, wants=wants, unknowns=unknowns, loads=loads)
-        layer.declare_rules(d, unknowns, loads.float_radius)
-        self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
+        layer.declare_rules(d, unknowns, radius)
+        self._remark_on_duty(d, wants=wants, guide=options.guide)
+        self._remark_on_design(d, wants=wants, unknowns=unknowns)
         d.headline("outer_diameter", "mass", "length", "hertz_pressure", "pin_stress", "efficiency")
         for name in ("outer_diameter", "mass"):
             d.objective(name)
@@ -380,59 +386,11 @@ class RollerCoupling(DesignProblem):
             d.objective("length", default=False)
 
     def _declare_unknowns(self, d: Declaration, *, contact: str, track: bool) -> Unknowns:
-        conditions = list(CONTACT_ROWS[contact])
+        conditions = CONTACT_ROWS[contact]
         if track:
             conditions += coupling_body.track_rollers(d, contact=contact)
         return Unknowns(
-            arm_radius=d.variable(
-                "arm_radius",
-                "mm",
-                ARM_RADIUS_MIN,
-                ARM_RADIUS_MAX,
-                grid=0.5,
-                symbol="r",
-                text="Radius of the pins",
-                source=f"{S3}, r",
-            ),
-            guide_half_length=d.variable(
-                "guide_half_length",
-                "mm",
-                15,
-                400,
-                grid=0.5,
-                symbol="K",
-                text="From the centre of the float to the end of a guide",
-                source=f"{S3}, K",
-            ),
-            contact_length=d.variable(
-                "contact_length",
-                "mm",
-                CONTACT_LENGTH_MIN,
-                30,
-                grid=0.5,
-                symbol="l",
-                text="Length on which a roller bears on the guide",
-                source=f"{S3}, l",
-            ),
-            rim=d.variable(
-                "rim",
-                "mm",
-                3,
-                60,
-                grid=0.5,
-                symbol="t",
-                text="Rim of the float around the corners of the guide ends",
-                source=EXTENDS_S3,
-            ),
-            offset_capacity=d.variable(
-                "offset_capacity",
-                "mm",
-                0.1,
-                80,
-                symbol="e_cap",
-                text="Offset up to which all clearances are kept",
-                source=f"{S3}, eq. (18b)",
-            ),
+            sizes=d.block(Sizes),
             balance=d.choice(
                 "balance",
                 ("no", "yes"),
@@ -447,7 +405,7 @@ class RollerCoupling(DesignProblem):
             roller=d.part(
                 "roller",
                 "guide_rolling_bearings",
-                where=tuple(conditions),
+                where=conditions,
                 symbol="rol",
                 text="Rolling bearing on each pin whose outer ring rolls in the guide",
                 source="table guide_rolling_bearings",
@@ -461,11 +419,9 @@ class RollerCoupling(DesignProblem):
             ),
         )
 
-    def _refuse_impossible(
-        self, d: Declaration, *, wants: Wants, unknowns: Unknowns, guide: str, removable: str, contact: str
-    ) -> None:
-        """Refuse what no design can meet, whatever the unknowns, and what the model does not cover."""
-        roller, offset = unknowns.roller, wants.effective_offset
+    def _refuse_uncovered(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, options: Options) -> None:
+        """Refuse what the model does not cover, and rows and requirements that contradict themselves."""
+        roller, guide, contact = unknowns.roller, options.guide, options.roller_contact
         if guide != "roller":
             d.refuse(
                 "guide_not_sized",
@@ -480,7 +436,7 @@ class RollerCoupling(DesignProblem):
         )
         d.refuse(
             "no_oscillation",
-            np.logical_and(wants.oscillation_factor > 1, offset <= 0),
+            np.logical_and(wants.oscillation_factor > 1, wants.effective_offset <= 0),
             "an oscillation_factor of 1: without offset the bearings do not oscillate, and the raised static rating "
             "does not apply",
         )
@@ -491,35 +447,35 @@ class RollerCoupling(DesignProblem):
                 np.logical_and(roller.crowned, round_crown) if contact == "either" else round_crown,
                 "a crown_radius of at least the radius of the roller; the formula for the contact ellipse ends there",
             )
-        if removable == "yes":
+        if options.sideways_removable == "yes":
             d.refuse(
                 "oblique_removal",
                 wants.guide_angle < math.pi / 2 * (1 - 1e-9),
                 "a guide_angle of 90 deg with sideways_removable: pulling apart is not derived for other angles",
             )
-        largest = ARM_RADIUS_MAX / 1000
+
+    def _refuse_impossible(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, options: Options) -> None:
+        """Refuse what no design can meet, whatever the unknowns."""
+        diameter, largest, most = unknowns.roller.outer_diameter, ARM_RADIUS_MAX / 1000, wants.outer_diameter_limit
         d.refuse(
             "no_roller_clears",
-            offset + roller.outer_diameter + wants.roller_gap_min > 2 * largest * np.sin(wants.guide_angle / 2),
+            wants.effective_offset + diameter + wants.roller_gap_min > 2 * largest * np.sin(wants.guide_angle / 2),
             "a roller for which effective offset + outer diameter + roller_gap_min is at most 2 sin(guide_angle/2) "
             "times the largest arm radius, 200 mm; no roller in the catalogue clears the other guide at this offset",
         )
-        least = _least_arm_radius(wants, roller.outer_diameter)
-        if wants.outer_diameter_limit is not None:
+        least = _least_arm_radius(wants, diameter)
+        if most is not None:
             d.refuse(
                 "envelope_too_small",
-                _least_diameter(wants, roller.outer_diameter, least) > wants.outer_diameter_limit,
+                _least_diameter(wants, diameter, least) > most,
                 "an outer_diameter_limit that holds the smallest coupling with the smallest roller at this offset; the "
                 "envelope is smaller than that",
             )
-        if removable == "yes":
-            apart = roller.outer_diameter + wants.removal_min
+        if options.sideways_removable == "yes":
+            apart = diameter + wants.removal_min
             wide = apart > largest
-            if wants.outer_diameter_limit is not None:
-                beyond = (
-                    _least_diameter(wants, roller.outer_diameter, np.maximum(least, apart)) > wants.outer_diameter_limit
-                )
-                wide = np.logical_or(wide, beyond)
+            if most is not None:
+                wide = np.logical_or(wide, _least_diameter(wants, diameter, np.maximum(least, apart)) > most)
             d.refuse(
                 "not_removable",
                 wide,
@@ -534,25 +490,12 @@ class RollerCoupling(DesignProblem):
                 "that fits the offset shakes more",
             )
 
-    def _declare_loads(
-        self,
-        d: Declaration,
-        *,
-        wants: Wants,
-        unknowns: Unknowns,
-        layer: Sources,
-    ) -> Loads:
-        roller, offset = unknowns.roller, wants.effective_offset
-        diameter, radius = roller.outer_diameter, unknowns.arm_radius
-        d.derive(
-            "effective_offset",
-            "mm",
-            offset,
-            symbol="e_eff",
-            text="Offset seen in the plane of the float",
-            source=f"{EXTENDS_S3}",
-        )
-        width, float_mass = self._declare_float(d, wants=wants, unknowns=unknowns)
+    def _declare_loads(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Loads:
+        """Declare offset, float and forces on pins and shafts."""
+        roller, radius, offset = unknowns.roller, unknowns.sizes.arm_radius, wants.effective_offset
+        text = "Offset seen in the plane of the float"
+        d.derive("effective_offset", "mm", offset, symbol="e_eff", text=text, source=EXTENDS_S3)
+        float_mass = self._declare_float(d, wants=wants, unknowns=unknowns)
         tangential = d.derive(
             "tangential_force",
             "N",
@@ -569,29 +512,21 @@ class RollerCoupling(DesignProblem):
             text="Greatest share of one pin in the centrifugal force of the float",
             source=f"{S3}, eq. (14), C/2",
         )
-        roller_mass = d.step(
-            "roller_mass",
-            "kg",
-            formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap),
-            symbol="m_rol",
-            text="Mass of a roller with its pin",
-            source="geometry",
-        )
-        normal = tangential + centrifugal
+        mass = formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap)
+        text = "Mass of a roller with its pin"
+        mass = d.step("roller_mass", "kg", mass, symbol="m_rol", text=text, source="geometry")
+        normal, spin = tangential + centrifugal, formulas.roller_centrifugal_force(mass, radius, wants.driver_speed)
         d.step("normal_force", "N", normal, symbol="F_n", text="Greatest force of a roller on its guide", source=S3)
-        pin = d.derive(
-            "pin_force",
-            "N",
-            formulas.resultant_pin_force(
-                normal, formulas.roller_centrifugal_force(roller_mass, radius, wants.driver_speed)
-            ),
-            symbol="F_pin",
-            text="Greatest force on a pin, with the centrifugal force of its roller",
-            source=f"{S3}, E",
-        )
-        counter = unknowns.balance.select({"no": 0.0, "yes": 1.0})
-        text = "Counter floats: one with balance"
+        pin = formulas.resultant_pin_force(normal, spin)
+        text = "Greatest force on a pin, with the centrifugal force of its roller"
+        pin = d.derive("pin_force", "N", pin, symbol="F_pin", text=text, source=f"{S3}, E")
+        counter, text = unknowns.balance.select({"no": 0.0, "yes": 1.0}), "Counter floats: one with balance"
         d.step("counter_floats", "-", counter, symbol="n_c", text=text, source=f"{S3}, XIV.1")
+        vibration = self._declare_balance(d, centrifugal=centrifugal, counter=counter)
+        return Loads(tangential, centrifugal, normal, pin, vibration, float_mass, mass, counter)
+
+    def _declare_balance(self, d: Declaration, *, centrifugal: Any, counter: Any) -> Any:
+        """Declare what the floats do to the shafts; the amplitude [N]."""
         d.derive(
             "steady_force",
             "N",
@@ -600,7 +535,7 @@ class RollerCoupling(DesignProblem):
             text="Steady push on each shaft, away from the other; balance doubles it",
             source=f"{EXTENDS_S3} to {S3}, XIV.1",
         )
-        vibration = d.derive(
+        return d.derive(
             "vibration_force",
             "N",
             centrifugal * (1 - counter),
@@ -608,6 +543,9 @@ class RollerCoupling(DesignProblem):
             text="Amplitude of the force on each shaft, twice per turn",
             source=f"{S3}, XIV.1",
         )
+
+    def _declare_motion(self, d: Declaration, *, wants: Wants, radius: Any) -> None:
+        """Declare what the motion of the float costs: even speed and power."""
         d.derive(
             "speed_fluctuation",
             "-",
@@ -619,44 +557,37 @@ class RollerCoupling(DesignProblem):
         d.derive(
             "efficiency",
             "-",
-            formulas.rolling_efficiency(wants.rolling_friction, offset, radius),
+            formulas.rolling_efficiency(wants.rolling_friction, wants.effective_offset, radius),
             symbol="eta",
             text="Efficiency with rolling friction in the guides",
             source=f"{EXTENDS_S3}, guides at right angles",
         )
-        float_radius = formulas.float_radius(unknowns.guide_half_length, diameter, unknowns.rim)
-        outer = d.derive(
-            "outer_diameter",
-            "mm",
-            2 * (float_radius + offset / np.sin(wants.guide_angle)),
-            symbol="D_o",
-            text="Diameter that the float sweeps about a shaft",
-            source="geometry",
-        )
-        d.step("float_radius", "mm", float_radius, symbol="R_f", text="Outside of the float", source="geometry")
+
+    def _declare_size(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads, layer: Sources) -> Any:
+        """Declare diameter and mass with the limits of the drive; the radius of the float [m]."""
+        sizes, source = unknowns.sizes, "geometry"
+        radius = formulas.float_radius(sizes.guide_half_length, unknowns.roller.outer_diameter, sizes.rim)
+        outer = 2 * (radius + wants.effective_offset / np.sin(wants.guide_angle))
+        text = "Diameter that the float sweeps about a shaft"
+        outer = d.derive("outer_diameter", "mm", outer, symbol="D_o", text=text, source=source)
+        d.step("float_radius", "mm", radius, symbol="R_f", text="Outside of the float", source=source)
         arms = self._declare_arms(d, wants=wants, unknowns=unknowns)
-        part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
-        built = Built(wants, unknowns, width, counter, float_mass, roller_mass, part_mass)
-        bosses = layer.extend(d, built)
-        mass = d.derive(
-            "mass",
-            "kg",
-            part_mass + bosses,
-            symbol="m",
-            text=f"Float, counter float, rollers with pins, and arms; {layer.mass_of}",
-            source="geometry",
-        )
+        parts = loads.float_mass * (1 + loads.counter) + 4 * loads.roller_mass + arms
+        mass = parts + layer.extend(d, Built(wants, unknowns, loads, parts))
+        text = f"Float, counter float, rollers with pins, and arms; {layer.mass_of}"
+        mass = d.derive("mass", "kg", mass, symbol="m", text=text, source=source)
         for name, unit, value, most, text in (
             ("outer_diameter", "mm", outer, wants.outer_diameter_limit, "The coupling fits the room"),
             ("mass", "kg", mass, wants.mass_limit, "The coupling is not too heavy"),
-            ("vibration", "N", vibration, wants.vibration_limit, "The shafts do not shake too much"),
+            ("vibration", "N", loads.vibration, wants.vibration_limit, "The shafts do not shake too much"),
         ):
             if most is not None:
                 d.at_most(name, value, most, unit, text=text, source=DRIVE)
-        return Loads(tangential, centrifugal, normal, pin, vibration, float_radius)
+        return radius
 
-    def _declare_float(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> tuple[Any, Any]:
-        """Declare slide and sizes of the float; its width [m] and mass [kg]."""
+    def _declare_float(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Any:
+        """Declare slide and sizes of the float; its mass [kg]."""
+        sizes, diameter, source = unknowns.sizes, unknowns.roller.outer_diameter, "geometry"
         slide = d.derive(
             "axial_slide",
             "mm",
@@ -668,108 +599,69 @@ class RollerCoupling(DesignProblem):
         width = d.derive(
             "float_width",
             "mm",
-            formulas.float_width(unknowns.contact_length, slide, wants.axial_play),
+            formulas.float_width(sizes.contact_length, slide, wants.axial_play),
             symbol="b_f",
             text="Width of the float: contact, slide and play",
             source=f"{S3}, chapter XII",
         )
-        diameter = unknowns.roller.outer_diameter
-        section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
-        d.step(
-            "float_section",
-            "cm2",
-            section,
-            symbol="A_f",
-            text="Float without its guides, a completed square",
-            source="geometry",
-        )
-        ends = formulas.float_radius(unknowns.guide_half_length, diameter, 0.0)
-        d.step("guide_end_radius", "mm", ends, symbol="r_K", text="Corners of the guide ends", source="geometry")
-        mass = d.derive(
-            "float_mass",
-            "kg",
-            formulas.float_mass(unknowns.material.density, width, section),
-            symbol="m_fl",
-            text="Mass of the float",
-            source="geometry",
-        )
-        return width, mass
+        section = formulas.float_section(sizes.guide_half_length, diameter, sizes.rim, wants.guide_angle)
+        text = "Float without its guides, a completed square"
+        d.step("float_section", "cm2", section, symbol="A_f", text=text, source=source)
+        ends = formulas.float_radius(sizes.guide_half_length, diameter, 0.0)
+        d.step("guide_end_radius", "mm", ends, symbol="r_K", text="Corners of the guide ends", source=source)
+        mass = formulas.float_mass(unknowns.material.density, width, section)
+        return d.derive("float_mass", "kg", mass, symbol="m_fl", text="Mass of the float", source=source)
 
     def _declare_arms(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Any:
         """Name mass and bars of the arms; mass of both [kg]."""
-        bore = unknowns.roller.bore
-        arms = formulas.arms_mass(wants.steel_density, unknowns.arm_radius, bore)
+        bore, radius = unknowns.roller.bore, unknowns.sizes.arm_radius
+        arms = formulas.arms_mass(wants.steel_density, radius, bore)
         text = "Both arms, bars of 2 r + 2 d by 2 d by 1.2 d over a bore d"
         d.step("arms_mass", "kg", arms, symbol="m_arm", text=text, source="geometry")
         for name, value, symbol, text in (
-            ("arm_length", 2 * unknowns.arm_radius + 2 * bore, "l_arm", "Bar of an arm along the line of its pins"),
+            ("arm_length", 2 * radius + 2 * bore, "l_arm", "Bar of an arm along the line of its pins"),
             ("arm_width", 2 * bore, "b_arm", "Bar of an arm across that line"),
             ("arm_thickness", formulas.ARM_THICKNESS * bore, "t_arm", "Bar of an arm along its shaft"),
         ):
             d.step(name, "mm", value, symbol=symbol, text=text, source="usual proportions")
         return arms
 
-    def _declare_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, removable: str) -> None:
-        radius, capacity = unknowns.arm_radius, unknowns.offset_capacity
+    def _limit_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, options: Options) -> None:
+        """Limit what is clear between rollers and guides at the offset that the coupling takes."""
+        radius, capacity = unknowns.sizes.arm_radius, unknowns.sizes.offset_capacity
         diameter, angle = unknowns.roller.outer_diameter, wants.guide_angle
-        d.at_least(
-            "offset",
-            capacity,
-            wants.effective_offset,
-            "mm",
-            text="The coupling takes the offset of the shafts",
-            source=DRIVE,
-        )
-        d.at_least(
-            "roller_gap",
-            formulas.least_roller_distance(radius, capacity, angle) - diameter,
-            wants.roller_gap_min,
-            "mm",
-            text="Neighbouring rollers do not touch",
-            source=f"{S3}, eq. (18a)",
-        )
-        d.at_least(
-            "run_in",
-            formulas.run_in(radius, capacity, diameter, angle),
-            wants.run_in_min,
-            "mm",
-            text="Rollers stay clear of the crossing guide",
-            source=f"{S3}, chapter XI, s1",
-        )
-        d.at_least(
-            "run_out",
-            formulas.run_out(unknowns.guide_half_length, radius, capacity, angle),
-            wants.run_out_min,
-            "mm",
-            text="Rollers stay inside their guide",
-            source=f"{S3}, eq. (19a)",
-        )
-        if removable == "yes":
-            d.at_least(
-                "sideways",
-                formulas.removal_clearance(radius, diameter),
-                wants.removal_min,
-                "mm",
-                text="An arm passes the other guide sideways",
-                source=f"{S3}, eq. (21)",
-            )
+        gap = formulas.least_roller_distance(radius, capacity, angle) - diameter
+        inside = formulas.run_in(radius, capacity, diameter, angle)
+        outside = formulas.run_out(unknowns.sizes.guide_half_length, radius, capacity, angle)
+        offset, apart = "The coupling takes the offset of the shafts", "Neighbouring rollers do not touch"
+        clear, inward = "Rollers stay clear of the crossing guide", "Rollers stay inside their guide"
+        for name, value, least, text, source in (
+            ("offset", capacity, wants.effective_offset, offset, DRIVE),
+            ("roller_gap", gap, wants.roller_gap_min, apart, f"{S3}, eq. (18a)"),
+            ("run_in", inside, wants.run_in_min, clear, f"{S3}, chapter XI, s1"),
+            ("run_out", outside, wants.run_out_min, inward, f"{S3}, eq. (19a)"),
+        ):
+            d.at_least(name, value, least, "mm", text=text, source=source)
+        if options.sideways_removable == "yes":
+            free, text = formulas.removal_clearance(radius, diameter), "An arm passes the other guide sideways"
+            d.at_least("sideways", free, wants.removal_min, "mm", text=text, source=f"{S3}, eq. (21)")
 
     def _declare_contact(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str) -> None:
         """Declare the pressure between roller and guide, with the limits of both."""
-        roller, material = unknowns.roller, unknowns.material
-        length, radius = unknowns.contact_length, roller.outer_diameter / 2
+        roller, material, length = unknowns.roller, unknowns.material, unknowns.sizes.contact_length
+        radius = roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
         text = "Inverse of the modulus of the contact E*"
         d.step("contact_compliance", "mm2/N", 1 / modulus, symbol="s_c", text=text, source="Johnson, Contact Mechanics")
-        pressure, source = None, ""
+        pressure, source, half = None, "", None
         if contact != "crowned":
             pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
             source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
         if contact != "line":
-            self._name_ellipse(d, wants=wants, loads=loads, modulus=modulus, radius=radius)
+            half = self._name_ellipse(d, wants=wants, loads=loads, modulus=modulus, radius=radius)
             point = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
             pressure = point if contact == "crowned" else np.where(roller.crowned, point, pressure)
-            source = "; ".join(x for x in (source, "Hamrock and Brewe (1983)") if x)
+            source = "; ".join(x for x in (source, ELLIPSE) if x)
         pressure = d.derive(
             "hertz_pressure",
             "N/mm2",
@@ -779,52 +671,21 @@ class RollerCoupling(DesignProblem):
             text="Greatest Hertz pressure between roller and guide",
             source=source,
         )
-        d.at_most(
-            "contact_length",
-            length,
-            roller.contact_width,
-            "mm",
-            text="The roller is wide enough",
-            source="geometry",
-        )
-        d.at_most(
-            "hertz",
-            pressure,
-            np.minimum(material.hertz_allow, formulas.STATIC_CONTACT_LIMIT),
-            "N/mm2",
-            text="The guide is not dented",
-            source=source,
-        )
-        if contact != "line":
-            ellipse = 2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius)
-            d.at_most(
-                "contact_ellipse",
-                ellipse if contact == "crowned" else roller.crowned * ellipse,
-                length,
-                "mm",
-                text="The contact ellipse lies on the tread",
-                source="Hamrock and Brewe (1983)",
-            )
-        d.at_most(
-            "outer_ring_bending",
-            loads.normal,
-            roller.optional("outer_ring_load_limit"),
-            "N",
-            text="The unsupported outer ring does not bend too much",
-            source="makers' F0r of track rollers",
-        )
+        text, most = "The roller is wide enough", np.minimum(material.hertz_allow, formulas.STATIC_CONTACT_LIMIT)
+        d.at_most("contact_length", length, roller.contact_width, "mm", text=text, source="geometry")
+        d.at_most("hertz", pressure, most, "N/mm2", text="The guide is not dented", source=source)
+        if half is not None:
+            ellipse, text = 2 * half, "The contact ellipse lies on the tread"
+            long = ellipse if contact == "crowned" else roller.crowned * ellipse
+            d.at_most("contact_ellipse", long, length, "mm", text=text, source=ELLIPSE)
+        bends, text = roller.optional("outer_ring_load_limit"), "The unsupported outer ring does not bend too much"
+        d.at_most("outer_ring_bending", loads.normal, bends, "N", text=text, source="makers' F0r of track rollers")
 
     def _declare_pins(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads) -> None:
         """Declare the stresses of the pins, with their limits and that of the bearings on them."""
-        roller = unknowns.roller
-        d.at_most(
-            "pin_shear",
-            formulas.pin_shear_measure(wants.required_torque, unknowns.arm_radius, roller.bore),
-            wants.pin_shear_limit,
-            "N/mm2",
-            text="The pins stand the shear",
-            source=f"{S3}, eq. (16)",
-        )
+        roller, text = unknowns.roller, "The pins stand the shear"
+        shear = formulas.pin_shear_measure(wants.required_torque, unknowns.sizes.arm_radius, roller.bore)
+        d.at_most("pin_shear", shear, wants.pin_shear_limit, "N/mm2", text=text, source=f"{S3}, eq. (16)")
         bending = formulas.pin_bending_stress(loads.pin, roller.width, wants.pin_gap, roller.bore)
         shear = formulas.pin_shear_stress(loads.pin, roller.bore)
         d.step("pin_bending", "N/mm2", bending, symbol="sigma_b", text="Bending of a pin", source=EXTENDS_S3)
@@ -840,38 +701,23 @@ class RollerCoupling(DesignProblem):
         d.at_most(
             "pin_stress", stress, wants.pin_stress_limit, "N/mm2", text="The pins stand the bending", source=EXTENDS_S3
         )
-        d.at_most(
-            "bearing_static",
-            loads.pin,
-            formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety),
-            "N",
-            text="The rolling bearing stands the force at rest or oscillating",
-            source=f"{S3}, chapter XI",
-        )
+        most = formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety)
+        text = "The rolling bearing stands the force at rest or oscillating"
+        d.at_most("bearing_static", loads.pin, most, "N", text=text, source=f"{S3}, chapter XI")
 
     def _limit_float(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads) -> None:
         """Limit what the rim of the float stands, and that no roller loses its guide."""
-        width = d.derived["float_width"].sx
-        d.at_most(
-            "ligament",
-            formulas.ligament_stress(wants.ligament_factor, loads.normal, unknowns.rim, width),
-            unknowns.material.strength_allow,
-            "N/mm2",
-            text="The bridges at the guide ends hold",
-            source=EXTENDS_S3,
-        )
-        d.at_least("rim", unknowns.rim, wants.rim_min, "mm", text="The rim is not too thin", source=TYPICAL)
-        d.at_least(
-            "contact_retention",
-            loads.tangential,
-            wants.retention_margin * loads.centrifugal,
-            "N",
-            text="The lighter loaded rollers keep contact, the float does not hammer",
-            source=EXTENDS_S3,
-        )
+        rim, width = unknowns.sizes.rim, d.derived["float_width"].sx
+        stress = formulas.ligament_stress(wants.ligament_factor, loads.normal, rim, width)
+        stands, text = unknowns.material.strength_allow, "The bridges at the guide ends hold"
+        d.at_most("ligament", stress, stands, "N/mm2", text=text, source=EXTENDS_S3)
+        d.at_least("rim", rim, wants.rim_min, "mm", text="The rim is not too thin", source=TYPICAL)
+        least = wants.retention_margin * loads.centrifugal
+        text = "The lighter loaded rollers keep contact, the float does not hammer"
+        d.at_least("contact_retention", loads.tangential, least, "N", text=text, source=EXTENDS_S3)
 
-    def _name_ellipse(self, d: Declaration, *, wants: Wants, loads: Loads, modulus: Any, radius: Any) -> None:
-        """Name what the contact of a crowned roller is computed with."""
+    def _name_ellipse(self, d: Declaration, *, wants: Wants, loads: Loads, modulus: Any, radius: Any) -> Any:
+        """Name what the contact of a crowned roller is computed with; half the length of the ellipse [m]."""
         share = radius / wants.crown_radius
         half = hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius)
         for name, unit, value, symbol, text in (
@@ -879,18 +725,10 @@ class RollerCoupling(DesignProblem):
             ("ellipticity", "-", hertz.ellipticity(share), "k_e", "Long over short axis of the contact ellipse"),
             ("contact_half_length", "mm", half, "a_y", "Half length of the contact ellipse along the roller"),
         ):
-            d.step(name, unit, value, symbol=symbol, text=text, source="Hamrock and Brewe (1983)")
+            d.step(name, unit, value, symbol=symbol, text=text, source=ELLIPSE)
+        return half
 
-    def _declare_remarks(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, guide: str) -> None:
-        offset, material = wants.effective_offset, unknowns.material
-        for name, unit, value, symbol, text in (
-            ("plastic_modulus", "GPa", PLASTIC_MODULUS / 1e9, "E_plastic", "Modulus below which a float is of plastic"),
-            ("plastic_pressure", "N/mm2", PLASTIC_PRESSURE / 1e6, "p_plastic", "Pressure above which plastics creep"),
-        ):
-            d.constant(name, unit, value, symbol=symbol, text=text, source=TYPICAL)
-        text = "Static limit of a line contact"
-        static = formulas.STATIC_CONTACT_LIMIT / 1e6
-        d.constant("static_contact_limit", "N/mm2", static, symbol="p_static", text=text, source="ISO 76")
+    def _remark_on_duty(self, d: Declaration, *, wants: Wants, guide: str) -> None:
         if guide != "roller":
             d.advise(f"{guide}_guide", True, GUIDES[guide], source=f"{S3}, chapter X")
         d.advise(
@@ -907,10 +745,20 @@ class RollerCoupling(DesignProblem):
         )
         d.advise(
             "same_balls_loaded",
-            offset <= 0,
+            wants.effective_offset <= 0,
             "without offset the same balls stay loaded (false brinelling); a slight offset does the bearings good",
             source=f"{S3}, chapter XI",
         )
+
+    def _remark_on_design(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> None:
+        offset, material = wants.effective_offset, unknowns.material
+        for name, unit, value, symbol, text in (
+            ("plastic_modulus", "GPa", PLASTIC_MODULUS / 1e9, "E_plastic", "Modulus below which a float is of plastic"),
+            ("plastic_pressure", "N/mm2", PLASTIC_PRESSURE / 1e6, "p_plastic", "Pressure above which plastics creep"),
+        ):
+            d.constant(name, unit, value, symbol=symbol, text=text, source=TYPICAL)
+        text, static = "Static limit of a line contact", formulas.STATIC_CONTACT_LIMIT
+        d.constant("static_contact_limit", "N/mm2", static / 1e6, symbol="p_static", text=text, source="ISO 76")
         d.advise(
             "plastic_creeps",
             np.logical_and(material.E < PLASTIC_MODULUS, d.derived["hertz_pressure"].sx > PLASTIC_PRESSURE),
@@ -919,7 +767,7 @@ class RollerCoupling(DesignProblem):
         )
         d.advise(
             "hertz_capped",
-            material.hertz_allow > formulas.STATIC_CONTACT_LIMIT,
+            material.hertz_allow > static,
             "hertz allow of this material is capped at 4000 N/mm2, the static limit of ISO 76",
             source="ISO 76",
         )

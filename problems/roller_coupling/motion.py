@@ -123,6 +123,15 @@ def _derivative(values: np.ndarray, order: int) -> np.ndarray:
     return np.concatenate([result, result[:1]])
 
 
+def _second_guide(first: np.ndarray, second_axis: np.ndarray, guide_angle: float) -> np.ndarray:
+    """Directions of guide II, which lies across shaft 2 and at the angle chi from guide I."""
+    shadow = first - _dot(first, second_axis)[:, None] * second_axis
+    along = math.cos(guide_angle) / np.sqrt(_dot(shadow, shadow))
+    level = _unit(shadow)
+    second: np.ndarray = along[:, None] * level + np.sqrt(1 - along**2)[:, None] * np.cross(second_axis, level)
+    return second
+
+
 def turn(
     offset: float,
     float_distance: float = 0.0,
@@ -165,11 +174,7 @@ def turn(
     first_axis = np.array([0.0, 0.0, 1.0])
     second_axis = np.array([0.0, math.sin(shaft_angle), math.cos(shaft_angle)])
     first = np.stack([np.cos(psi), np.sin(psi), zero], axis=1)
-    # Guide II lies across shaft 2 and at the angle chi from guide I.
-    shadow = first - _dot(first, second_axis)[:, None] * second_axis
-    reach = np.sqrt(_dot(shadow, shadow))
-    along = math.cos(guide_angle) / reach
-    second = along[:, None] * _unit(shadow) + np.sqrt(1 - along**2)[:, None] * np.cross(second_axis, _unit(shadow))
+    second = _second_guide(first, second_axis, guide_angle)
     normal = _unit(np.cross(first, second))
     # Both guides lie in one plane: the way between the arm centres has no part across the float.
     start = np.array([offset, 0.0, -float_distance])
