@@ -20,7 +20,7 @@ from ...sources import DRIVE
 from ..lining import wear
 from ..shaft.model import declare_shaft, name_boss, shaft_for
 from .model import BuiltPack
-from .requirements import FLATNESS, BodyRequirements, PackBodyRequirements, PackRules, PistonPackRules
+from .requirements import FLATNESS, BodyRequirements, OilRules, PackBodyRequirements, PackRules, PistonPackRules
 
 PARTS = {  # symbol and meaning of the masses around a pack
     "end_plate_mass": ("m_end", "What the end plates are thicker than the cores"),
@@ -78,6 +78,7 @@ class PackHousing:
         """Declare the requirements that rules for packs go by."""
         least = 0.05 if self.lubrication == "oil" else 0.3
         most = self.friction_surfaces_max[self.lubrication]
+        self.oil = d.block(OilRules) if self.lubrication == "oil" else None
         return d.block(self.rules, friction_surfaces_max=most, release_gap_min=least)
 
     def complete(self, built: BuiltPack) -> Body:
@@ -241,7 +242,7 @@ def declare_body(d: Declaration, built: BuiltPack, body: Body) -> None:
     )
 
 
-def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules) -> None:
+def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules, oil: OilRules | None) -> None:
     """Declare the limits that an engineer adds to a pack."""
     duty, wants, ring, pair, pack = built.duty, built.wants, built.ring, built.pair, built.pack
     across = 2 * ring.outer_radius
@@ -312,14 +313,23 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         "be judged",
         source=UNSOURCED,
     )
-    heating = built.start.friction_work * duty.engagements_per_hour + power
+    _limit_mean_temperature(d, built, built.start.friction_work * duty.engagements_per_hour + power, oil)
+    if rules.wear_life_min is not None:
+        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+
+
+def _limit_mean_temperature(d: Declaration, built: BuiltPack, heating: Any, oil: OilRules | None) -> None:
+    """Declare what lining, plates and oil stand of a mean heating [W]."""
+    duty, pair = built.duty, built.pair
+    rise = heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, built.size.cooled_area)
     d.at_most(
         "mean_temperature",
-        heat.mean_temperature_rise(heating, 1.0, duty.heat_transfer, built.size.cooled_area),
+        rise,
         pair.linings.mean_temperature(pair.part, pair.part.optional("temp_continuous")) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature, drag included",
         source="Neale, Tribology Handbook, Table 7.4",
     )
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    if oil is not None:
+        most, text = oil.oil_temperature_limit - duty.ambient_temperature, "The oil in the pack does not age"
+        d.at_most("oil_temperature", rise, most, "K", text=text, source=UNSOURCED)

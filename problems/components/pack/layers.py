@@ -115,7 +115,7 @@ class Ruled(WithBody):
     def declare_body(self, d: Declaration, built: BuiltPack) -> None:
         """Declare the complete clutch, and limits by the rules."""
         super().declare_body(d, built)
-        body.declare_rules(d, built, self.housing.complete(built), self._rules)
+        body.declare_rules(d, built, self.housing.complete(built), self._rules, self.housing.oil)
 
 
 class RuledComplete(Ruled, Complete):

@@ -280,6 +280,22 @@ class PracticePackRequirements(PackRequirements):
         return self.drag_speed
 
 
+class OilRules(Block):
+    """Rules for packs in oil, all in SI."""
+
+    group = "practice"
+
+    oil_temperature_limit = Requirement(
+        "degC",
+        120,
+        lower=0,
+        upper=250,
+        symbol="T_oil_max",
+        text=f"Largest mean temperature of the oil in the pack, above which it ages ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
 class PackRules(Block):
     """Rules for packs, all in SI."""
 
