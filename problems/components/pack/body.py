@@ -250,14 +250,14 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         "surfaces_practice", pack.surfaces, rules.friction_surfaces_max, "-", text="So many plates are built",
         source="flott.de, disk clutch: up to 20 discs; makers of dry clutches stop at 6 to 8",
     )  # fmt: skip
-    d.at_most(
-        "core_slenderness",
-        across / np.minimum(pack.inner_thickness, pack.outer_thickness),
-        rules.core_slenderness_max,
-        "-",
-        text="The cores are thick enough to stay flat",
-        source=f"{UNSOURCED}; {FLATNESS}",
-    )
+    lined, bare, text = rules.core_slenderness_max, rules.plate_slenderness_max, "thick enough to stay flat"
+    lining = pair.part.lining_thickness if pack.plates.lining_thickness is None else pack.plates.lining_thickness
+    for name, thickness, most, what in (
+        ("core_slenderness", pack.outer_thickness, np.where(lining > 0, lined, bare), "cores"),
+        ("plate_slenderness", pack.inner_thickness, bare, "steel plates"),
+    ):
+        source = f"{UNSOURCED}; {FLATNESS}"
+        d.at_most(name, across / thickness, most, "-", text=f"The {what} are {text}", source=source)
     rules.limit_stroke(d, stroke=body.stroke, ring=ring)
     if duty.plate_gap is not None:
         d.at_least(
