@@ -172,11 +172,11 @@ class ConeRules(Block):
     )
     pressure_use_min = Requirement(
         "-",
-        0.2,
+        0.3,
         lower=0,
         upper=1,
         symbol="u_p_min",
-        text="Least share of the allowed pressure that is used while the cones engage (car discs: 0.35 to 0.5)",
+        text="Least share of the practical pressure that is used while the cones engage (car discs: 0.6 to 1)",
         source=UNSOURCED,
     )
     wear_life_min = replace(wear.LEAST_LIFE, text="Least engagements until the lining is worn")

@@ -25,6 +25,7 @@ class Sources:
     linings: ClassVar[type[Makers]] = Makers
     mass_of: ClassVar[str] = "Both shells and the lining, times the mass factor of the layout"
     along: ClassVar[str] = "Length of the cone and what the layout adds to it"
+    take_up = "soft"  # default of the option
     pull_max: Any = None  # pull over spring force; None where the cones must come apart by themselves
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
@@ -95,6 +96,8 @@ class Ruled(WithBody):
         super().__init__(d, duty)
         self._rules = body.declare_cone_rules(d)
         self.pull_max = self._rules.pull_max
+        if self.pull_max is None:
+            self.take_up = "any"  # soft linings hold cones fast
 
     def judge_angle(self, d: Declaration, shape: Cone) -> None:
         """Leave angles to the limits of the rules."""

@@ -60,13 +60,23 @@ class DiscRules(Block):
         text="Run-out of a disc, half of which the release gap must exceed",
         source=RUNOUT,
     )
+    discs_max = Requirement(
+        "-",
+        1,
+        lower=1,
+        upper=2,
+        symbol="n_d_max",
+        text=f"Most discs: the plate between two needs a release of its own ({UNSOURCED}; 10 of 12 units compared have "
+        "one)",
+        source=UNSOURCED,
+    )
     pressure_use_min = Requirement(
         "-",
-        0.2,
+        0.3,
         lower=0,
         upper=1,
         symbol="u_p_min",
-        text="Least share of the allowed pressure that is used (linings of car discs: 0.35 to 0.5)",
+        text="Least share of the practical pressure that is used (linings of car discs: 0.6 to 1)",
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
@@ -190,6 +200,8 @@ def declare_body(d: Declaration, discs: Discs, body: DiscBody) -> None:
 def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
     """Declare the limits that an engineer adds to discs."""
     ring, pair = discs.ring, discs.pair
+    text = "So many discs are built"
+    d.at_most("discs_practice", discs.pack.discs, rules.discs_max, "-", text=text, source=UNSOURCED)
     d.at_least(
         "pressure_plate_stiffness",
         discs.pack.plate_thickness,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.declaration import Block, Declaration, Part, Requirement
+from synth.declaration import Block, Declaration, Option, Part, Requirement
 
 from ...practice import UNSOURCED
 
@@ -17,8 +17,8 @@ UNLIMITED = 1e4  # K, above what any surface stands
 class Makers:
     """What linings stand by their makers."""
 
-    def __init__(self, d: Declaration, allow_obsolete: str) -> None:
-        """Declare what is asked of linings."""
+    def __init__(self, d: Declaration, allow_obsolete: str, take_up: str = "any") -> None:
+        """Declare what is asked of linings; take_up is the usual one of the family."""
         self.allow_obsolete = allow_obsolete
 
     def conditions(self, d: Declaration) -> list[str]:
@@ -57,6 +57,13 @@ class LiningRules(Block):
 
     group = "practice"
 
+    take_up = Option(
+        ("soft", "medium", "any"),
+        symbol="take",
+        text="How the torque may set in: soft: organic linings; medium: sintered metal too; any: also ceramic and bare "
+        "metal, which grab",
+        source=UNSOURCED,
+    )
     edge_pressure_ratio = Requirement(
         "-",
         lower=0.1,
@@ -72,15 +79,18 @@ class LiningRules(Block):
 class Practice(Makers):
     """What linings stand in practice, as far as their table tells; by their makers where it does not."""
 
-    def __init__(self, d: Declaration, allow_obsolete: str) -> None:
+    def __init__(self, d: Declaration, allow_obsolete: str, take_up: str = "any") -> None:
         super().__init__(d, allow_obsolete)
-        self._rules = d.block(LiningRules)
+        self._rules = d.block(LiningRules, take_up=take_up)
 
     def conditions(self, d: Declaration) -> list[str]:
-        """Conditions on rows that leave out historical linings too, where the table has a status."""
+        """Conditions on rows that leave out historical linings and those that grab too, where the table tells."""
         conditions = super().conditions(d)
         if self.allow_obsolete == "no" and d.has_column("friction_materials", "status"):
             conditions.append("status in ('current', '')")  # a row of one's own need not say that it is current
+        harder = {"soft": "('medium', 'harsh')", "medium": "('harsh')"}.get(self._rules.take_up)
+        if harder and d.has_column("friction_materials", "take_up"):
+            conditions.append(f"take_up not in {harder}")
         return conditions
 
     def pressure(self, part: Part) -> Any:

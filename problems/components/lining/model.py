@@ -35,6 +35,7 @@ def declare_friction_pair(
     duty: Duty,
     lubrication: str | None,
     linings: type[Makers],
+    take_up: str = "any",
 ) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
@@ -50,6 +51,8 @@ def declare_friction_pair(
         dry or oil; None accepts both.
     linings : subclass of Makers
         What linings stand, with further conditions on their rows.
+    take_up : str
+        Default of the option of this name.
 
     Returns
     -------
@@ -57,7 +60,7 @@ def declare_friction_pair(
         The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
     """
     conditions = [*suited, f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')"]
-    stand = linings(d, duty.allow_obsolete)
+    stand = linings(d, duty.allow_obsolete, take_up)
     conditions += stand.conditions(d)
     part = d.part(
         "friction_pair",

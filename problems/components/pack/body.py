@@ -21,7 +21,7 @@ from ...sources import DRIVE
 from ..lining import wear
 from ..shaft.model import declare_shaft, name_boss, shaft_for
 from .model import BuiltPack
-from .requirements import FLATNESS, BodyRequirements, PackBodyRequirements, PackRules, PistonPackRules
+from .requirements import FLATNESS, BodyRequirements, OilRules, PackBodyRequirements, PackRules, PistonPackRules
 
 PARTS = {  # symbol and meaning of the masses around a pack
     "end_plate_mass": ("m_end", "What the end plates are thicker than the cores"),
@@ -80,6 +80,7 @@ class PackHousing:
         """Declare the requirements that rules for packs go by."""
         least = 0.05 if self.lubrication == "oil" else 0.3
         most = self.friction_surfaces_max[self.lubrication]
+        self.oil = d.block(OilRules) if self.lubrication == "oil" else None
         return d.block(self.rules, friction_surfaces_max=most, release_gap_min=least)
 
     def complete(self, built: BuiltPack) -> Body:
@@ -246,7 +247,7 @@ def declare_body(d: Declaration, built: BuiltPack, body: Body) -> None:
     )
 
 
-def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules) -> None:
+def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules, oil: OilRules | None) -> None:
     """Declare the limits that an engineer adds to a pack."""
     duty, wants, ring, pair, pack = built.duty, built.wants, built.ring, built.pair, built.pack
     across = 2 * ring.outer_radius
@@ -254,14 +255,14 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         "surfaces_practice", pack.surfaces, rules.friction_surfaces_max, "-", text="So many plates are built",
         source="flott.de, disk clutch: up to 20 discs; makers of dry clutches stop at 6 to 8",
     )  # fmt: skip
-    d.at_most(
-        "core_slenderness",
-        across / np.minimum(pack.inner_thickness, pack.outer_thickness),
-        rules.core_slenderness_max,
-        "-",
-        text="The cores are thick enough to stay flat",
-        source=f"{UNSOURCED}; {FLATNESS}",
-    )
+    lined, bare, text = rules.core_slenderness_max, rules.plate_slenderness_max, "thick enough to stay flat"
+    lining = pair.part.lining_thickness if pack.plates.lining_thickness is None else pack.plates.lining_thickness
+    for name, thickness, most, what in (
+        ("core_slenderness", pack.outer_thickness, np.where(lining > 0, lined, bare), "cores"),
+        ("plate_slenderness", pack.inner_thickness, bare, "steel plates"),
+    ):
+        source = f"{UNSOURCED}; {FLATNESS}"
+        d.at_most(name, across / thickness, most, "-", text=f"The {what} are {text}", source=source)
     rules.limit_stroke(d, stroke=body.stroke, ring=ring)
     if duty.plate_gap is not None:
         d.at_least(
@@ -317,14 +318,23 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         "be judged",
         source=UNSOURCED,
     )
-    heating = built.start.friction_work * duty.engagements_per_hour + power
+    _limit_mean_temperature(d, built, built.start.friction_work * duty.engagements_per_hour + power, oil)
+    if rules.wear_life_min is not None:
+        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+
+
+def _limit_mean_temperature(d: Declaration, built: BuiltPack, heating: Any, oil: OilRules | None) -> None:
+    """Declare what lining, plates and oil stand of a mean heating [W]."""
+    duty, pair = built.duty, built.pair
+    rise = built.mean_rise(heating, 1.0)
     d.at_most(
         "mean_temperature",
-        built.mean_rise(heating, 1.0),
+        rise,
         pair.linings.mean_temperature(pair.part, pair.part.optional("temp_continuous")) - duty.ambient_temperature,
         "K",
         text="The lining stands the mean temperature, drag included",
         source="Neale, Tribology Handbook, Table 7.4",
     )
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    if oil is not None:
+        most, text = oil.oil_temperature_limit - duty.ambient_temperature, "The oil in the pack does not age"
+        d.at_most("oil_temperature", rise, most, "K", text=text, source=UNSOURCED)

@@ -24,7 +24,7 @@ class Sources:
     kind: ClassVar[type[DutyOfPlates]] = DutyOfPlates
     pack: ClassVar[type[PackRequirements]] = PackRequirements
     linings: ClassVar[type[Makers]] = Makers
-    ratio_min: ClassVar[float] = 0.10
+    ratio_min = 0.10
     mass_of: ClassVar[str] = "Plates with linings"
     along: ClassVar[str] = "Length of the released pack, without actuator and end stops"
     objectives: ClassVar[tuple[str, ...]] = ("mass", "actuation_force")  # by default
@@ -102,11 +102,11 @@ class Ruled(WithBody):
     kind = DutyOfPack
     pack = PracticePackRequirements
     linings = Practice
-    ratio_min = 0.15
     objectives = ("mass", "length")
 
     def __init__(self, d: Declaration, housing: type[body.PackHousing], lubrication: str, required: Any) -> None:
         super().__init__(d, housing, lubrication, required)
+        self.ratio_min = 0.08 if lubrication == "oil" else 0.15
         self._rules = self.housing.declare_rules(d)
 
     def judge_temperature(self, d: Declaration, built: BuiltPack) -> None:
@@ -115,7 +115,7 @@ class Ruled(WithBody):
     def declare_body(self, d: Declaration, built: BuiltPack) -> None:
         """Declare the complete clutch, and limits by the rules."""
         super().declare_body(d, built)
-        body.declare_rules(d, built, self.housing.complete(built), self._rules)
+        body.declare_rules(d, built, self.housing.complete(built), self._rules, self.housing.oil)
 
 
 class RuledComplete(Ruled, Complete):

@@ -280,6 +280,22 @@ class PracticePackRequirements(PackRequirements):
         return self.drag_speed
 
 
+class OilRules(Block):
+    """Rules for packs in oil, all in SI."""
+
+    group = "practice"
+
+    oil_temperature_limit = Requirement(
+        "degC",
+        120,
+        lower=0,
+        upper=250,
+        symbol="T_oil_max",
+        text=f"Largest mean temperature of the oil in the pack, above which it ages ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
 class PackRules(Block):
     """Rules for packs, all in SI."""
 
@@ -295,11 +311,22 @@ class PackRules(Block):
     )
     core_slenderness_max = Requirement(
         "-",
-        100,
+        150,
         lower=20,
         upper=1000,
         symbol="lambda_max",
-        text=f"Largest outer diameter of the ring over thickness of a core ({UNSOURCED}; flatness, {FLATNESS})",
+        text="Largest outer diameter of the ring over thickness of a lined core (111 plates: median 133; flatness, "
+        f"{FLATNESS})",
+        source=UNSOURCED,
+    )
+    plate_slenderness_max = Requirement(
+        "-",
+        110,
+        lower=20,
+        upper=1000,
+        symbol="lambda_pl_max",
+        text="Largest outer diameter of the ring over thickness of a bare steel plate, which heat cones (median 71; a "
+        "tenth above 106)",
         source=UNSOURCED,
     )
     drag_ratio_max = Requirement(

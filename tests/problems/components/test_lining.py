@@ -145,3 +145,32 @@ def test_centrifugal_linings_have_a_mean_pressure_beside_that_of_the_edge():
     assert found.values["surface_pressure"] == pytest.approx(found.values["clamp_force"] / area, rel=1e-9)
     assert allowed(found, "surface_pressure") == pytest.approx(0.5e6, rel=1e-12)
     assert allowed(found, "lining_pressure") == pytest.approx(0.7e6, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("family", "options", "take_up"),
+    [
+        ("disc_clutch", {}, "soft"),
+        ("cone_clutch", {}, "soft"),
+        ("cone_clutch", {"cone_release": "self"}, "any"),  # soft linings hold cones fast
+        ("multi_plate_clutch", {}, "any"),
+        ("electromagnetic_clutch", {"pack": "disc"}, "any"),
+        ("centrifugal_lever", {}, "any"),
+    ],
+)
+def test_discs_and_cones_take_up_softly(family, options, take_up):
+    assert {o["name"]: o["default"] for o in rows_of(family, options)}["take_up"] == take_up
+
+
+def rows_of(family, options):
+    return synth.describe(synth.load(family, **options)).to_dict("records")
+
+
+def test_one_disc_is_built_unless_two_are_asked_for():
+    assert allowed(disc(), "discs_practice") == 1
+    assert allowed(disc(requirements={"discs_max": 2}), "discs_practice") == 2
+
+
+def test_oil_ages_before_lining_and_steel_give_way():
+    assert allowed(pack(), "oil_temperature") == pytest.approx(80, rel=1e-12)
+    assert allowed(pack(), "oil_temperature") < allowed(pack(), "mean_temperature")

@@ -57,7 +57,7 @@ PARTS = {
     },
     "disc": {"friction_pair": "sinter_bronze_dry", "winding_wire": "Cu 0.45 class 155"},
 }
-PACK_RULES = {"surfaces_practice", "core_slenderness", "hub_room", "drag_ratio"}
+PACK_RULES = {"surfaces_practice", "core_slenderness", "plate_slenderness", "hub_room", "drag_ratio"}
 MAGNET_RULES = {
     "pull_in_worn",
     "rise_time",
@@ -162,7 +162,8 @@ BINDING = [
     ("coil_in_oil", SHORT, "oil_temperature_limit", "60 degC", "150 degC"),
     ("pull_in_worn", SHORT, "pull_in_margin", 1.3, 1.02),
     ("surfaces_practice", SHORT | {"friction_surfaces": 14}, "friction_surfaces_max", 12, 14),
-    ("core_slenderness", SHORT, "core_slenderness_max", 70, 80),
+    ("core_slenderness", SHORT, "plate_slenderness_max", 70, 80),  # steel on steel: no plate is lined
+    ("plate_slenderness", SHORT, "plate_slenderness_max", 70, 80),
     ("drag_ratio", SHORT, "drag_ratio_max", 0.001, 1),
     ("hub_room", SHORT, "shaft_diameter", "43 mm", "42 mm"),
     ("release_clearance", SHORT, "release_gap_min", "0.4 mm", "0.2 mm"),
