@@ -16,8 +16,6 @@ ASKED_BY = {
     "driven_inertia": START,
 }  # first come, first served
 
-BOTH_WAYS = {OVERRUN: "drives both ways; use wrap_spring"}
-
 
 def declare_kind(d: Declaration, usual: str, refused: Mapping[str, str]) -> str:
     """Declare the option duty and return the kind that is asked for.

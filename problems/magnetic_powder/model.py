@@ -14,7 +14,7 @@ from synth.declaration import Choice, Declaration, Part, Requirement
 from .. import friction, practice
 from ..components.coil import model as coil_blocks
 from ..duty import WORDS, Drive, coverage, refuse_contradictions
-from ..duty.kinds import BOTH_WAYS, CONTINUOUS_SLIP, COUPLING, START, declare_kind
+from ..duty.kinds import CONTINUOUS_SLIP, COUPLING, OVERRUN, START, declare_kind
 from ..mechanics import heat, magnetics
 from ..sources import LIST_S1, S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
@@ -230,7 +230,7 @@ class MagneticPowderClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        wants = d.block(WANTS[declare_kind(d, CONTINUOUS_SLIP, BOTH_WAYS)])
+        wants = d.block(WANTS[declare_kind(d, CONTINUOUS_SLIP, {OVERRUN: coverage.BOTH_WAYS})])
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
         iron = coil_blocks.declare_coil_requirements(d)

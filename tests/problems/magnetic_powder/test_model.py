@@ -419,6 +419,6 @@ def test_a_coupling_has_no_heat_of_slip():
 
 def test_what_drives_both_ways_does_not_overrun():
     overrun = synth.load("magnetic_powder_clutch", duty="overrun")
-    with pytest.raises(NotCoveredError, match="another family: this one drives both ways; use wrap_spring") as told:
+    with pytest.raises(NotCoveredError, match="another family: this one drives both ways: use wrap_spring") as told:
         synth.synthesize(overrun, BASE)
     assert str(pickle.loads(pickle.dumps(told.value))) == str(told.value)
