@@ -144,6 +144,18 @@ class RefusedError(InputError):
     """What a family refuses by its declaration: every word is understood, but nothing can be asked so."""
 
 
+class NotCoveredError(InputError):
+    """What a family cannot serve; ``reason`` says why, as a predicate, and what does."""
+
+    def __init__(self, field: str, value: object, reason: str, path: tuple[Key, ...] = ()) -> None:
+        super().__init__(field, value, f"another family: this one {reason}", path)
+        self.reason = reason
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, tuple[Key, ...]]]:
+        """Pickle by the four arguments."""
+        return type(self), (self.field, self.value, self.reason, self.path)
+
+
 class ExtraNeededError(InputError):
     """What was asked needs packages that come with an extra and are not installed.
 

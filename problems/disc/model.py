@@ -47,7 +47,7 @@ class DiscClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
-    declines = coverage.ENGAGED
+    declines = coverage.ENGAGED_DRY
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -77,7 +77,7 @@ class ElectromagneticClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap")
-    declines = coverage.ENGAGED
+    declines = coverage.ENGAGED_IN_PACKS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

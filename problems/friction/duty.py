@@ -33,8 +33,8 @@ COMMON = (
 )
 
 
-class Duty(Start):
-    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+class Starting(Start):
+    """What is asked of the start of a load, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
 
@@ -45,6 +45,53 @@ class Duty(Start):
         text="reactive: the load only resists, still until the clutch moves it; active: it acts from the start",
         source=f"{S1}, hoisted weight",
     )
+    driven_inertia = Requirement(
+        "kg*m2",
+        lambda duty: duty.inertia_of_machine,
+        lower=1e-6,
+        upper=1e5,
+        symbol="J2",
+        text="Driven inertia at the clutch shaft; by default that of the machine",
+        source=f"{S1}, J2",
+        follows=True,
+    )
+    engagements_per_hour = Requirement(
+        "1/h", 50, lower=0.001, upper=36000, symbol="nu_h", text="Switching rate", source=f"{S1}, m_k"
+    )
+    slip_time_limit = Requirement(
+        "s",
+        4,
+        lower=0.01,
+        upper=600,
+        symbol="t_slip_max",
+        text="Longest slip of one engagement",
+        source=f"{TYPICAL} of the reference model",
+    )
+    jerk_limit = Requirement(
+        "rad/s3",
+        lower=0.01,
+        upper=1e6,
+        optional=True,
+        symbol="jerk_max",
+        text="Largest jerk of the driven side: softness of the start",
+        source="requirement of the drive",
+    )
+    acceleration_limit = Requirement(
+        "rad/s2",
+        lower=0.01,
+        upper=1e6,
+        optional=True,
+        symbol="acc_max",
+        text="Largest acceleration, at the end of the ramp or of slip",
+        source="requirement of the drive",
+    )
+
+
+class Duty(Starting):
+    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+
+    group = "duty"
+
     friction_basis = Option(
         ("nominal", "worst_case"),
         "nominal",
@@ -63,16 +110,6 @@ class Duty(Start):
         source="table friction_materials",
         group="practice",
     )
-    driven_inertia = Requirement(
-        "kg*m2",
-        lambda duty: duty.inertia_of_machine,
-        lower=1e-6,
-        upper=1e5,
-        symbol="J2",
-        text="Driven inertia at the clutch shaft; by default that of the machine",
-        source=f"{S1}, J2",
-        follows=True,
-    )
     switching_factor = Requirement(
         "-",
         1.0,
@@ -84,9 +121,6 @@ class Duty(Start):
     )
     speed_factor = Requirement(
         "-", 0.85, lower=0.5, upper=1.5, symbol="c_v", text="Sliding-speed factor", source=f"{S1}, c_v"
-    )
-    engagements_per_hour = Requirement(
-        "1/h", 50, lower=0.001, upper=36000, symbol="nu_h", text="Switching rate", source=f"{S1}, m_k"
     )
     startup_torque = Requirement(
         "N*m",
@@ -135,33 +169,6 @@ class Duty(Start):
         text="Largest length, without actuator and end stops",
         source="requirement of the drive",
         group="envelope",
-    )
-    slip_time_limit = Requirement(
-        "s",
-        4,
-        lower=0.01,
-        upper=600,
-        symbol="t_slip_max",
-        text="Longest slip of one engagement",
-        source=f"{TYPICAL} of the reference model",
-    )
-    jerk_limit = Requirement(
-        "rad/s3",
-        lower=0.01,
-        upper=1e6,
-        optional=True,
-        symbol="jerk_max",
-        text="Largest jerk of the driven side: softness of the start",
-        source="requirement of the drive",
-    )
-    acceleration_limit = Requirement(
-        "rad/s2",
-        lower=0.01,
-        upper=1e6,
-        optional=True,
-        symbol="acc_max",
-        text="Largest acceleration, at the end of the ramp or of slip",
-        source="requirement of the drive",
     )
     ambient_temperature = Requirement(
         "degC",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..mechanics import heat, plates, startup
 from ..sources import PRACTICE, S0, S1
-from .duty import Duty, DutyInRows
+from .duty import Duty, DutyInRows, Starting
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration
@@ -21,6 +21,7 @@ class Torques:
 
     ramp_low: Any
     ramp_high: Any
+    apart: bool = False  # whether the one differs from the other
 
 
 def declare_torque(
@@ -78,7 +79,9 @@ def declare_torque(
         )
     given = duty.startup_torque
     torques = Torques(
-        ramp_low=torque_low if given is None else given, ramp_high=torque_high if given is None else given
+        ramp_low=torque_low if given is None else given,
+        ramp_high=torque_high if given is None else given,
+        apart=given is None and duty.friction_basis == "worst_case",
     )
     d.derive(
         "ramp_torque",
@@ -105,15 +108,6 @@ def declare_torque(
             text="The clutch can deliver the start-up torque",
             source=f"{S1}, start-up and sizing linked",
         )
-    d.at_least(
-        "never_starts",
-        torques.ramp_low,
-        duty.load_torque,
-        "N*m",
-        guard=True,
-        text="The start-up torque is above the load torque; otherwise the clutch slips for ever",
-        source=f"{S1}, start-up",
-    )
     d.advise(
         "static_hold",
         plates.static_hold(torque_low, pair.part.optional("mu_static"), pair.part.mu_dynamic, duty.load_torque) < 1.2,
@@ -147,14 +141,14 @@ class Startup:
     peak_slip_power: Any
 
 
-def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: Any) -> Startup:
+def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_time: Any) -> Startup:
     """Declare friction work, slip time, power, jerk and acceleration of the start-up with their limits.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    duty : Duty
+    duty : Starting
         Block duty.
     torques : Torques
         Torques at the end of the ramp.
@@ -166,6 +160,15 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
     Startup
         Friction work, slip time and peak slip power.
     """
+    d.at_least(
+        "never_starts",
+        torques.ramp_low,
+        duty.load_torque,
+        "N*m",
+        guard=True,
+        text="The start-up torque is above the load torque; otherwise the clutch slips for ever",
+        source=f"{S1}, start-up",
+    )
     low = (torques.ramp_low, duty.load_torque, duty.driven_inertia, duty.driver_speed, ramp_time, duty.load_kind)
     high = (torques.ramp_high, *low[1:])
     work = d.derive(
@@ -257,7 +260,7 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
     return Startup(work, slip_time, power)
 
 
-def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: Any) -> None:
+def _name_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_time: Any) -> None:
     """Name what friction work, slip time and slip power are made of; T_k is M_k_max where worst_case asks for it."""
     load, inertia, speed = duty.load_torque, duty.driven_inertia, duty.driver_speed
     low, high = torques.ramp_low, torques.ramp_high
@@ -290,7 +293,7 @@ def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: An
         name("ramp_lock_time", "s", locked, "t_lock", "Time until lock-up, if inside the ramp")
         slip_speed = speed - startup.lowest_driven_speed(high, load, inertia, ramp_time)
         name("greatest_slip_speed", "rad/s", slip_speed, "omega_slip", "Slip speed when the load begins to be lifted")
-    if duty.friction_basis == "worst_case" and duty.startup_torque is None:
+    if torques.apart:
         text = "Torque that the load leaves for acceleration with the friction that is feared"
         name("greatest_excess_torque", "N*m", high - load, "M_ex_max", text)
     root = startup.peak_power_root(high, load, inertia, slip_speed, ramp_time)

@@ -43,8 +43,18 @@ CASES = {
             "default": SOURCES,
             "practice": {"practice": "on"},
             "practice_parts": {"practice": "on", "mass_scope": "parts"},
+            "start": {"practice": "on", "duty": "start"},
+            "coupling": {"practice": "on", "duty": "coupling"},
         },
         requirements=WINDER,
+        needed={
+            "duty=start": {
+                "driven_inertia": "0.4 kg*m2",
+                "clutch_side_inertia": "0.398 kg*m2",  # nearly all; with the optional requirements a mass is lifted
+                "jerk_limit": "9000 rad/s3",
+                "acceleration_limit": "90 rad/s2",
+            }
+        },
         optional={**load_of(30), "outer_diameter_limit": "280 mm", "length_limit": "160 mm"},
         feasible={
             "winder": Case(

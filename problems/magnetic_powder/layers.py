@@ -12,6 +12,7 @@ from synth.declaration import Block, Declaration, Part, Requirement
 from .. import cost
 from ..components.coil import model as coil_blocks
 from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
+from ..duty import Start
 from ..mechanics import centrifugal
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
@@ -39,8 +40,8 @@ class Bore(Block):
     )
 
 
-class PowderRules(coil_blocks.CoilRules):
-    """Rules for powder clutches, all in SI."""
+class Rise(Block):
+    """How soon the torque is there, all in SI."""
 
     group = "practice"
 
@@ -53,6 +54,13 @@ class PowderRules(coil_blocks.CoilRules):
         text="Longest rise of the current (ten units; a maker's torque rises in 0.17 to 0.26 s)",
         source=f"{UNSOURCED}; {S4}, check X11",
     )
+
+
+class PowderRules(coil_blocks.CoilRules):
+    """Rules for powder clutches, all in SI."""
+
+    group = "practice"
+
     spread_acceleration = Requirement(
         "-",
         5,
@@ -93,7 +101,7 @@ class Sized:
 
 @dataclass(frozen=True)
 class Built:
-    """Powder clutch that is declared; ``slip_heat``: of continuous slip [W]."""
+    """Powder clutch that is declared; ``slip_heat`` [W]: None where it does not slip."""
 
     iron: coil_blocks.CoilRequirements
     unknowns: coil_blocks.CoilUnknowns
@@ -112,9 +120,12 @@ class Sources:
     objectives: ClassVar[tuple[str, ...]] = ("coil_power", "input_inertia")  # where the question names none
     cooling: ClassVar[str] = "still_air"  # by default
 
+    ruled: ClassVar[bool] = False
+
     def __init__(self, d: Declaration, wants: Wants) -> None:
-        """Declare the bore of the rotor."""
+        """Declare the bore of the rotor, and the rise of the torque where it counts."""
         self.wants = wants
+        self.rise = d.block(Rise) if self.ruled or isinstance(wants, Start) else None
         self.bore = self.declare_bore(d)
 
     def declare_bore(self, d: Declaration) -> Bore:
@@ -190,6 +201,7 @@ class Ruled(WithBody):
 
     # Least power and least inertia ask for ever larger bodies; with the rules of practice the supply limits power.
     objectives = ("mass", "outer_diameter")
+    ruled = True
     cooling = "finned"  # as are clutches that slip all the time
 
     def declare_cost(self, d: Declaration, built: Built) -> None:
@@ -212,14 +224,10 @@ class Ruled(WithBody):
         linkage = built.circuit.linkage(built.unknowns.flux_density)
         coil_blocks.refuse_bad_window(d, rules)
         coil_blocks.limit_coil(d, rules=rules, wants=built.iron, unknowns=built.unknowns)
-        d.at_most(
-            "rise_time",
-            coil_blocks.declare_rise_time(d, rules=rules, winding=built.winding, linkage=linkage),
-            rules.rise_time_limit,
-            "s",
-            text="The torque follows what is asked of it",
-            source=f"{UNSOURCED}; {S4}, check X11",
-        )
+        time = coil_blocks.declare_rise_time(d, rules=rules, winding=built.winding, linkage=linkage)
+        if self.rise is not None:
+            text, source = "The torque follows what is asked of it", f"{UNSOURCED}; {S4}, check X11"
+            d.at_most("rise_time", time, self.rise.rise_time_limit, "s", text=text, source=source)
         d.at_least(
             "powder_spread",
             wants.driver_speed**2 * built.circuit.layout.gap_radius,
@@ -244,17 +252,16 @@ class Ruled(WithBody):
             text="As much powder as the torque needs",
             source=UNSOURCED,
         )
-        load = d.derive(
-            "powder_load",
-            "W/kg",
-            built.slip_heat / filling,
-            symbol="p_pow",
-            text="Heat of continuous slip over mass of powder",
-            source="definition",
-        )
+        if built.slip_heat is not None:
+            self.declare_load(d, built.slip_heat / filling, rules.powder_load_limit)
+
+    def declare_load(self, d: Declaration, load: Any, limit: Any) -> None:
+        """Declare the heat of slip over the mass of powder [W/kg], and the remark above a limit."""
+        text = "Heat of slip over mass of powder"
+        load = d.derive("powder_load", "W/kg", load, symbol="p_pow", text=text, source="definition")
         d.advise(
             "powder_load",
-            load > rules.powder_load_limit,
+            load > limit,
             "the slip heats the powder more than powder load limit: its life is short, unless forced air cools the "
             "clutch",
             source=f"{UNSOURCED}; {S4} [P9]",

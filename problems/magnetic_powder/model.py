@@ -11,15 +11,16 @@ import numpy as np
 from synth import Design, DesignProblem
 from synth.declaration import Choice, Declaration, Part, Requirement
 
-from .. import practice
+from .. import friction, practice
 from ..components.coil import model as coil_blocks
 from ..duty import COOLING, WORDS, Drive, cooling, coverage, declare_gravity, of_drive, refuse_contradictions
-from ..mechanics import centrifugal, magnetics
+from ..duty.kinds import CONTINUOUS_SLIP, COUPLING, OVERRUN, START, declare_kind
+from ..mechanics import centrifugal, heat, magnetics
 from ..practice import UNSOURCED
-from ..sources import S4, SHAFT, STANDARD_GRAVITY, TYPICAL
+from ..sources import LIST_S1, S4, SHAFT, STANDARD_GRAVITY, TYPICAL
 from . import curves as powder_curves
 from . import formulas as powder
-from .layers import LAYERS, Bore, Built, Sized, Sources
+from .layers import LAYERS, Bore, Built, Rise, Sized, Sources
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,15 +63,6 @@ class Wants(Drive):
         symbol="k_M",
         text="Torque at full current over required torque",
         source=f"{S4}, section 6.1",
-    )
-    slip_speed = Requirement(
-        "1/min",
-        9.549,
-        lower=0,
-        upper=60000,
-        symbol="omega_slip",
-        text=f"Continuous slip ({TYPICAL}, 1 rad/s)",
-        source=f"{S4} [P9]",
     )
     ambient_temperature = Requirement(
         "degC",
@@ -165,6 +157,29 @@ class Wants(Drive):
     length_limit = of_drive("mm", 10, 2000, "L_max", "Largest length of the body", group="envelope")
 
 
+class Slipping(Wants):
+    """Requirements of a clutch that slips all the time, all in SI."""
+
+    group = "duty"
+
+    slip_speed = Requirement(
+        "1/min",
+        9.549,
+        lower=0,
+        upper=60000,
+        symbol="omega_slip",
+        text=f"Continuous slip ({TYPICAL}, 1 rad/s)",
+        source=f"{S4} [P9]",
+    )
+
+
+class Starting(friction.Starting, Wants):
+    """Requirements of a clutch that brings a load up to speed, all in SI."""
+
+
+WANTS = {START: Starting, COUPLING: Wants, CONTINUOUS_SLIP: Slipping}
+
+
 class MagneticPowderClutch(DesignProblem):
     """Magnetic-powder clutch with a stationary coil, or with a coil that rotates and has slip rings.
 
@@ -175,6 +190,7 @@ class MagneticPowderClutch(DesignProblem):
     name = "magnetic_powder_clutch"
     title = "Magnetic-powder clutch"
     sources = (
+        LIST_S1,
         "S4: notes on centrifugal clutches, powder clutch (coil about 50 W, 60 to 100 cm3 of carbonyl iron powder)",
         "Chen, Tian et al., Smart Mater. Struct. 22 (2013) 115036: form of the shear curve",
         "Ampere's law, Froehlich's saturation curve, steady heat balance",
@@ -187,13 +203,19 @@ class MagneticPowderClutch(DesignProblem):
         "length_limit",
         "ambient_temperature",
         "steel_density",
+        "slip_speed",
+        "driven_inertia",
+        "engagements_per_hour",
+        "slip_time_limit",
+        *coverage.SOFTNESS,
     )
-    declines = coverage.ENGAGED
+    declines, disregards = coverage.ENGAGED, ("switching_factor", "speed_factor")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        wants = d.block(Wants, cooling=layer_of.cooling)
+        kind = declare_kind(d, CONTINUOUS_SLIP, {OVERRUN: coverage.BOTH_WAYS})
+        wants = d.block(WANTS[kind], cooling=layer_of.cooling)
         cooling.refuse_unfit(d, "dry", turns=False)
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
@@ -251,7 +273,7 @@ class MagneticPowderClutch(DesignProblem):
             air_gap=coil.select({"stationary": wants.air_gap, "rotating": 0.0}),
         )
         rim = powder.rim_section_width(radius, unknowns.yoke_thickness)
-        _declare_torque(d, wants=wants, part=part, flux_density=unknowns.flux_density, layout=layout)
+        torque = _declare_torque(d, wants=wants, part=part, flux_density=unknowns.flux_density, layout=layout)
         circuit = powder.Circuit(
             layout=layout,
             rim=rim,
@@ -264,14 +286,7 @@ class MagneticPowderClutch(DesignProblem):
         ampere_turns = _declare_circuit(
             d, bore=layer.bore, iron=iron, circuit=circuit, flux_density=unknowns.flux_density, layout=layout
         )
-        slip_heat = d.derive(
-            "slip_heat",
-            "W",
-            wants.required_torque * wants.slip_speed,
-            symbol="P_slip",
-            text="Heat of continuous slip under required torque",
-            source=f"{S4} [P9]",
-        )
+        slip_heat = _declare_slip_heat(d, wants=wants, torque=torque, rise=layer.rise)
         moving = magnetics.heat_transfer_in_motion(
             iron.still_heat_transfer, wants.rotating_heat_transfer, wants.driver_speed, layout.outer_radius
         )
@@ -285,7 +300,7 @@ class MagneticPowderClutch(DesignProblem):
             temperature_limit=np.minimum(unknowns.winding_wire.insulation_temperature, part.temp_max),
             heat_transfer=transfer,
             surface=cooling.effective(d, magnetics.cylinder_surface(layout.outer_radius, layout.length)),
-            other_heat=slip_heat,
+            other_heat=0.0 if slip_heat is None else slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
         )
         winding = coil_blocks.declare_winding(
@@ -302,7 +317,7 @@ class MagneticPowderClutch(DesignProblem):
             "outer_diameter",
             "length",
             "coil_power",
-            "slip_heat",
+            *(() if slip_heat is None else ("slip_heat",)),
             "coil_temperature_rise",
             sized_by="torque_capacity",
         )
@@ -341,7 +356,8 @@ class MagneticPowderClutch(DesignProblem):
         return frames
 
 
-def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
+def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> Any:
+    """Declare the torque with its limits and return it."""
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
     text = "Shear stress of the powder"
     d.step("shear_stress", "N/mm2", stress, symbol="tau_p", text=text, source=f"{S4} [P1]")
@@ -369,6 +385,21 @@ def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: A
         text="The powder is not saturated",
         source=f"{S4}, section 6.3",
     )
+    return torque
+
+
+def _declare_slip_heat(d: Declaration, *, wants: Wants, torque: Any, rise: Rise | None) -> Any:
+    """Declare the heat of slip and return it [W]; None where the clutch does not slip."""
+    if isinstance(wants, Slipping):
+        slip_heat, text = wants.required_torque * wants.slip_speed, "Heat of continuous slip under required torque"
+    elif isinstance(wants, Starting) and rise is not None:
+        full = friction.Torques(ramp_low=torque, ramp_high=torque)
+        start = friction.declare_startup(d, duty=wants, torques=full, ramp_time=rise.rise_time_limit)
+        slip_heat = heat.hourly_heat(start.friction_work, wants.engagements_per_hour)
+        text = "Heat of the starts of an hour, spread over it"
+    else:
+        return None
+    return d.derive("slip_heat", "W", slip_heat, symbol="P_slip", text=text, source=f"{S4} [P9]")
 
 
 def _declare_circuit(

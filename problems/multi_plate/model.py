@@ -53,7 +53,7 @@ class MultiPlateClutch(DesignProblem):
         "plate_gap",
         "drag_torque_limit",
     )
-    declines = coverage.ENGAGED
+    declines = coverage.ENGAGED_IN_PACKS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

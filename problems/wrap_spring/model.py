@@ -230,7 +230,7 @@ class WrapSpringClutch(DesignProblem):
     name = "wrap_spring"
     title = "Wrap spring clutch, interference fit"
     sources = requirements.SOURCES
-    understands = (*requirements.COMMON, "drag_torque_limit")
+    understands = (*requirements.COMMON, "drag_torque_limit", "overrun_speed")
     declines, disregards = coverage.GRIPPING, coverage.FACTORS
 
     def declare(self, d: Declaration) -> None:

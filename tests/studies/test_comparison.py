@@ -15,6 +15,7 @@ import synth.robust.robust_front
 import synth.studies.families.compare
 import synth.studies.families.competitor
 from synth import DesignProblem
+from synth.errors import NotCoveredError
 from synth.order.feasibility import Status
 from synth.question.settings import SearchSettings
 from synth.search.settings import TUNING
@@ -535,11 +536,11 @@ def test_a_family_understands_only_what_it_uses(family):
     problem = synth.load(family)
     tables = Catalogs()
     declared = problem.model(frozenset(), tables).declaration.requirements
-    assert set(problem.understands) <= set(declared)
-    # Others follow from some of these words where they are stated alone, and none where all are.
+    # Others follow from some of these words where they are stated alone, and none where all are; one asks for a start.
     for name in problem.understands:
-        words = ({name}, {name, "power"}, declared)
-        assert any(reads(problem.model(frozenset(stated), tables), name) for stated in words), name
+        words = ({name}, {name, "power"}, {*declared, name}, {"driven_inertia", name})
+        models = [problem.model(frozenset(stated), tables) for stated in words]
+        assert any(name in m.declaration.requirements and reads(m, name) for m in models), name
 
 
 def reads(model, name):
@@ -565,13 +566,38 @@ def test_who_serves_a_plain_duty_and_what_the_others_say():
         "cone_clutch",
         "disc_clutch",
         "electromagnetic_clutch",
+        "magnetic_powder_clutch",
         "multi_plate_clutch",
     }
     assert "use it beside a clutch" in found["roller_coupling"].misfits[0]
     for label in ("wrap_spring", "wrap_spring_actuated"):
         assert "use a friction clutch" in found[label].misfits[0]
         assert found[label].declined
-    assert found["magnetic_powder_clutch"].misfits == ["does not understand driven_inertia"]
+        assert "needs" not in " ".join(found[label].misfits)
+    sheet = sheet_of(requirements=PLAIN, options={"duty": "overrun"})
+    (powder,) = applicants(["magnetic_powder_clutch"], sheet, Catalogs())
+    assert (powder.misfits, powder.declined) == (["drives both ways: use wrap_spring"], True)
+    own = {"family": "magnetic_powder_clutch", "options": {"duty": "overrun"}}
+    (powder,) = applicants([own], sheet_of(requirements=PLAIN), Catalogs())
+    assert (powder.misfits, powder.declined) == (["drives both ways: use wrap_spring"], True)
+
+
+def test_lasting_slip_and_overrunning_name_who_serves_them():
+    slip = {"required_torque": "50 N*m", "driver_speed": "1000 1/min", "slip_speed": "100 1/min"}
+    found = {one.label: one for one in applicants("any", sheet_of(requirements=slip), Catalogs())}
+    assert {label for label, one in found.items() if not one.misfits} == {"magnetic_powder_clutch"}
+    assert all(one.declined for one in found.values() if one.misfits)
+    over = {"required_torque": "50 N*m", "driver_speed": "1000 1/min", "overrun_speed": "100 1/min"}
+    found = {one.label: one for one in applicants("any", sheet_of(requirements=over), Catalogs())}
+    assert [label for label, one in found.items() if not one.misfits] == ["wrap_spring"]
+    assert all("use wrap_spring" in one.misfits[0] for one in found.values() if one.misfits)
+
+
+def test_a_family_alone_says_what_serves_what_it_cannot_do():
+    with pytest.raises(NotCoveredError, match="another family: this one takes the load without slip"):
+        synth.synthesize("wrap_spring", PLAIN)
+    with pytest.raises(NotCoveredError, match="no dry lining stands lasting slip: use magnetic_powder_clutch"):
+        synth.synthesize("disc_clutch", PLAIN | {"slip_speed": "10 1/min"})
 
 
 def test_what_cannot_matter_to_a_family_is_left_out_and_said():
@@ -597,9 +623,10 @@ def test_families_that_understand_the_same_measure_it_alike():
     units = {}
     for family in FAMILIES:
         problem = synth.load(family)
-        declared = problem.model(frozenset(), Catalogs()).declaration.requirements
-        for name in problem.understands:
-            units.setdefault(name, set()).add(declared[name].unit)
+        for words in ((), ("driven_inertia",)):
+            declared = problem.model(frozenset(words), Catalogs()).declaration.requirements
+            for name in set(problem.understands) & set(declared):
+                units.setdefault(name, set()).add(declared[name].unit)
     assert {name: kinds for name, kinds in units.items() if len(kinds) > 1} == {}
     assert "outer_diameter_limit" in units
 

@@ -102,31 +102,6 @@ class MagnetRules(coil_blocks.CoilRules):
         source=UNSOURCED,
     )
 
-    def limit_oil(self, d: Declaration, ambient_temperature: Any) -> None:
-        """Declare what oil around the magnet stands; a dry one has none."""
-
-
-class MagnetRulesInOil(MagnetRules):
-    """Rules for magnets in oil, all in SI."""
-
-    group = "practice"
-
-    oil_temperature_limit = Requirement(
-        "degC",
-        120,
-        lower=20,
-        upper=300,
-        symbol="T_oil_max",
-        text=f"Largest temperature of the magnet in oil, which ages ({UNSOURCED})",
-        source=UNSOURCED,
-    )
-
-    def limit_oil(self, d: Declaration, ambient_temperature: Any) -> None:
-        """Declare that the magnet is not too hot for the oil."""
-        hottest = self.oil_temperature_limit - ambient_temperature
-        text = "The oil stands the temperature of the magnet"
-        d.at_most("coil_in_oil", d.derived["coil_temperature_rise"].sx, hottest, "K", text=text, source=UNSOURCED)
-
 
 @dataclass(frozen=True)
 class Seat:
@@ -214,8 +189,7 @@ class Magnet:
 
 def declare_magnet_rules(d: Declaration) -> MagnetRules:
     """Declare the requirements that rules for magnets go by, and refuse windows that no coil can have."""
-    oiled = "lubrication" in d.options and d.options["lubrication"].chosen == "oil"
-    rules = d.block(MagnetRulesInOil if oiled else MagnetRules)
+    rules = d.block(MagnetRules)
     coil_blocks.refuse_bad_window(d, rules)
     return rules
 
@@ -422,13 +396,21 @@ def _name_shape(d: Declaration, *, shape: pot_magnet.PotMagnet, circuit: pot_mag
         d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4}, section 6.6")
 
 
+def _limit_in_oil(d: Declaration, ambient_temperature: Any) -> None:
+    """Declare that the magnet is not too hot for the oil of its pack; a dry one has none."""
+    oil = d.requirements.get("oil_temperature_limit")
+    if oil is not None:
+        hottest, text = oil.sx - ambient_temperature, "The oil stands the temperature of the magnet"
+        d.at_most("coil_in_oil", d.derived["coil_temperature_rise"].sx, hottest, "K", text=text, source=UNSOURCED)
+
+
 def limit_magnet(
     d: Declaration, pressed: Pressed, magnet: Magnet, pull: Pull, winding: coil_blocks.Winding, rules: MagnetRules
 ) -> None:
     """Declare the limits that an engineer adds to a magnet that presses a pack, and to its coil."""
     wants, unknowns = magnet.wants, magnet.unknowns
     coil_blocks.limit_coil(d, rules=rules, wants=magnet.iron, unknowns=unknowns)
-    rules.limit_oil(d, pressed.duty.ambient_temperature)
+    _limit_in_oil(d, pressed.duty.ambient_temperature)
     linkage = pull.circuit.linkage(unknowns.flux_density)
     rise = coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage)
     worn_pull = _declare_worn_pull(d, pressed, magnet, pull)

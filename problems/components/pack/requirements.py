@@ -291,7 +291,7 @@ class OilRules(Block):
         lower=0,
         upper=250,
         symbol="T_oil_max",
-        text=f"Largest mean temperature of the oil in the pack, above which it ages ({UNSOURCED})",
+        text=f"Largest temperature of oil, above which it ages: mean of the pack, and a magnet's ({UNSOURCED})",
         source=UNSOURCED,
     )
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from synth.declaration import Declaration
-from synth.errors import InputError, at
+from synth.errors import InputError, NotCoveredError, at
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_declaration, every_family, load, skipping_faulty_families
 from synth.question import request, uncertainty
@@ -76,11 +76,14 @@ def sheet_of(**blocks: Any) -> Sheet:
 
 def understood() -> dict[str, tuple[str, list[str]]]:
     """Return, per requirement that families understand in common, its unit and the registered families that do."""
-    result: dict[str, tuple[str, list[str]]] = {}
+    units: dict[str, str] = {}
+    families: dict[str, list[str]] = {}
     for problem, declared in every_declaration(as_catalogs(None)):
-        for name in problem.understands:
-            result.setdefault(name, (declared.requirements[name].unit, []))[1].append(problem.name)
-    return dict(sorted(result.items(), key=lambda item: (-len(item[1][1]), item[0])))
+        for name in problem.understands:  # a word of another duty is not declared
+            families.setdefault(name, []).append(problem.name)
+            units |= {name: declared.requirements[name].unit} if name in declared.requirements else {}
+    order = sorted(families, key=lambda name: (-len(families[name]), name))
+    return {name: (units.get(name, ""), families[name]) for name in order}
 
 
 def applicants(families: object, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
@@ -115,8 +118,9 @@ def applicants(families: object, sheet: Sheet, catalogs: Catalogs) -> list[Appli
     for one in candidates:
         one.not_used = tuple(name for name in sheet["requirements"] if name in one.problem.disregards)
         declined = dict.fromkeys(r for name, r in one.problem.declines.items() if name in sheet["requirements"])
-        one.declined = bool(declined)
-        one.misfits += [*declined, *_misfits(one, sheet)]
+        if not one.declined:  # what it cannot do is said alone
+            one.declined = bool(declined)
+            one.misfits += [*declined] or _misfits(one, sheet)
     return candidates
 
 
@@ -144,13 +148,18 @@ def _applicant(entry: object, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     if family_sheet["options"]:
         problem = type(problem)(**{**problem.options, **family_sheet["options"]})
     specified = frozenset({*sheet["requirements"], *family_sheet["requirements"]})
-    declaration = problem.model(specified, catalogs).declaration
-    one = Applicant(problem.name, problem.title or problem.name, family_sheet, problem, declaration)
+    about = (problem.name, problem.title or problem.name, family_sheet, problem)
+    try:
+        one = Applicant(*about, problem.model(specified, catalogs).declaration)
+    except NotCoveredError as error:
+        return Applicant(*about, type(problem)().model(frozenset(), catalogs).declaration, [error.reason], True)
     shared = {n: v for n, v in sheet["options"].items() if n not in problem.options}
     if shared and all(n in one.declaration.options for n in shared):
         one.problem = type(problem)(**{**shared, **problem.options})
         try:
             one.declaration = one.problem.model(specified, catalogs).declaration
+        except NotCoveredError as error:
+            one.misfits, one.declined = [error.reason], True
         except InputError as error:
             one.problem = problem
             one.misfits.append(f"refuses an option ({error})")
@@ -229,8 +238,9 @@ def _check_tables(candidates: Sequence[Applicant], catalogs: Catalogs) -> None:
 
 
 def _answered(one: Applicant, key: str, name: str) -> bool:
-    """Whether a family says of a requirement of others why it is none of its own."""
-    return key == "requirements" and (name in one.problem.declines or name in one.problem.disregards)
+    """Whether a family has an answer to a requirement: with another duty, or why it is none of its own."""
+    answers = (one.problem.understands, one.problem.declines, one.problem.disregards)
+    return key == "requirements" and any(name in known for known in answers)
 
 
 def _misfits(one: Applicant, sheet: Sheet) -> list[str]:

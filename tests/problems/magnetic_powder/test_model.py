@@ -1,11 +1,14 @@
 """The family magnetic_powder_clutch: numbers against an independent calculation, limits, refusals, remarks, curves."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
 
 import synth
+from synth.errors import NotCoveredError
+from synth.tables.catalogs import Catalogs
 from tests.problems.of_a_family import requirements_in_si
 
 FAMILY = synth.load("magnetic_powder_clutch", practice="off")
@@ -361,3 +364,61 @@ def test_curve_of_a_requirement():
     for length in (10, 20, 40):
         stress = row[f"poles of {length} mm [kPa]"] * 1e3
         assert stress * 4 * math.pi * length / 1e3 * radius**2 == pytest.approx(36, rel=1e-9)
+
+
+# ---- what it is asked to do -----------------------------------------------------------------------------------------
+
+DRIVE = {"load_torque": "100 N*m", "driver_speed": "1450 1/min", "driven_inertia": "0.4 kg*m2"}
+
+
+@pytest.mark.parametrize("practice", ["on", "off"])
+def test_heat_of_a_start_takes_the_place_of_that_of_slip(practice):
+    """The torque is there after 0.2 s; work by small steps of time."""
+    family = synth.load("magnetic_powder_clutch", practice=practice)
+    found = synth.evaluate(family, DRIVE | {"load_torque": "20 N*m"}, values=POINT, parts=PARTS).values
+    full, load, inertia, speed = found["torque"], 20.0, 0.4, 1450 * math.pi / 30
+    step, time, driven, work = 1e-5, 0.0, 0.0, 0.0
+    assert full > load
+    while driven < speed:
+        torque = full * min((time + step / 2) / 0.2, 1.0)
+        work += torque * (speed - driven) * step
+        driven += max(torque - load, 0.0) / inertia * step
+        time += step
+    assert found["friction_work"] == pytest.approx(work, rel=1e-4)
+    assert found["slip_time"] == pytest.approx(time, rel=1e-4)
+    assert found["slip_heat"] == pytest.approx(found["friction_work"] * 50 / 3600, rel=1e-12)
+
+
+def test_worked_start():
+    def values(pole):
+        return synth.evaluate(FAMILY, DRIVE, values=POINT | {"pole_length": f"{pole!r} mm"}, parts=PARTS).values
+
+    found = values(24 * 180 / values(24)["torque"])  # the torque is proportional to the length of the poles
+    assert found["torque"] == pytest.approx(180, rel=1e-9)
+    assert found["friction_work"] == pytest.approx(11887.2737, rel=1e-8)
+    assert found["slip_heat"] == pytest.approx(165.101024, rel=1e-8)
+
+
+def test_what_is_asked_follows_from_the_words_that_are_stated():
+    def kind(*words):
+        return FAMILY.model(frozenset(words), Catalogs()).declaration.options["duty"].chosen
+
+    assert kind("required_torque") == "continuous_slip"
+    assert kind("driven_inertia", "load_torque") == "start"
+    assert kind("driven_inertia", "slip_speed") == "continuous_slip"
+
+
+def test_a_coupling_has_no_heat_of_slip():
+    coupling = synth.load("magnetic_powder_clutch", practice="off", duty="coupling")
+    found = synth.evaluate(coupling, BASE, values=POINT, parts=PARTS)
+    assert "slip_heat" not in found.values
+    assert found.values["coil_temperature_rise"] < design().values["coil_temperature_rise"]
+    with pytest.raises(synth.InputError, match="slip_speed"):
+        synth.evaluate(coupling, BASE | {"slip_speed": "10 1/min"}, values=POINT, parts=PARTS)
+
+
+def test_what_drives_both_ways_does_not_overrun():
+    overrun = synth.load("magnetic_powder_clutch", duty="overrun")
+    with pytest.raises(NotCoveredError, match="another family: this one drives both ways: use wrap_spring") as told:
+        synth.synthesize(overrun, BASE)
+    assert str(pickle.loads(pickle.dumps(told.value))) == str(told.value)
