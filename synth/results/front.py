@@ -16,7 +16,7 @@ from synth.order.feasibility import Status
 from synth.order.pareto import KNEE, Scale, knee_of
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, PartRow, design_columns, design_row, with_groups
+from synth.results.design import Design, Frame, PartRow, design_columns, design_row, lines_of, with_groups
 from synth.results.door import door
 from synth.results.drawings import front_picture, report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, KEPT, design_record, record_text, result_digest
@@ -61,6 +61,11 @@ class ParetoFront:
     question: Any = field(default=None, repr=False, compare=False)
     record: Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
     folder: Path | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def lines(self) -> list[Design]:
+        """Return the designs that lists show: without those that are nearly the same as a better one."""
+        return lines_of(self.designs)
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers."""

@@ -156,6 +156,7 @@ def test_near_equals_stand_on_the_line_of_the_one_that_leads_them() -> None:
     assert "11 more with --all" in shown[0]
     assert "#13:" in shown[1]
     assert "within 2 %" not in shown[1]
+    assert [d.rank for d in front(*designs).lines] == [1, 5]
     columns, rows = front(*designs).table()
     assert columns[-1] == "group"
     assert [row[-1] for row in rows] == [1] * 4 + [5] * 9

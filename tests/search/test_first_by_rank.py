@@ -39,6 +39,33 @@ def test_the_first_design_of_an_example_is_the_same_however_many_are_asked_for(e
     assert np.allclose(first, first[0], rtol=EQUAL, atol=0.0), first
 
 
+QUICK = ["cone_drive", "automobile_disc", "wrap_spring_freewheel"]
+SCATTERED = {"cone_drive": {"friction": "catalogue range"}, "automobile_disc": {"load_torque": "+-10 %"}}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "robust"), [*((name, None) for name in QUICK), *SCATTERED.items()])
+def test_the_first_design_is_the_same_from_few_points_to_many(name: str, robust: Mapping[str, str] | None) -> None:
+    (example,) = (path for path in EXAMPLES if path.stem == name)
+    first: list[list[float]] = []
+    for points in (3, 6, 20, 100):
+        asked = read_spec(example).merged(points=points, robust=robust)
+        front = find_front(asked.request(), asked.settings())
+        first.append([front.designs[0].values[name] for name in front.frame.objectives])
+    assert np.allclose(first, first[0], rtol=EQUAL, atol=0.0), first
+
+
+@pytest.mark.slow
+def test_the_first_design_of_shipped_families_is_the_same_from_few_points_to_many() -> None:
+    families = [{"family": "disc_clutch", "parts": {"friction_pair": ["moulded_dry", "woven_dry"]}}, "roller_coupling"]
+    duty = {"load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2"}
+    first: list[list[float]] = []
+    for points in (3, 6, 20, 100):
+        found = synth.compare(families, duty, ["mass", "outer_diameter"], points, fix={"ramp_time": "0.3 s"})
+        first.append(list(found.designs[0].objectives.values()))
+    assert np.allclose(first, first[0], rtol=EQUAL, atol=0.0), first
+
+
 # ---- beside brute force ---------------------------------------------------------------------------------------------
 
 

@@ -70,8 +70,7 @@ def nearest_among(state: FrontState, signed: np.ndarray, weights: Sequence[float
     if not rule.least:
         return []
     state.progress.enter("against the others")
-    clock = Clock(deadline, state.progress.working)
-    node_limit = min(limits.first_nodes, state.node_limit)
+    clock, node_limit = Clock(deadline, state.progress.working), min(limits.first_nodes, state.node_limit)
     outcome = branch_and_bound(form, state.pool, rule, clock, state.rng, node_limit)
     phi = form.archive.phi[:, :m]
     first = scored.best(phi)

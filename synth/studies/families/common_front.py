@@ -34,8 +34,7 @@ class CommonFront:
     """
 
     def __init__(self, objectives: Mapping[str, str], points: int, weights: Mapping[str, float] | None = None) -> None:
-        self.objectives, self.points = dict(objectives), points
-        self.weights = [float((weights or {}).get(name, 1.0)) for name in self.objectives]
+        self.objectives, self.points, self._weights = dict(objectives), points, weights or {}
         self.senses = senses_of(self.objectives)
         self.members: list[Competitor] = []
 
@@ -49,6 +48,11 @@ class CommonFront:
         """Designs that no known design dominates or equals."""
         known = self.everything()
         return [d for d, point in zip(designs, self.signed(designs), strict=True) if not beaten(known, point).any()]
+
+    @property
+    def weights(self) -> list[float]:
+        """Weights of the objectives; families refuse what is none when they are asked."""
+        return [float(self._weights.get(name, 1.0)) for name in self.objectives]
 
     def take(self, member: Competitor, fresh: Sequence[Design], proven: bool) -> None:
         """Add designs of a family; those that its own proof covers stand on its own front as well."""
