@@ -11,6 +11,7 @@ from synth.declaration import Declaration
 from .. import centrifugal as blocks
 from .. import practice
 from ..components.springs import model as spring_sets
+from ..duty import coverage
 from ..mechanics import ball_ramp, centrifugal
 from ..sources import NOT_IN_S4, S4
 from . import balls as ball_blocks
@@ -34,6 +35,7 @@ class CentrifugalBallRamp(DesignProblem):
     title = "Centrifugal clutch, ball ramp"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

@@ -12,6 +12,7 @@ from synth.declaration import Declaration
 from .. import centrifugal as blocks
 from .. import practice
 from ..components.springs import model as spring_sets
+from ..duty import coverage
 from ..mechanics import centrifugal_levers as formulas
 from ..sources import NOT_IN_S4
 from . import curves as centrifugal_curves
@@ -103,6 +104,7 @@ class LeverClutch(DesignProblem):
     discs: ClassVar[int] = 0  # plates beside flywheel and pressure plate
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     @abstractmethod

@@ -12,6 +12,7 @@ from synth.declaration import Declaration
 from .. import centrifugal as blocks
 from .. import practice
 from ..components.springs import model as spring_sets
+from ..duty import coverage
 from ..mechanics import centrifugal, two_spring
 from ..sources import NOT_IN_S4, S4, TYPICAL
 from . import balls as ball_blocks
@@ -95,6 +96,7 @@ class CentrifugalTwoSpring(DesignProblem):
     title = "Centrifugal clutch, two springs"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "lining_wear")
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

@@ -49,7 +49,7 @@ CASES = {
         },
         constants=SHAFTS,
         requirements=CONE,
-        needed={"practice=on": {"wear_life_min": "10000"}},
+        needed={"practice=on": {"wear_life_min": "10000", "service_life": "100 h"}},
         designs={
             "practice": KnownDesign(
                 {

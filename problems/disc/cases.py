@@ -51,7 +51,7 @@ CASES = {
             "practice_standard": {"plates": "standard", "practice": "on"},
         },
         requirements=CAR,
-        needed={"practice=on": {"wear_life_min": "10000", "top_speed": "6000 1/min"}},
+        needed={"practice=on": {"wear_life_min": "10000", "service_life": "100 h", "top_speed": "6000 1/min"}},
         constants=SHAFTS | COVER,
         designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC)
         | {

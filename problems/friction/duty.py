@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+import numpy as np
+
 from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
-from ..duty import MOVED, WORDS, Start, refuse_contradictions
+from ..duty import INERT, MOVED, WORDS, Start, of_drive, refuse_contradictions
 from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
@@ -19,6 +21,7 @@ COMMON = (
     *WORDS,
     "driven_inertia",
     *MOVED,
+    "service_life",
     "switching_factor",
     "speed_factor",
     "engagements_per_hour",
@@ -38,6 +41,7 @@ class Duty(Start):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
+    unloaded = f"{Start.unloaded}; or the slip_time_limit within which driven_inertia is"
 
     load_kind = Option(
         startup.LOAD_KINDS,
@@ -78,6 +82,7 @@ class Duty(Start):
         text="Driven inertia at the clutch shaft; by default that of the machine",
         source=f"{S1}, J2",
         follows=True,
+        instead=INERT,
     )
     switching_factor = Requirement(
         "-",
@@ -223,6 +228,14 @@ class Duty(Start):
         factors = (self.safety_factor, self.switching_factor, self.speed_factor)
         return ring_formulas.required_torque(load_torque, *factors)
 
+    @property
+    def rating(self) -> Any:
+        """Sizing torque [N m] of the load, or where nothing resists that of the inertia within the slip time stated."""
+        if not (self.specifies("slip_time_limit") and self.specifies("load_torque")):
+            return super().rating
+        unloaded = self.driven_inertia * self.driver_speed / self.slip_time_limit
+        return np.where(self.load_torque > 0, super().rating, unloaded)
+
 
 AnyDuty = TypeVar("AnyDuty", bound=Duty)
 
@@ -267,6 +280,7 @@ class DutyByRate(Duty):
         text="Engagement-count factor; by default that of engagements per hour: 1 up to 100, 0.4 above 360",
         source=f"table {TABLE}, {BY_RATE}",
     )
+    service_life = of_drive("h", 0.01, 1e6, "L_h", "Hours in service, with the switching rate the least wear life")
 
 
 class DutyOfPack(DutyOfPlates, DutyByRate):

@@ -16,7 +16,6 @@ from ...friction.duty import Size
 from ...mechanics import heat, plates
 from ...mechanics import ring as ring_formulas
 from ...practice import UNSOURCED
-from ...sources import DRIVE
 from ..lining import wear
 from ..shaft.model import declare_shaft, name_boss, shaft_for
 from .model import BuiltPack
@@ -321,5 +320,4 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         text="The lining stands the mean temperature, drag included",
         source="Neale, Tribology Handbook, Table 7.4",
     )
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough")
