@@ -36,6 +36,7 @@ class CentrifugalBallRamp(DesignProblem):
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
     declines = coverage.SPEED_ENGAGED
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

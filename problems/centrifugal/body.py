@@ -193,8 +193,7 @@ def limit_discs(d: Declaration, *, rules: Rules, lining: Lining, travel: Any) ->
         text="Each friction surface has air when released",
         source="practice, 0.3 to 0.5 mm and the run-out",
     )
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, lining.pair, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    wear.limit_wear_life(d, lining.pair, rules.wear_life_min, text="The linings last long enough")
     d.advise(
         "narrow_ring",
         lining.inner_radius > NARROW_RING * lining.outer_radius,

@@ -105,6 +105,7 @@ class LeverClutch(DesignProblem):
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
     declines = coverage.SPEED_ENGAGED
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     @abstractmethod

@@ -97,6 +97,7 @@ class CentrifugalTwoSpring(DesignProblem):
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "lining_wear")
     declines = coverage.SPEED_ENGAGED
+    disregards = coverage.LIFE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

@@ -16,7 +16,7 @@ from ..friction.duty import Duty, Size
 from ..friction.engagement import Startup
 from ..mechanics import plates
 from ..practice import UNSOURCED
-from ..sources import DRIVE, S1
+from ..sources import S1
 from . import formulas as cone
 
 DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
@@ -179,7 +179,9 @@ class ConeRules(Block):
         text="Least share of the practical pressure that is used while the cones engage (car discs: 0.6 to 1)",
         source=UNSOURCED,
     )
-    wear_life_min = replace(wear.LEAST_LIFE, text="Least engagements until the lining is worn")
+    wear_life_min = replace(
+        wear.LEAST_LIFE, text="Least engagements until the lining is worn; else those in service life"
+    )
 
     @property
     def pull_max(self) -> Any:
@@ -321,5 +323,4 @@ def declare_rules(d: Declaration, cones: Cones, rules: ConeRules, body: ConeBody
         (d.at_least, "pressure_use", pressure, least, "N/mm2", "The lining is used", UNSOURCED),
     ):
         limit(name, value, border, unit, text=text, source=source)
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough", source=DRIVE)
+    wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough")

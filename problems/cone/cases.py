@@ -49,7 +49,7 @@ CASES = {
         },
         constants=SHAFTS,
         requirements=CONE,
-        needed={"practice=on": {"wear_life_min": "10000", "edge_pressure_ratio": "1"}},
+        needed={"practice=on": {"wear_life_min": "10000", "service_life": "100 h", "edge_pressure_ratio": "1"}},
         designs={
             "practice": KnownDesign(
                 {

@@ -56,7 +56,14 @@ CASES = {
             "practice_standard": {"plates": "standard", "practice": "on", "take_up": "any"},
         },
         requirements=CAR,
-        needed={"practice=on": {"wear_life_min": "10000", "top_speed": "6000 1/min", "edge_pressure_ratio": "1"}},
+        needed={
+            "practice=on": {
+                "wear_life_min": "10000",
+                "service_life": "100 h",
+                "top_speed": "6000 1/min",
+                "edge_pressure_ratio": "1",
+            }
+        },
         constants=SHAFTS | COVER,
         designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC)
         | {

@@ -7,6 +7,7 @@ from .machine import MOVED
 STARTING = ("driven_inertia", *MOVED, "slip_time_limit", "startup_torque")
 SOFTNESS = ("jerk_limit", "acceleration_limit")
 FACTORS = ("engagements_per_hour", "switching_factor", "speed_factor")  # they count engagements, or wear by slip
+LIFE = ("service_life",)
 SPEEDS = ("idle_speed", "contact_speed_min", "contact_speed_max", "full_torque_speed")
 
 SHOCK = "takes the load without slip, so that its start is a shock: use a friction clutch, or state peak_torque alone"

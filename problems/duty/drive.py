@@ -32,6 +32,7 @@ class Drive(Machine):
     """Speed and torque of a drive, all in SI; None where a word says nothing in the question."""
 
     group = "duty"
+    unloaded = "a required_torque where load_torque is 0: nothing resists, but something has to be brought up to speed"
 
     driver_class = Option(
         factors.drivers,
@@ -89,6 +90,7 @@ class Drive(Machine):
         text="Torque to carry, all application factors in it",
         source=DRIVE,
         follows=True,
+        instead=LOADS,
     )
 
     def required_for(self, load_torque: Any) -> Any:
@@ -115,10 +117,11 @@ class Start(Drive, MovedMachine):
         "factor and the like, required torque",
         source=f"{S1}, M2",
         follows=True,
+        instead=("required_torque", *LOADS[1:]),
     )
     required_torque = Requirement(
         "N*m",
-        lambda drive: None if drive.sized_by_rating else drive.required_for(drive.load_torque),
+        lambda drive: None if drive.sized_by_rating else drive.rating,
         lower=0.01,
         upper=1e7,
         symbol="M_req",
@@ -126,6 +129,11 @@ class Start(Drive, MovedMachine):
         source=f"{S1}, sizing",
         follows=True,
     )
+
+    @property
+    def rating(self) -> Any:
+        """Torque to carry [N m] that follows from the load."""
+        return self.required_for(self.load_torque)
 
     @property
     def sized_by_rating(self) -> bool:
@@ -158,8 +166,7 @@ def refuse_contradictions(d: Declaration, drive: Drive) -> None:
                 "a required_torque of at least load_torque; the clutch carries what resists, with a reserve",
             )
     elif drive.specifies("load_torque", "machine_torque"):
-        right = "a required_torque where load_torque is 0: nothing resists, but something has to be brought up to speed"
-        d.refuse("nothing_to_carry", drive.load_torque <= 0, right)
+        d.refuse("nothing_to_carry", drive.required_torque <= 0, drive.unloaded)
     loads = {
         "power": None if drive.power is None else drive.power / drive.power_speed,
         "load_torque": drive.load_torque if drive.specifies("load_torque") else None,

@@ -75,6 +75,7 @@ CASES = {
             "practice=on": {
                 "wear_life_min": "10000",
                 "edge_pressure_ratio": "1",
+                "service_life": "100 h",
                 "over_excitation": "2.2",  # the coil of the known designs is 2 % too slow for 2
                 "voltage_use_min": "0.75",
                 "return_spring_force": "100 N",  # what the known designs were made for

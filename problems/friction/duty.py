@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
+import numpy as np
+
 from synth.declaration import Declaration, Option, Requirement
 
-from ..duty import COOLING, MOVED, WORDS, Start, cooling, refuse_contradictions
+from ..duty import COOLING, INERT, MOVED, WORDS, Start, cooling, of_drive, refuse_contradictions
 from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
@@ -18,6 +20,7 @@ COMMON = (
     *WORDS,
     "driven_inertia",
     *MOVED,
+    "service_life",
     "switching_factor",
     "speed_factor",
     "engagements_per_hour",
@@ -37,6 +40,7 @@ class Starting(Start):
     """What is asked of the start of a load, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
+    unloaded = f"{Start.unloaded}; or the slip_time_limit within which driven_inertia is"
 
     load_kind = Option(
         startup.LOAD_KINDS,
@@ -54,6 +58,7 @@ class Starting(Start):
         text="Driven inertia at the clutch shaft; by default that of the machine",
         source=f"{S1}, J2",
         follows=True,
+        instead=INERT,
     )
     engagements_per_hour = Requirement(
         "1/h", 50, lower=0.001, upper=36000, symbol="nu_h", text="Switching rate", source=f"{S1}, m_k"
@@ -224,6 +229,14 @@ class Duty(Starting):
         factors = (self.safety_factor, self.switching_factor, self.speed_factor)
         return ring_formulas.required_torque(load_torque, *factors)
 
+    @property
+    def rating(self) -> Any:
+        """Sizing torque [N m] of the load, or where nothing resists that of the inertia within the slip time stated."""
+        if not (self.specifies("slip_time_limit") and self.specifies("load_torque")):
+            return super().rating
+        unloaded = self.driven_inertia * self.driver_speed / self.slip_time_limit
+        return np.where(self.load_torque > 0, super().rating, unloaded)
+
 
 AnyDuty = TypeVar("AnyDuty", bound=Duty)
 
@@ -289,6 +302,7 @@ class DutyByRate(Duty):
         text="Engagement-count factor; by default that of engagements per hour: 1 up to 100, 0.4 above 360",
         source=f"table {TABLE}, {BY_RATE}",
     )
+    service_life = of_drive("h", 0.01, 1e6, "L_h", "Hours in service, with the switching rate the least wear life")
 
 
 class DutyOfPack(DutyOfPlates, DutyByRate):

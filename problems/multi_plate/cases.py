@@ -77,7 +77,14 @@ CASES = {
             "hub_bore_diameter": "60 mm",
             "drag_torque_limit": "20 N*m",
         },
-        needed={"practice=on": {"wear_life_min": "20000", "plate_gap": "0.4 mm", "edge_pressure_ratio": "1"}},
+        needed={
+            "practice=on": {
+                "wear_life_min": "20000",
+                "service_life": "100 h",
+                "plate_gap": "0.4 mm",
+                "edge_pressure_ratio": "1",
+            }
+        },
         designs={
             "practice": KnownDesign(
                 {

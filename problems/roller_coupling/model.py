@@ -353,7 +353,7 @@ class RollerCoupling(DesignProblem):
         "steel_density",
     )
     declines = coverage.JOINING
-    disregards = (*coverage.SOFTNESS, *coverage.FACTORS)
+    disregards = (*coverage.SOFTNESS, *coverage.FACTORS, *coverage.LIFE)
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -188,7 +188,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, clearance fit"
     sources = requirements.SOURCES
     understands = requirements.COMMON
-    declines, disregards = coverage.ACTUATED, coverage.FACTORS
+    declines, disregards = coverage.ACTUATED, (*coverage.FACTORS, *coverage.LIFE)
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

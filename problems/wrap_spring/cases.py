@@ -59,7 +59,7 @@ CASES = {
             "length_limit": "300 mm",
             "belt_exponent_limit": "20",
         },
-        needed={"wire_choice=custom": WIRE, "practice=on": {"overrun_speed": "3 1/min"}},
+        needed={"wire_choice=custom": WIRE, "practice=on": {"overrun_speed": "3 1/min", "service_life": "500 h"}},
         designs={
             "practice": KnownDesign(
                 {"interference": "0.7 mm", "hub_diameter": "40 mm"},

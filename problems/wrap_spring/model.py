@@ -167,9 +167,10 @@ class Rules(body.SpringRules):
         text=f"Least diameter of a hub over its bore ({UNSOURCED})",
         source=UNSOURCED,
     )
+    service_life = of_drive("h", 0.01, 1e6, "L_h", "Hours in service, the least overrunning life", group="duty")
     overrun_life_min = Requirement(
         "h",
-        500,
+        lambda rules: rules.service_life if rules.specifies("service_life") else 500,
         lower=0.01,
         upper=1e6,
         symbol="t_wear_min",
@@ -230,7 +231,7 @@ class WrapSpringClutch(DesignProblem):
     name = "wrap_spring"
     title = "Wrap spring clutch, interference fit"
     sources = requirements.SOURCES
-    understands = (*requirements.COMMON, "drag_torque_limit", "overrun_speed")
+    understands = (*requirements.COMMON, "drag_torque_limit", "overrun_speed", "service_life")
     declines, disregards = coverage.GRIPPING, coverage.FACTORS
 
     def declare(self, d: Declaration) -> None:

@@ -22,7 +22,8 @@ Quantity: TypeAlias = Any
 class RequirementRecord:
     """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None.
 
-    One that ``follows`` is not stated: formulas read its default, and not its symbol.
+    One that ``follows`` is not stated: formulas read its default, and not its symbol. ``instead``: others that its
+    default is made of where they are stated.
     """
 
     name: str
@@ -38,6 +39,7 @@ class RequirementRecord:
     group: str
     sx: Any
     follows: bool = False
+    instead: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

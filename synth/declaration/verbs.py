@@ -108,6 +108,7 @@ class Requirement(BlockField[Quantity]):
     source: str | Callable[[Any], str] = ""
     group: str = ""
     follows: bool = False
+    instead: tuple[str, ...] = ()
 
     def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
@@ -395,12 +396,14 @@ class Declaration:
         source: str = "",
         group: str = "",
         follows: bool = False,
+        instead: tuple[str, ...] = (),
     ) -> Any:
         """Declare a quantity that the user states; bare numbers are in ``unit``, expressions in SI.
 
         ``group`` is a word of the family, under which forms and descriptions list what belongs together. One that
         ``follows`` stands for its default where it is not stated, so that what moves the others in a study or by
-        scatter moves it too.
+        scatter moves it too. Where it is missing, others are named that
+        may be stated ``instead``.
 
         Returns
         -------
@@ -432,6 +435,7 @@ class Declaration:
             group=group,
             sx=None if optional and not specified else ca.SX.sym(name),
             follows=follows and not specified and isinstance(default, ca.SX),
+            instead=instead,
         )
         self.requirements[name] = record
         return default if record.follows and record.sx is not None else record.sx

@@ -138,8 +138,10 @@ def value_of(r: RequirementRecord, typed: object) -> float:
 
 def missing(r: RequirementRecord) -> InputError:
     """Message for a requirement that must be stated and is not."""
-    of_power = f"; from a power, {TORQUE_OF_POWER}" if parse_unit(r.unit).kind == "torque" else ""
-    right = f"a value in {r.unit}, for example {_example(r)}{of_power}"
+    others = f"; from a power, {TORQUE_OF_POWER}" if parse_unit(r.unit).kind == "torque" else ""
+    if r.instead:
+        others = f", or {' or '.join(r.instead)} in its place"
+    right = f"a value in {r.unit}, for example {_example(r)}{others}"
     return InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
 
 

@@ -235,5 +235,4 @@ def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
             text="The disc does not burst",
             source=UNSOURCED,
         )
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough")

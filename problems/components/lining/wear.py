@@ -23,7 +23,7 @@ LEAST_LIFE = Requirement(
     upper=1e12,
     optional=True,
     symbol="N_w_min",
-    text="Least engagements until the linings are worn",
+    text="Least engagements until the linings are worn; without it those in the service life that is asked",
     source=DRIVE,
     group="duty",
 )
@@ -78,10 +78,17 @@ def offer_wear_life(d: Declaration) -> None:
             d.prefer(name, sense)
 
 
-def limit_wear_life(d: Declaration, part: Part, least: Any, *, text: str, source: str) -> None:
-    """Declare the least wear life; without wear rates the limit is void, and designs say for lack of which column."""
+def limit_wear_life(d: Declaration, part: Part, least: Any, *, text: str) -> None:
+    """Declare the least wear life that is asked; without wear rates the limit is void, and designs say so by column.
+
+    Where there is none it is the engagements within the service life.
+    """
     known = d.derived.get(WEAR_LIFE)
-    d.at_least(WEAR_LIFE, part.optional(RATE) if known is None else known.sx, least, "-", text=text, source=source)
+    if least is None and "service_life" in d.specified and "engagements_per_hour" in d.requirements:
+        least = d.requirements["service_life"].sx * d.requirements["engagements_per_hour"].sx
+    if least is not None:
+        life = part.optional(RATE) if known is None else known.sx
+        d.at_least(WEAR_LIFE, life, least, "-", text=text, source=DRIVE)
 
 
 def remark_no_wear(d: Declaration, part: Part, so: str, needed: tuple[str, ...]) -> None:

@@ -17,7 +17,6 @@ from ...friction.duty import Size
 from ...mechanics import plates
 from ...mechanics import ring as ring_formulas
 from ...practice import UNSOURCED
-from ...sources import DRIVE
 from ..lining import wear
 from ..shaft.model import declare_shaft, name_boss, shaft_for
 from .model import BuiltPack
@@ -319,8 +318,7 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         source=UNSOURCED,
     )
     _limit_mean_temperature(d, built, built.start.friction_work * duty.engagements_per_hour + power, oil)
-    if rules.wear_life_min is not None:
-        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
+    wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough")
 
 
 def _limit_mean_temperature(d: Declaration, built: BuiltPack, heating: Any, oil: OilRules | None) -> None:

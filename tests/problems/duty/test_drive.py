@@ -74,7 +74,7 @@ def test_a_power_is_taken_at_its_speed(family):
     [
         ({"power": "15 kW", "load_torque": "120 N*m"}, "one of power and load_torque"),
         ({"load_torque": "120 N*m", "required_torque": "100 N*m"}, "a required_torque of at least load_torque"),
-        ({"load_torque": "0 N*m"}, "required_torque"),
+        ({"load_torque": "0 N*m"}, "a required_torque where load_torque is 0"),
         ({"required_torque": "100 N*m", "power_speed": "725 1/min"}, "a power that belongs to power_speed"),
     ],
 )
@@ -133,3 +133,39 @@ def test_a_drive_with_inertia_alone_is_sized_shown_and_simulated(family):
     assert design.values["friction_work"] == pytest.approx(0.4 * SPEED**2 / 2, rel=1e-6)
     assert synth.curves(problem, wants, design)
     assert synth.simulate(problem, wants, design)
+
+
+@pytest.mark.parametrize("family", STARTS)
+def test_inertia_alone_is_brought_up_to_speed_within_the_slip_time_stated(family):
+    stated = {"load_torque": "0 N*m", "slip_time_limit": "4 s"}
+    assert torques(family, **stated) == pytest.approx((0, 15.1843645), rel=1e-8)
+    assert torques(family, **stated, required_torque="20 N*m") == (0, 20)
+    # With a load the sizing torque is that of the load, whatever the slip time.
+    assert torques(family, load_torque="100 N*m", slip_time_limit="4 s") == pytest.approx((100, 150 / 0.85), rel=1e-12)
+    with pytest.raises(synth.InputError, match="or the slip_time_limit within which driven_inertia is"):
+        torques(family, load_torque="0 N*m")
+
+
+@pytest.mark.parametrize("family", NEEDED)
+def test_a_torque_that_is_missing_names_the_words_for_it(family):
+    with pytest.raises(synth.InputError, match="is missing; expected a value in N") as caught:
+        torques(family)
+    assert all(word in str(caught.value) for word in ("load_torque", "power", "required_torque", "machine_torque"))
+
+
+@pytest.mark.parametrize("family", STARTS)
+def test_service_life_asks_for_its_engagements(family):
+    wants = START | {"load_torque": "9 N*m", "engagements_per_hour": "20 1/h", "service_life": "1000 h"}
+    for more, least in (({}, 20_000), ({"wear_life_min": 500}, 500)):
+        model = instance_of(synth.load(family), wants | more, as_catalogs(None))
+        limit = model.model.declaration.limits["wear_life"].limit
+        assert model.model.number(limit, model.values.by_symbol(model.model)) == pytest.approx(least, rel=1e-12)
+    with pytest.raises(synth.InputError, match=r"service_life.*practice"):
+        instance_of(synth.load(family, practice="off"), wants, as_catalogs(None))
+
+
+def test_service_life_of_a_freewheel_is_its_least_overrunning_life():
+    wants = {"required_torque": "9 N*m", "driver_speed": "960 1/min"}
+    for more, hours in (({}, 500), ({"service_life": "2000 h"}, 2000)):
+        values = instance_of(synth.load("wrap_spring"), wants | more, as_catalogs(None)).values.requirements
+        assert values["overrun_life_min"] == pytest.approx(3600 * hours)
