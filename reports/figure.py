@@ -301,6 +301,16 @@ def _draw_panel(
     for line in lines:
         axis.axhline(float(line["y"]) * factor, color="#444444", linewidth=0.9, linestyle=(0, (4, 2)), zorder=2)
     axis.set_ylabel(textwrap.fill(name.replace("_", " "), 16) + _unit_text(unit))
+    _number_axis(axis, logarithmic)
+    # A legend that says the same as the one above, which may be long, is left out.
+    if named and (names != above or lines):
+        axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
+    _name_lines(axis, lines, factor, sum(LEGEND_ROW + LEGEND_LINE * row.count("\n") for row in rows) if named else 0.0)
+    return names
+
+
+def _number_axis(axis: Axes, logarithmic: bool) -> None:
+    """Write the numbers of a vertical axis as people do."""
     if logarithmic:
         axis.set_yscale("log")
         axis.yaxis.set_major_formatter(LogFormatter())  # plain numbers, not powers of ten
@@ -310,11 +320,6 @@ def _draw_panel(
         formatter.set_powerlimits((-4, 6))
         axis.yaxis.set_major_formatter(formatter)
         axis.margins(y=0.08)
-    # A legend that says the same as the one above, which may be long, is left out.
-    if named and (names != above or lines):
-        axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
-    _name_lines(axis, lines, factor, sum(LEGEND_ROW + LEGEND_LINE * row.count("\n") for row in rows) if named else 0.0)
-    return names
 
 
 def _legend(column: str, panel: str) -> str:

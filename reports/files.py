@@ -97,7 +97,7 @@ class _Files:
         return self.files, self.notes, self.formats.lacking
 
     def _make(self) -> None:
-        request, formats = self.request, self.formats
+        request = self.request
         if request.front is None:
             assert request.design is not None
             if "explorer" in request.how.formats:
@@ -105,8 +105,11 @@ class _Files:
                     "formats", "explorer", "the folder of a front with it: this is one design", ("formats",)
                 )
             self._sheet(request.design, request.name)
-            return
-        front = request.front
+        else:
+            self._of_front(request.front)
+
+    def _of_front(self, front: ParetoFront) -> None:
+        request, formats = self.request, self.formats
         width = max(2, len(str(len(front.designs))))
         chosen = named_designs(front, request.chosen)
         names = {d.rank or 0: f"design_{d.rank:0{width}d}" for d in chosen}

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from synth import Design, DesignProblem
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Block, Declaration, Requirement, Variable
 
 from .. import practice
 from ..components.wrap_spring import body, formulas, requirements
@@ -21,6 +21,22 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from synth.drawing import Drawing
+
+
+class Sizes(Block):
+    """What the search decides of the fit."""
+
+    clearance = Variable(
+        "mm",
+        0.005,
+        5,
+        symbol="c",
+        text="By how much the mean radius of the free coils is larger than that of the closed ones",
+        source=NOT_IN_S2,
+    )
+    actuator_torque = Variable(
+        "N*m", 1e-4, 1e4, symbol="T0", text="Energising torque at the free end of the spring", source=NOT_IN_S2
+    )
 
 
 class ClearanceDuty(requirements.Duty):
@@ -156,22 +172,17 @@ class Rules(body.SpringRules):
         """Declare the limits that an engineer adds to this fit."""
         super().limit(d, built)
         actuator, spring = d.variables["actuator_torque"].sx, built.spring
+        source = f"bending of a cantilever; {NOT_IN_S2}"
         stress = d.derive(
             "tang_stress",
             "N/mm2",
             formulas.tang_stress(actuator, spring.mean_radius, spring.wire.thickness, self.tang_length_ratio),
             symbol="sigma_t",
             text="Bending stress of the tang under the energising torque",
-            source=f"bending of a cantilever; {NOT_IN_S2}",
+            source=source,
         )
-        d.at_most(
-            "tang",
-            stress,
-            spring.wire.bending_allow,
-            "N/mm2",
-            text="The tang that holds the free end does not yield",
-            source=f"bending of a cantilever; {NOT_IN_S2}",
-        )
+        text = "The tang that holds the free end does not yield"
+        d.at_most("tang", stress, spring.wire.bending_allow, "N/mm2", text=text, source=source)
 
 
 FIT = Fit("actuator_torque", ClearanceDuty, PracticeClearanceDuty, Wants, PracticeWants, Rules, CollarRequirements)
@@ -197,24 +208,8 @@ class ActuatedWrapSpringClutch(DesignProblem):
         layer = layer_of(d)
         duty = layer.declare_duty(d)
         wants: Wants = layer.declare_wants(d, duty)
-        clearance = d.variable(
-            "clearance",
-            "mm",
-            0.005,
-            5,
-            symbol="c",
-            text="By how much the mean radius of the free coils is larger than that of the closed ones",
-            source=NOT_IN_S2,
-        )
-        actuator = d.variable(
-            "actuator_torque",
-            "N*m",
-            1e-4,
-            1e4,
-            symbol="T0",
-            text="Energising torque at the free end of the spring",
-            source=NOT_IN_S2,
-        )
+        sizes = d.block(Sizes)
+        clearance, actuator = sizes.clearance, sizes.actuator_torque
         spring = declare_spring(d, options=options, duty=duty, pairs=layer.pairs(d, wants))
         loose, tight, effective = self._declare_moments(d, spring, clearance)
         text = "The energising torque closes the widest clearance; otherwise nothing grips"
@@ -233,14 +228,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
         built = Built(spring, wants, spring.declare_size(d, fixed_coils=wants.fixed_coils), clearance)
         declare_size(d, layer.size(built), duty)
         layer.extend(d, built)
-        stands = spring.wire.endurance_amplitude, spring.wire.tensile_strength
-        d.advise(
-            "fatigue_of_the_wire",
-            formulas.goodman_utilisation(1.0, 0.0, stress, *stands) > 1,
-            "engaged again and again up to wire torque the wire tires: its stress swings between 0 and wire stress and "
-            "lies above Goodman's line",
-            source=f"Goodman; {NOT_IN_S2}",
-        )
+        self._remark_on_fatigue(d, spring, stress)
         d.headline(
             "mass",
             "outer_diameter",
@@ -265,6 +253,16 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
         return wrap_spring.clearance_drawing(
             spec, design, scope=self.option("mass_scope"), seed=self.option("model") == "seed"
+        )
+
+    def _remark_on_fatigue(self, d: Declaration, spring: WrapSpring, stress: Any) -> None:
+        stands = spring.wire.endurance_amplitude, spring.wire.tensile_strength
+        d.advise(
+            "fatigue_of_the_wire",
+            formulas.goodman_utilisation(1.0, 0.0, stress, *stands) > 1,
+            "engaged again and again up to wire torque the wire tires: its stress swings between 0 and wire stress and "
+            "lies above Goodman's line",
+            source=f"Goodman; {NOT_IN_S2}",
         )
 
     def _declare_moments(self, d: Declaration, spring: WrapSpring, clearance: Any) -> tuple[Any, Any, Any]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth import Design, DesignProblem
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Block, Declaration, Option, Requirement, Variable
 
 from .. import practice
 from ..components.lining import wear
@@ -28,7 +28,33 @@ if TYPE_CHECKING:
 
 MODEL_VALUE = f"{TYPICAL} of the reference model"
 WEAR = "wear volume in proportion to friction work (Archard)"
-OVERLOADS = ("slip_limited", "torque_limited")
+
+
+class Options(requirements.Options):
+    """Options of the interference fit."""
+
+    overload = Option(
+        ("slip_limited", "torque_limited"),
+        "slip_limited",
+        symbol="pol",
+        text="slip_limited: the wire sees peak torque or the largest slip torque, whichever is smaller; "
+        "torque_limited: it sees peak torque",
+        source=NOT_IN_S2,
+        group="duty",
+    )
+
+
+class Sizes(Block):
+    """What the search decides of the fit."""
+
+    interference = Variable(
+        "mm",
+        0.005,
+        10,
+        symbol="dr",
+        text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
+        source=f"{S2}, Delta r",
+    )
 
 
 class InterferenceDuty(requirements.Duty):
@@ -237,41 +263,17 @@ class WrapSpringClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
-        options = d.block(requirements.Options)
-        overload = d.option(
-            "overload",
-            OVERLOADS,
-            "slip_limited",
-            symbol="pol",
-            text="slip_limited: the wire sees peak torque or the largest slip torque, whichever is smaller; "
-            "torque_limited: it sees peak torque",
-            source=NOT_IN_S2,
-            group="duty",
-        )
+        options = d.block(Options)
         layer = layer_of(d)
         duty = layer.declare_duty(d)
         wants: Wants = layer.declare_wants(d, duty)
-        interference = d.variable(
-            "interference",
-            "mm",
-            0.005,
-            10,
-            symbol="dr",
-            text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
-            source=f"{S2}, Delta r",
-        )
+        interference = d.block(Sizes).interference
         spring = declare_spring(d, options=options, duty=duty, pairs=layer.pairs(d, wants))
-        if wants.drag_torque_limit is not None:
-            self._refuse_drag(d, spring, wants)
-
+        self._refuse_drag(d, spring, wants)
         self._declare_fit(d, spring, wants, interference)
         low, high = self._declare_moments(d, spring, interference)
-        spinning = spring.centrifugal_moment()
-        effective = low - spinning
-        guards = spring.model.declare_grip(d, low, spinning)
-        spring.declare_closing(d, formulas.closing_torque(effective, spring.exponent_low), needs=guards)
-        self._declare_liftoff(d, spring, wants, low)
-        load = self._declare_overload(d, spring, overload=overload, high=high)
+        effective = self._declare_grip(d, spring, wants, low)
+        load = self._declare_overload(d, spring, overload=options.overload, high=high)
         bending = spring.bending_stress(high)
         stress, pressure = spring.declare_load(
             d, bending_stress=bending, moment=high, load=load, needs="interference_positive"
@@ -281,8 +283,7 @@ class WrapSpringClutch(DesignProblem):
         built = Built(spring, wants, spring.declare_size(d))
         declare_size(d, layer.size(built), duty)
         drag = self._declare_drag(d, spring, wants, high)
-        if wants.overrun_speed is not None:
-            self._declare_overrun(d, built, high=high, drag=drag)
+        self._declare_overrun(d, built, high=high, drag=drag)
         layer.extend(d, built)
         self._declare_windup(d, spring, low)
         self._declare_utilisation(d, spring, stress=stress, pressure=pressure)
@@ -317,6 +318,8 @@ class WrapSpringClutch(DesignProblem):
 
     def _refuse_drag(self, d: Declaration, spring: WrapSpring, wants: Wants) -> None:
         """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""
+        if wants.drag_torque_limit is None:
+            return
         coils, pair, duty = requirements.COILS_RANGE[1], spring.pair, spring.duty
         low, high = (formulas.belt_exponent(mu, coils, 1.0) for mu in (pair.mu_min, pair.mu_max))
         moment = duty.slip_safety * duty.required_torque / formulas.closing_torque(1.0, low)
@@ -376,8 +379,17 @@ class WrapSpringClutch(DesignProblem):
             source=S2,
         )
 
+    def _declare_grip(self, d: Declaration, spring: WrapSpring, wants: Wants, low: Any) -> Any:
+        """Declare the torque that the loosest fit closes on; its bending moment at speed [N m]."""
+        spinning = spring.centrifugal_moment()
+        effective = low - spinning
+        guards = spring.model.declare_grip(d, low, spinning)
+        spring.declare_closing(d, formulas.closing_torque(effective, spring.exponent_low), needs=guards)
+        self._declare_liftoff(d, spring, wants, low)
+        return effective
+
     def _declare_liftoff(self, d: Declaration, spring: WrapSpring, wants: Wants, low: Any) -> None:
-        wire = spring.wire
+        wire, source = spring.wire, NOT_IN_S2
         speed = d.derive(
             "liftoff_speed",
             "1/min",
@@ -385,16 +397,11 @@ class WrapSpringClutch(DesignProblem):
             symbol="omega_lift",
             needs="interference_positive",
             text="Speed at which the loosest spring lifts off its hub",
-            source=NOT_IN_S2,
+            source=source,
         )
-        d.at_most(
-            "liftoff",
-            spring.duty.spring_speed,
-            wants.liftoff_margin * speed,
-            "1/min",
-            text="The spring stays on its hub at spring speed, also with model seed, which counts torques at rest",
-            source=NOT_IN_S2,
-        )
+        text = "The spring stays on its hub at spring speed, also with model seed, which counts torques at rest"
+        most = wants.liftoff_margin * speed
+        d.at_most("liftoff", spring.duty.spring_speed, most, "1/min", text=text, source=source)
 
     def _declare_overload(self, d: Declaration, spring: WrapSpring, *, overload: str, high: Any) -> Any:
         """Declare the largest slip torque; the torque that the wire sees."""
@@ -464,6 +471,8 @@ class WrapSpringClutch(DesignProblem):
 
     def _declare_overrun(self, d: Declaration, built: Built, *, high: Any, drag: Any) -> None:
         wants, spring, size = built.wants, built.spring, built.size
+        if wants.overrun_speed is None:
+            return
         rubbing = d.derive(
             "overrun_pv",
             "W/mm2",

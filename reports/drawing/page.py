@@ -14,7 +14,7 @@ from synth.drawing import Box2, Detail, Drawing, LineKind, View
 from synth.results.report_request import About
 
 from .paper import PaperSheet, PlacedView, Stroke
-from .sheet_blocks import BLOCK, BLOCK_WIDTH, NOTE, Written, list_height, note_lines, notes, parts_list, title_block
+from .sheet_blocks import BLOCK, BLOCK_WIDTH, NOTE, list_height, note_lines, notes, parts_list, title_block
 from .view_places import placed_detail, placed_view
 
 SHEETS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0), "A1": (841.0, 594.0)}
@@ -94,24 +94,16 @@ def _on_sheet(drawing: Drawing, title: str, program: str, about: About, name: st
         title_block(drawing, title, program, about, scale, name, frame[2], frame[1]),
         notes(lines, frame[0] + 3, frame[1]),
     ]
-    border = Stroke(
-        ((frame[0], frame[1]), (frame[2], frame[1]), (frame[2], frame[3]), (frame[0], frame[3])),
-        LineKind.OUTLINE,
-        line_width=0.7,
-        closed=True,
-    )
-    everything = Written(
-        (border, *(s for w in written for s in w.strokes)),
-        tuple(t for w in written for t in w.texts),
-        tuple(r for w in written for r in w.rings),
-    )
+    x0, y0, x1, y1 = frame
+    border = Stroke(((x0, y0), (x1, y0), (x1, y1), (x0, y1)), LineKind.OUTLINE, line_width=0.7, closed=True)
+    strokes = (border, *(s for w in written for s in w.strokes))
+    rings, texts = tuple(r for w in written for r in w.rings), tuple(t for w in written for t in w.texts)
     boxes = (
         (frame[2] - BLOCK_WIDTH, frame[1], frame[2], frame[1] + right),
         (frame[0], frame[1], frame[2] - BLOCK_WIDTH, frame[1] + low),
     )
     return PaperSheet(
-        name, size, scale, f"{title}: {drawing.title}", frame, everything.strokes, everything.rings, everything.texts,
-        tuple(views), boxes,
+        name, size, scale, f"{title}: {drawing.title}", frame, strokes, rings, texts, tuple(views), boxes,
     )  # fmt: skip
 
 

@@ -123,11 +123,15 @@ class InteriorPointBatch:
         width = high - low
         free = width > method.pinned_width
         inside = np.clip(problems.start[:, number], low + method.inside * width, high - method.inside * width)
-        counts, slopes = problems.counts[:, number], problems.slopes[:, number]
-        t_weight = problems.t_weight[number]
+        counts, slopes, t_weight = problems.counts[:, number], problems.slopes[:, number], problems.t_weight[number]
         t_free = (t_weight != 0) & np.any((slopes != 0) & counts, axis=0)
-        per_row, per_variable, zero = np.zeros((rows, count)), np.zeros((n, count)), np.zeros(count)
-        none = np.zeros(count, dtype=np.int64)
+        zeros = {
+            ("form", "values", "multipliers", "forecast", "change"): np.zeros((rows, count)),
+            ("low_dual", "high_dual", "low_change", "high_change"): np.zeros((n, count)),
+            ("direction", "uncorrected"): np.zeros((n + 1, count)),
+            ("t", "merit", "slope", "step", "dual_step"): np.zeros(count),
+            ("rejected", "evaluations", "late", "status"): np.zeros(count, dtype=np.int64),
+        }
         return InteriorPointBatch(
             layout=layout,
             method=method,
@@ -143,32 +147,13 @@ class InteriorPointBatch:
             t_weight=t_weight,
             t_free=t_free,
             y=np.where(free, inside, 0.5 * (low + high)),
-            t=zero,
-            form=per_row,
-            values=per_row,
             absent=np.ones((rows, count), dtype=bool),
-            missing=none + rows + 2,
-            multipliers=per_row,
-            low_dual=per_variable,
-            high_dual=per_variable,
-            barrier=zero + method.first_barrier,
-            penalty=zero + method.first_penalty,
-            next_penalty=zero + method.first_penalty,
+            missing=np.full(count, rows + 2),
+            barrier=np.full(count, method.first_barrier),
+            penalty=np.full(count, method.first_penalty),
+            next_penalty=np.full(count, method.first_penalty),
             restoring=np.zeros(count, dtype=bool),
-            merit=zero,
-            direction=np.zeros((n + 1, count)),
-            uncorrected=np.zeros((n + 1, count)),
-            forecast=per_row,
-            change=per_row,
-            low_change=per_variable,
-            high_change=per_variable,
-            slope=zero,
-            step=zero,
-            dual_step=zero,
-            rejected=none,
-            evaluations=none,
-            late=none,
-            status=none,
+            **{name: zero for names, zero in zeros.items() for name in names},
         )
 
     def __len__(self) -> int:
@@ -366,30 +351,9 @@ class InteriorPointBatch:
 
         Returns which lanes must start again where they are, because what they look for has changed.
         """
-        layout, method = self.layout, self.method
-        first = self._first(self.missing)
-        below, above = self._bound_distances(self.y)
-        slack, excess, implied = split(self.values, self.barrier, self._prices())
-        self._bring_in(implied, below, above)
-        signed = self._signed(self.multipliers)
-        weights = signed.copy()
-        weights[layout.constraints :] += self._objective()
-        residual = layout.transposed(jacobian, weights)
-        residual += np.where(self.free, self.high_dual - self.low_dual, 0.0)
-        along_t = np.where(self.t_free & ~first, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
-        dual = np.maximum(np.abs(residual).max(axis=0, initial=0.0), np.abs(along_t))
-        dual /= np.maximum(1.0, method.multiplier_share * np.abs(signed).max(axis=0, initial=0.0))
-        products = np.concatenate(
-            [
-                self.multipliers * slack,
-                (self._prices() - self.multipliers) * excess,
-                np.where(self.free, self.low_dual * below, self.barrier),
-                np.where(self.free, self.high_dual * above, self.barrier),
-                self.barrier[None],
-            ]
-        )
-        largest, least = products.max(axis=0), products.min(axis=0)
-        over = np.where(layout.equal, np.abs(self.values), self.values).max(axis=0, initial=0.0)
+        method, first = self.method, self._first(self.missing)
+        dual, least, largest = self._optimality(jacobian, slopes)
+        over = np.where(self.layout.equal, np.abs(self.values), self.values).max(axis=0, initial=0.0)
         over = np.where(self.missing > 0, np.inf, over)
         good = (dual < method.dual_tolerance) & (largest < method.gap_tolerance) & (over < method.row_tolerance)
         hopeless = (
@@ -403,7 +367,43 @@ class InteriorPointBatch:
         # Along a flat and bent valley the last steps are tiny: what they could still gain is not worth them.
         tired = (self.evaluations >= method.max_evaluations) | (self.late >= method.max_late)
         self._set((self.status == 0) & tired, status=np.full(len(self), STOPPED))
-        # Where rows press against the penalty the objective is put aside until they are met.
+        again = self._restore(accepted, first, over)
+        for _ in range(method.barrier_cuts):
+            error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
+            smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
+            lower = accepted & ~again & (error < method.barrier_error * self.barrier)
+            self._set(lower, barrier=np.maximum(method.least_barrier, smaller))
+        return again
+
+    def _optimality(self, jacobian: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Dual residual of the point, and the least and largest product of a distance and its multiplier."""
+        layout = self.layout
+        below, above = self._bound_distances(self.y)
+        slack, excess, implied = split(self.values, self.barrier, self._prices())
+        self._bring_in(implied, below, above)
+        signed = self._signed(self.multipliers)
+        weights = signed.copy()
+        weights[layout.constraints :] += self._objective()
+        residual = layout.transposed(jacobian, weights)
+        residual += np.where(self.free, self.high_dual - self.low_dual, 0.0)
+        pulled = self.t_free & ~self._first(self.missing)
+        along_t = np.where(pulled, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
+        dual = np.maximum(np.abs(residual).max(axis=0, initial=0.0), np.abs(along_t))
+        dual /= np.maximum(1.0, self.method.multiplier_share * np.abs(signed).max(axis=0, initial=0.0))
+        products = np.concatenate(
+            [
+                self.multipliers * slack,
+                (self._prices() - self.multipliers) * excess,
+                np.where(self.free, self.low_dual * below, self.barrier),
+                np.where(self.free, self.high_dual * above, self.barrier),
+                self.barrier[None],
+            ]
+        )
+        return dual, products.min(axis=0), products.max(axis=0)
+
+    def _restore(self, accepted: np.ndarray, first: np.ndarray, over: np.ndarray) -> np.ndarray:
+        """Put the objective aside where rows press against the penalty, until they are met; lanes that change."""
+        method = self.method
         pressed = np.any(self.multipliers > method.pressed_share * self._prices(), axis=0)
         leaves = accepted & ~first & pressed & (self.barrier <= method.penalty_barrier)
         leaves &= over > method.unmet_ratio * self.barrier
@@ -413,11 +413,6 @@ class InteriorPointBatch:
             self._set(leaves, next_penalty=np.minimum(method.penalty_factor * self.penalty, method.last_penalty))
             self.restoring = (self.restoring | leaves) & ~comes
             self._begin(again)
-        for _ in range(method.barrier_cuts):
-            error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
-            smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
-            lower = accepted & ~again & (error < method.barrier_error * self.barrier)
-            self._set(lower, barrier=np.maximum(method.least_barrier, smaller))
         return again
 
     def _direct(
@@ -466,25 +461,14 @@ class InteriorPointBatch:
         change = implied - self.multipliers + stiffness * moved
         low_change = self.barrier / below - self.low_dual * (1 + direction[:n] / below)
         high_change = self.barrier / above - self.high_dual * (1 - direction[:n] / above)
-        # The largest share of the step that keeps everything positive; each row is a rate of decrease.
-        nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
-        primal = np.concatenate(
-            [
-                1 + (change - implied) * excess_duals / both,
-                -direction[:n] / below,
-                direction[:n] / above,
-            ]
+        # Each row is a rate of decrease.
+        step = self._share(1 + (change - implied) * excess_duals / both, -direction[:n] / below, direction[:n] / above)
+        dual_step = self._share(
+            -change * excess_duals / both,
+            change * self.multipliers / both,
+            -low_change / self.low_dual,
+            -high_change / self.high_dual,
         )
-        dual = np.concatenate(
-            [
-                -change * excess_duals / both,
-                change * self.multipliers / both,
-                -low_change / self.low_dual,
-                -high_change / self.high_dual,
-            ]
-        )
-        step = nearly / np.maximum(nearly, primal.max(axis=0, initial=0.0))
-        dual_step = nearly / np.maximum(nearly, dual.max(axis=0, initial=0.0))
         merit = self._merit(self.y, self.t, self.form, self.values, self.missing)
         self._set(
             accepted,
@@ -500,6 +484,12 @@ class InteriorPointBatch:
         self._set(~accepted, direction=np.where(bent, corrected, self.uncorrected))
         self._set(accepted, uncorrected=direction, forecast=self.values + step * moved)
         self.step = np.where(accepted, step, np.where(bent, self.step, self.method.backtracking * self.step))
+
+    def _share(self, *rates: np.ndarray) -> np.ndarray:
+        """Largest share of a step that keeps everything positive that decreases at these rates."""
+        nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
+        share: np.ndarray = nearly / np.maximum(nearly, np.concatenate(rates).max(axis=0, initial=0.0))
+        return share
 
     def _add_curvature(self, matrix: list[list[np.ndarray]], hessian: Sequence[np.ndarray]) -> np.ndarray:
         """Add the second derivatives of the rows; return a first shift where there are none to be had."""

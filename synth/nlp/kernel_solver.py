@@ -91,11 +91,7 @@ class KernelSolver:
             "constants": len(constants),
             "steps": len(steps),
         }
-        terms = [
-            (a, b, i, j)
-            for a, b, first, second in layout.pairs
-            for i, j in zip(first.tolist(), second.tolist(), strict=True)
-        ]
+        terms = [(a, b, *pair) for a, b, *places in layout.pairs for pair in np.column_stack(places).tolist()]
         lists = {
             "equal": layout.equal,
             "guard": layout.guard,

@@ -19,7 +19,7 @@ J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed. (2006), chapters 16 an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -125,15 +125,8 @@ class Pieces:
                 values[k] = _piece(node.op, ways[number[k]], [values[a] for a in node.args])
             else:
                 values[k] = program.apply(node, [values[a] for a in node.args])
-        conditions: list[Any] = []
-        for position, (a, b) in enumerate(self._sides):
-            first, second = values[a], values[b] if b is not None else ca.SX(0.0)
-            if self.absolute[position]:
-                first, second = second, first
-            less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
-            conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
-        sides = rows.nodes
-        outputs = [*(values[k] for k in sides), *conditions, *(values[k] for k in terms)]
+        conditions = self._conditions(values, ways, inverse_sizes)
+        outputs = [*(values[k] for k in rows.nodes), *conditions, *(values[k] for k in terms)]
         made = Program([*inputs, *ways, *inverse_sizes], outputs)
         place, sized = iter(made.outputs), iter(made.outputs[len(outputs) - len(terms) :])
         constraints = [
@@ -150,6 +143,17 @@ class Pieces:
         return made, Rows(
             tuple(constraints), goals, (*rows.log_constraints, *self.log), rows.log_goals, rows.log_variables
         )
+
+    def _conditions(self, values: Mapping[int, Any], ways: Sequence[Any], inverse_sizes: Sequence[Any]) -> list[Any]:
+        """Conditions under which the decisions go as they do: which side is less, or by how much of the size."""
+        conditions: list[Any] = []
+        for position, (a, b) in enumerate(self._sides):
+            first, second = values[a], values[b] if b is not None else ca.SX(0.0)
+            if self.absolute[position]:
+                first, second = second, first
+            less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
+            conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
+        return conditions
 
     def at(self, inputs: Sequence[Any], reach: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return, at some points, which way each decision goes, how far its sides are apart, and their size.

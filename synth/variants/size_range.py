@@ -156,14 +156,7 @@ def size_range(
     """
     SizeRangeRequest.read({"variants": variants, "candidates": candidates, "gap": gap, "time_limit": time_limit})
     started = time.monotonic()
-    if isinstance(source, BatchResult):
-        database, job, catalogs, user_problem = source.database, source.job, source.catalogs, source.user_family
-        source = source.folder
-    else:
-        catalogs = user_problem = None
-    with opened_batch(source, database) as store:
-        stored = job_of_folder(store, source, job)
-        batch = _Batch(store, stored, objective, catalogs, user_problem, VARIANTS)
+    batch = _read_batch(source, database, job, objective)
     batch.prepare(per_row)
     chosen_from = batch.thinned(candidates)
     costs, values = batch.costs(chosen_from)
@@ -175,10 +168,8 @@ def size_range(
     begin = time.monotonic()
     chooser = Chooser(costs[served], weights[served], gap, VARIANTS.medians)
     fewest, bound = chooser.fewest(begin + 0.25 * time_limit)
-    if variants is not None and variants < len(fewest):
-        proven = "" if bound == len(fewest) else f" (not fewer than {bound} in any case)"
-        raise InputError("variants", variants, f"at least {len(fewest)}: fewer do not serve all rows{proven}")
     number = len(fewest) if variants is None else variants
+    _refuse_too_few(number, len(fewest), bound)
     choice = chooser.best(number, begin + 0.6 * time_limit, fewest)
     points = _curve(chooser, choice, number, fewest, begin + time_limit, VARIANTS.curve_points)
     statistics = {
@@ -193,6 +184,24 @@ def size_range(
     return batch.result(choice, chosen_from, costs, values, points, (fewest, bound), statistics)
 
 
+def _refuse_too_few(variants: int, fewest: int, bound: int) -> None:
+    if variants < fewest:
+        proven = "" if bound == fewest else f" (not fewer than {bound} in any case)"
+        raise InputError("variants", variants, f"at least {fewest}: fewer do not serve all rows{proven}")
+
+
+def _read_batch(
+    source: str | Path | BatchResult, database: str | None, job: str | None, objective: str | None
+) -> _Batch:
+    catalogs: UserTables = None
+    problem = None
+    if isinstance(source, BatchResult):
+        database, job, catalogs, problem = source.database, source.job, source.catalogs, source.user_family
+        source = source.folder
+    with opened_batch(source, database) as store:
+        return _Batch(store, job_of_folder(store, source, job), objective, catalogs, problem, VARIANTS)
+
+
 def _row_record(row: Answered) -> dict[str, Any]:
     """Row of a batch with what became of it, and its designs."""
     return {
@@ -203,6 +212,17 @@ def _row_record(row: Answered) -> dict[str, Any]:
         "explanation": explanation_of(row),
         "designs": [] if row.content is None else row.content.get("designs", []),
     }
+
+
+@dataclass(frozen=True)
+class _Served:
+    """A row with the variant that serves it: best and objective in SI, excess in the unit of the objective."""
+
+    row: Mapping[str, Any]
+    variant: int
+    best: float
+    value: float
+    excess: float
 
 
 class _Batch:
@@ -367,62 +387,26 @@ class _Batch:
         statistics: Mapping[str, object],
     ) -> SizeRange:
         """Say everything in terms of rows and designs."""
-        unit = next(iter(self.models.values())).units[self.objective]
         serving = self._serving(choice, costs)
-        order = sorted(
-            set(serving.values()),
-            key=lambda j: (
-                self.candidates[chosen_from[j]].family,
-                float(np.nanmean(values[:, j])),
-                self.candidates[chosen_from[j]].label,
-            ),
-        )
+        chosen = {j: self.candidates[chosen_from[j]] for j in serving.values()}
+        order = sorted(chosen, key=lambda j: (chosen[j].family, float(np.nanmean(values[:, j])), chosen[j].label))
         number = {j: k + 1 for k, j in enumerate(order)}
-        assignment, unserved = [], []
         index = {served.key: k for k, served in enumerate(self.questions)}
-        scale = float(cell_value(1.0, unit) or 1.0)
-        count, total, most = dict.fromkeys(order, 0), dict.fromkeys(order, 0.0), dict.fromkeys(order, -math.inf)
-        for row in self.rows:
-            k = index.get(row["key"]) if row["key"] is not None else None
-            if k is None or k not in serving:
-                unserved.append(self._unserved(row, k))
-                continue
-            j = serving[k]
-            count[j] += 1
-            total[j] += float(costs[k, j]) * scale
-            most[j] = max(most[j], self.sign * float(values[k, j]))
-            assignment.append(
-                {
-                    "line": row["line"],
-                    "row": row["key"][:SHORT],
-                    "family": row["family"],
-                    "variant": number[j],
-                    header(self.objective, unit): cell_value(float(values[k, j]), unit),
-                    header("own_best", unit): cell_value(self.sign * self.questions[k].best, unit),
-                    header("excess", unit): float(costs[k, j]) * scale,
-                }
-            )
-        table = []
-        for j in order:
-            variant = self.candidates[chosen_from[j]]
-            shown = cell_value(self.sign * most[j], unit)
-            table.append(
-                {
-                    "variant": number[j],
-                    "family": variant.family,
-                    "rows": count[j],
-                    header("total_excess", unit): total[j],
-                    header(self.objective, unit): shown,
-                    **self._columns(variant),
-                }
-            )
+        scale = float(cell_value(1.0, self.unit) or 1.0)
+        answered = [(row, index.get(row["key"])) for row in self.rows]
+        served = [
+            _Served(row, number[j], self.sign * self.questions[k].best, float(values[k, j]), float(costs[k, j]) * scale)
+            for row, k in answered
+            if k is not None and k in serving
+            for j in [serving[k]]
+        ]
         return SizeRange(
             objective=self.objective,
-            unit=unit,
+            unit=self.unit,
             sense=self.sense,
-            variants=table,
-            assignment=assignment,
-            unserved=unserved,
+            variants=[self._variant(n, chosen[j], served) for j, n in number.items()],
+            assignment=[self._assignment(x) for x in served],
+            unserved=[self._unserved(row, k) for row, k in answered if k not in serving],
             points=[{"variants": len(p.columns), "cost": p.cost * scale, "gap": p.gap} for p in points],
             fewest=len(fewest[0]),
             fewest_proven=fewest[1] == len(fewest[0]),
@@ -451,10 +435,37 @@ class _Batch:
             "reason": reason,
         }
 
-    def _columns(self, variant: Variant) -> dict[str, Any]:
+    @property
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return next(iter(self.models.values())).units[self.objective]
+
+    def _assignment(self, x: _Served) -> dict[str, Any]:
+        return {
+            "line": x.row["line"],
+            "row": x.row["key"][:SHORT],
+            "family": x.row["family"],
+            "variant": x.variant,
+            header(self.objective, self.unit): cell_value(x.value, self.unit),
+            header("own_best", self.unit): cell_value(x.best, self.unit),
+            header("excess", self.unit): x.excess,
+        }
+
+    def _variant(self, number: int, variant: Variant, served: Sequence[_Served]) -> dict[str, Any]:
+        """Record of a variant, with the worst of the rows that it serves."""
         units = next(m for n, m in self.models.items() if self.structures[n].problem.name == variant.family).units
-        sizes = {header(n, units[n]): cell_value(v, units[n]) for n, v in variant.values.items() if n in units}
-        return {**sizes, **variant.choices, **variant.parts}
+        served = [x for x in served if x.variant == number]
+        worst = self.sign * max(self.sign * x.value for x in served)
+        return {
+            "variant": number,
+            "family": variant.family,
+            "rows": len(served),
+            header("total_excess", self.unit): sum((x.excess for x in served), 0.0),
+            header(self.objective, self.unit): cell_value(worst, self.unit),
+            **{header(n, units[n]): cell_value(v, units[n]) for n, v in variant.values.items() if n in units},
+            **variant.choices,
+            **variant.parts,
+        }
 
 
 def _curve(
