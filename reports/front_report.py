@@ -198,9 +198,9 @@ class _Report:
             caption = "All designs of the front, the best rank first" + (" (continued)" if number else "")
             rows = [self._ranked_row(design, names, number == 0) for design in self.lines]
             blocks.append(TableBlock.of(caption, columns, rows))
-        near = [(d.rank, near_ones(d, self.front.designs)) for d in self.lines]
-        merged = tuple(f"#{rank}: {others}" for rank, others in near if others)
-        return [*blocks, Bullets(merged)] if merged else blocks
+        groups = [(d.rank, d.group) for d in self.front.designs]
+        near = tuple(f"#{d.rank}: {others}" for d in self.lines if (others := near_ones(d.rank, groups)))
+        return [*blocks, Bullets(near)] if near else blocks
 
     def _column_groups(self) -> list[list[str]]:
         """Return the columns of the ranked table in groups that a page holds beside each other."""

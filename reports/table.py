@@ -65,7 +65,7 @@ def print_front(
 
 def _print_near(design: Design, designs: Sequence[Design], console: Console, every: bool) -> None:
     """Print which designs stand on the line of one."""
-    near = "" if every else near_ones(design, designs)
+    near = "" if every else near_ones(design.rank, ((d.rank, d.group) for d in designs))
     if near:
         _print_wrapped(console, f"#{design.rank}: {near}", 0)
 

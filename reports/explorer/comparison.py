@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from synth.results import Certificate, Design
+from synth.results.design import near_ones
 from synth.results.report_request import ComparisonRequest
 from synth.text.plain_text import counted
 
@@ -183,7 +184,7 @@ class _Compared:
             "gap": self.content["certificate"]["gap"] if proven else None,
             "note": str(entry["note"] or ""),
             "group": entry.get("group"),
-            "near": "",
+            "near": near_ones(entry["rank"], ((x["rank"], x.get("group")) for x in self.content["designs"])),
             "why": f"{title}: design {listed.rank} of the front of this family alone.",
             "family": family,
             "v": [number(listed.values.get(names.get(key, ""), math.nan), unit) for key, unit in self.units.items()],

@@ -251,7 +251,7 @@ class RecordOf:
             "remarks": [*d.advice, *d.not_checked],
             "alternatives": list(d.alternatives),
             "group": d.group,
-            "near": near_ones(d, self.front.designs),
+            "near": near_ones(d.rank, ((x.rank, x.group) for x in self.front.designs)),
             "violated": list(d.violated),
             "off_grid": dict(d.off_grid),
             "next": [[label(name), str(row)] for name, row in d.next_rows.items()],

@@ -234,9 +234,7 @@ def merged(
     >>> [[1 + k for k in group] for group in merged(values, ["a", "a", "a", "b", "a"], scores, 0.02)]
     [[5], [3, 2], [1], [4]]
     """
-    sizes, signs = np.abs(values), np.sign(values)
-    with np.errstate(divide="ignore"):
-        logarithms = np.where(sizes > 0, np.log(sizes), 0.0)
+    logarithms, signs = np.log(np.where(values == 0, 1.0, np.abs(values))), np.sign(values)
     groups: list[list[int]] = []
     for k in np.argsort(scores, kind="stable").tolist():
         for group in groups:

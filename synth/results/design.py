@@ -277,9 +277,9 @@ def lines_of(designs: Sequence[Design], every: bool = False) -> list[Design]:
     return [design for design in designs if every or design.group is None]
 
 
-def near_ones(design: Design, designs: Sequence[Design]) -> str:
-    """Return how many designs are nearly the same as one that leads them, and which; empty where none is."""
-    ranks = [f"#{d.rank}" for d in designs if d.group is not None and d.group == design.rank]
+def near_ones(leader: int | None, groups: Iterable[tuple[int | None, int | None]]) -> str:
+    """Return how many designs are nearly the same as a leader, and which, by ranks and groups; empty where none is."""
+    ranks = [f"#{rank}" for rank, group in groups if group is not None and group == leader]
     return f"and {len(ranks)} within {percent(LISTED.merge_within)}: {', '.join(ranks)}" if ranks else ""
 
 
