@@ -35,7 +35,7 @@ class CentrifugalBallRamp(DesignProblem):
     title = "Centrifugal clutch, ball ramp"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
-    declines = coverage.SPEED_ENGAGED
+    declines, disregards, as_limits = coverage.AT_SPEED, coverage.NO_HOURLY_HEAT, coverage.ENVELOPE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

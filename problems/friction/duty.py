@@ -8,28 +8,13 @@ from typing import Any, TypeVar
 from synth.declaration import Declaration, Option, Requirement
 from synth.errors import InputError
 
-from ..duty import WORDS, Start, refuse_contradictions
+from ..duty import WORDS, Start, coverage, refuse_contradictions
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
 from ..sources import S0, S1, TYPICAL
 
 # What a sheet for several families may state, as far as a family uses it.
-COMMON = (
-    *WORDS,
-    "driven_inertia",
-    "switching_factor",
-    "speed_factor",
-    "engagements_per_hour",
-    "startup_torque",
-    "overload_torque",
-    "actuation_force_limit",
-    "outer_diameter_limit",
-    "length_limit",
-    "slip_time_limit",
-    "jerk_limit",
-    "acceleration_limit",
-    "steel_density",
-)
+COMMON = (*WORDS, *coverage.STARTS, *coverage.SIZES, "overload_torque", "actuation_force_limit", "steel_density")
 
 
 class Starting(Start):

@@ -347,7 +347,7 @@ class RollerCoupling(DesignProblem):
         "steel_density",
     )
     declines = coverage.JOINING
-    disregards = (*coverage.SOFTNESS, *coverage.FACTORS)
+    disregards, as_limits = (*coverage.SOFTNESS, *coverage.NO_HOURLY_HEAT), {"length_limit": "length"}
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -204,7 +204,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, clearance fit"
     sources = requirements.SOURCES
     understands = requirements.COMMON
-    declines, disregards = coverage.ACTUATED, coverage.FACTORS
+    declines, disregards, as_limits = coverage.ACTUATED, (*coverage.FACTORS, "ambient_temperature"), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
