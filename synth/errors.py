@@ -136,6 +136,9 @@ def refuse_gathered(faults: Sequence[InputError]) -> None:
         raise first_with_others(faults)
 
 
+ELSEWHERE = "another family: this one "
+
+
 class UnknownOptionError(InputError):
     """An option that a problem does not have, as it is or with the other options; its name is the last key."""
 
@@ -145,15 +148,7 @@ class RefusedError(InputError):
 
 
 class NotCoveredError(InputError):
-    """What a family cannot serve; ``reason`` says why, as a predicate, and what does."""
-
-    def __init__(self, field: str, value: object, reason: str, path: tuple[Key, ...] = ()) -> None:
-        super().__init__(field, value, f"another family: this one {reason}", path)
-        self.reason = reason
-
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, tuple[Key, ...]]]:
-        """Pickle by the four arguments."""
-        return type(self), (self.field, self.value, self.reason, self.path)
+    """What a family cannot serve; behind ELSEWHERE ``expected`` says why, as a predicate, and what does."""
 
 
 class ExtraNeededError(InputError):

@@ -35,8 +35,7 @@ class CentrifugalBallRamp(DesignProblem):
     title = "Centrifugal clutch, ball ramp"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
-    declines = coverage.SPEED_ENGAGED
-    disregards = coverage.LIFE
+    declines, disregards, as_limits = coverage.AT_SPEED, coverage.NO_HOURS, coverage.ENVELOPE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

@@ -104,8 +104,7 @@ class LeverClutch(DesignProblem):
     discs: ClassVar[int] = 0  # plates beside flywheel and pressure plate
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
-    declines = coverage.SPEED_ENGAGED
-    disregards = coverage.LIFE
+    declines, disregards, as_limits = coverage.AT_SPEED, coverage.NO_HOURS, coverage.AT_CONTACT
     operating_point = states.OPERATING_POINT
 
     @abstractmethod

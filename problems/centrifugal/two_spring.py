@@ -96,8 +96,7 @@ class CentrifugalTwoSpring(DesignProblem):
     title = "Centrifugal clutch, two springs"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "lining_wear")
-    declines = coverage.SPEED_ENGAGED
-    disregards = coverage.LIFE
+    declines, disregards, as_limits = coverage.AT_SPEED, coverage.NO_HOURS, coverage.ENVELOPE
     operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:

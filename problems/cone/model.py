@@ -116,7 +116,7 @@ class ConeClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "steel_specific_heat", "temperature_rise_limit")
-    declines = coverage.ENGAGED_DRY
+    declines, disregards, as_limits = coverage.ENGAGED_DRY, ("peak_torque",), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

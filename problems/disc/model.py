@@ -47,7 +47,7 @@ class DiscClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
-    declines = coverage.ENGAGED_DRY
+    declines, disregards, as_limits = coverage.ENGAGED_DRY, ("peak_torque",), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

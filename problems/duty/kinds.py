@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from synth.declaration import Declaration
-from synth.errors import NotCoveredError
+from synth.errors import ELSEWHERE, NotCoveredError
 
 from ..sources import DRIVE
 from .machine import MOVED
@@ -42,5 +42,5 @@ def declare_kind(d: Declaration, usual: str, refused: Mapping[str, str]) -> str:
         group="duty",
     )
     if kind in refused:
-        raise NotCoveredError("option duty", kind, refused[kind], ("options", "duty"))
+        raise NotCoveredError("option duty", kind, ELSEWHERE + refused[kind], ("options", "duty"))
     return kind

@@ -77,7 +77,7 @@ class ElectromagneticClutch(DesignProblem):
     )
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap")
-    declines = coverage.ENGAGED_IN_PACKS
+    declines, disregards, as_limits = coverage.ENGAGED_IN_PACKS, ("peak_torque",), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.declaration import Declaration, Option, Requirement
 
-from ..duty import COOLING, INERT, MOVED, WORDS, Start, cooling, of_drive, refuse_contradictions
+from ..duty import COOLING, INERT, WORDS, Start, cooling, coverage, of_drive, refuse_contradictions
 from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
@@ -18,20 +18,11 @@ from ..sources import DRIVE, S0, S1, TYPICAL
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
     *WORDS,
-    "driven_inertia",
-    *MOVED,
-    "service_life",
-    "switching_factor",
-    "speed_factor",
-    "engagements_per_hour",
-    "startup_torque",
+    *coverage.STARTS,
+    *coverage.LIFE,
+    *coverage.SIZES,
     "overload_torque",
     "actuation_force_limit",
-    "outer_diameter_limit",
-    "length_limit",
-    "slip_time_limit",
-    "jerk_limit",
-    "acceleration_limit",
     "steel_density",
 )
 

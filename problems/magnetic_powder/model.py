@@ -197,19 +197,9 @@ class MagneticPowderClutch(DesignProblem):
         STANDARD_GRAVITY,
         *SHAFT,
     )
-    understands = (
-        *WORDS,
-        "outer_diameter_limit",
-        "length_limit",
-        "ambient_temperature",
-        "steel_density",
-        "slip_speed",
-        "driven_inertia",
-        "engagements_per_hour",
-        "slip_time_limit",
-        *coverage.SOFTNESS,
-    )
-    declines, disregards = coverage.ENGAGED, ("switching_factor", "speed_factor")
+    understands = (*WORDS, *coverage.SIZES, *coverage.SLIPPED, "slip_speed", "ambient_temperature", "steel_density")
+    declines, as_limits = coverage.POWDER, coverage.AT_FULL_CURRENT
+    disregards = ("switching_factor", "speed_factor", "peak_torque")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

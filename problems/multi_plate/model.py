@@ -53,7 +53,7 @@ class MultiPlateClutch(DesignProblem):
         "plate_gap",
         "drag_torque_limit",
     )
-    declines = coverage.ENGAGED_IN_PACKS
+    declines, disregards, as_limits = coverage.ENGAGED_IN_PACKS, ("peak_torque",), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -353,7 +353,7 @@ class RollerCoupling(DesignProblem):
         "steel_density",
     )
     declines = coverage.JOINING
-    disregards = (*coverage.SOFTNESS, *coverage.FACTORS, *coverage.LIFE)
+    disregards, as_limits = (*coverage.SOFTNESS, *coverage.NO_HOURS), {"length_limit": "length"}
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

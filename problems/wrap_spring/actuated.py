@@ -199,7 +199,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, clearance fit"
     sources = requirements.SOURCES
     understands = requirements.COMMON
-    declines, disregards = coverage.ACTUATED, (*coverage.FACTORS, *coverage.LIFE)
+    declines, disregards, as_limits = coverage.ACTUATED, coverage.NO_HEAT, coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -258,7 +258,7 @@ class WrapSpringClutch(DesignProblem):
     title = "Wrap spring clutch, interference fit"
     sources = requirements.SOURCES
     understands = (*requirements.COMMON, "drag_torque_limit", "overrun_speed", "service_life")
-    declines, disregards = coverage.GRIPPING, coverage.FACTORS
+    declines, disregards, as_limits = coverage.GRIPPING, (*coverage.FACTORS, "ambient_temperature"), coverage.ENVELOPE
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

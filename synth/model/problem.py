@@ -56,6 +56,8 @@ class DesignProblem(FamilyHooks):
     declines: Mapping[str, str] = {}
     # Requirements of other families that cannot matter here: they are left out, which is said.
     disregards: tuple[str, ...] = ()
+    # Requirements of other families that are limits of a quantity here: its name.
+    as_limits: Mapping[str, str] = {}
     # What a spec must repeat beside options and requirements so that it asks for the same problem.
     restated: Mapping[str, Any] = {}
 

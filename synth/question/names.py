@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Any
 
 from synth.declaration import Declaration, RequirementRecord
-from synth.errors import InputError, NotCoveredError
+from synth.errors import ELSEWHERE, InputError, NotCoveredError
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.question.arguments import Requirements
@@ -72,7 +72,8 @@ def requirement_named(word: str, value: object, problem: DesignProblem, model: M
     if word not in model.declaration.names():
         _refuse_of_other_options(problem, word, value, model, catalogs)
         if word in problem.declines:
-            raise NotCoveredError(f"requirement {word}", value, problem.declines[word], ("requirements", word))
+            right = ELSEWHERE + problem.declines[word]
+            raise NotCoveredError(f"requirement {word}", value, right, ("requirements", word))
         refuse_power(word, value, model.declaration.requirements.values())
     return model.name_of(word, "requirements", list(model.declaration.requirements), "a requirement")
 

@@ -104,8 +104,8 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
     from synth.terminal.choice_console import comparison_explanation, how_long, print_comparison
     from synth.terminal.console import output, progress_display
 
-    def keep(found: Comparison, at: Path) -> None:
-        save_result(at, csv.files({**found.files(at), **found.family_files(at)}), FRONT, False)
+    def keep(comparison: Comparison, at: Path) -> None:
+        save_result(at, csv.files({**comparison.files(at), **comparison.family_files(at)}), FRONT, False)
 
     # What is found stands there until all families are searched.
     place = None if folder is None else place_for_stopped(folder, FRONT)
@@ -121,7 +121,7 @@ def compare_families(asked: Spec, folder: Path | None, every: bool, quiet: bool,
             catalogs=tables,
             options=asked.options,
             progress=progress,
-            so_far=None if place is None else lambda found: keep(found, place),
+            so_far=None if place is None else lambda comparison: keep(comparison, place),
             serving=None if quiet else lambda labels: tell(how_long(labels, asked.time_limit)),
             **stated,
         )

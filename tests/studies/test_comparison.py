@@ -569,7 +569,7 @@ def test_who_serves_a_plain_duty_and_what_the_others_say():
         "magnetic_powder_clutch",
         "multi_plate_clutch",
     }
-    assert "use it beside a clutch" in found["roller_coupling"].misfits[0]
+    assert "use a friction clutch, and this beside it" in found["roller_coupling"].misfits[0]
     for label in ("wrap_spring", "wrap_spring_actuated"):
         assert "use a friction clutch" in found[label].misfits[0]
         assert found[label].declined
@@ -605,9 +605,39 @@ def test_what_cannot_matter_to_a_family_is_left_out_and_said():
     found = compare(["wrap_spring"], wants, points=2)
     assert "engagements_per_hour" not in found.designs[0].frame.requirement_values
     assert found.outcomes[0].sentence.endswith("; not used: engagements_per_hour")
+    assert found.outcomes[0].not_used == "engagements_per_hour"
     wants = {"power": "15 kW", "driver_speed": "1450 1/min", "contact_speed_max": "1000 1/min"}
     with pytest.raises(synth.InputError, match="is engaged from outside at any speed: use a centrifugal clutch"):
         compare(["disc_clutch"], wants | {"driven_inertia": "0.4 kg*m2"})
+
+
+def test_a_requirement_of_others_may_be_a_limit_and_that_is_told():
+    room = {**PLAIN, "mass_limit": "1.3 kg"}  # a requirement of the roller coupling
+    found = compare(["disc_clutch", "wrap_spring", "roller_coupling"], room, points=2, limits={"mass": ">= 1.1 kg"})
+    assert outcome(found, "disc_clutch").sentence.endswith("; as limits: mass <= 1.3 kg")
+    assert all(1.1 <= d.values["mass"] <= 1.3 for d in found.designs)
+    table = found.families_frame().set_index("family")
+    assert table.loc["wrap_spring", "instead"] == "a friction clutch, or state peak_torque alone"
+    assert table.loc["roller_coupling", "instead"] == "a friction clutch, and this beside it"
+    one = applicants(["centrifugal_lever"], sheet_of(requirements={**PLAIN, "contact_speed_min": 800}), Catalogs())[0]
+    assert one.as_limits == {"contact_speed": ">= 800"}
+
+
+# Words of a drive; ambient temperature, top speed, wear life and shaft are requirements of some layers alone.
+WALKED = """load_torque power power_speed required_torque driver_speed safety_factor peak_torque overload_torque
+idle_speed contact_speed_min contact_speed_max full_torque_speed slip_speed overrun_speed driven_inertia
+engagements_per_hour switching_factor speed_factor outer_diameter_limit length_limit mass_limit slip_time_limit
+jerk_limit acceleration_limit startup_torque""".split()
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_family_has_an_answer_to_each_word_of_a_drive(family):
+    """Used, a limit, of no matter, or not covered: nothing that others understand is passed over."""
+    problem = synth.load(family)
+    answers = {*problem.understands, *problem.declines, *problem.disregards, *problem.as_limits}
+    assert set(WALKED) - answers == set()
+    quantities = {name for name, _, _ in problem.model(frozenset(), Catalogs()).declaration.quantities()}
+    assert set(problem.as_limits.values()) <= quantities
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -35,6 +35,7 @@ class FamilyOutcome:
     ``outcome`` is listed (it has designs on the common front), beaten, infeasible (proven), not_found (not proven),
     refused (it does not understand the sheet, lacks something, or refuses a value), not_covered (it cannot do what is
     asked) or stopped; ``sentence`` says why, and which requirements do not matter to it.
+    ``instead`` names what serves where it does not, ``not_used`` the requirements that do not matter to it.
     ``front`` is its own front, where it was searched, ``listed`` how many of its designs are on the common one,
     ``meanings`` what the objectives mean in it,
     ``offers`` its own objectives, and whether they count where none is named; nothing where some were named.
@@ -49,6 +50,8 @@ class FamilyOutcome:
     beaten_by: Design | None = None
     meanings: Mapping[str, str] = field(default_factory=dict)
     offers: Mapping[str, bool] = field(default_factory=dict)
+    instead: str = ""
+    not_used: str = ""
 
 
 @dataclass(frozen=True)
@@ -181,8 +184,19 @@ class Comparison:
         return with_groups(columns, rows, self.designs)
 
     def _family_table(self) -> tuple[list[str], list[list[Any]]]:
-        columns = ["family", "title", "outcome", "listed", "why", "designs", "certificate", "gap", "combinations"]
-        columns += [f"best {n}" for n in self.objectives] + [f"meaning of {n}" for n in self.objectives]
+        columns = [
+            "family",
+            "title",
+            "outcome",
+            "listed",
+            "why",
+            "instead",
+            "not_used",
+            "designs",
+            "certificate",
+            "gap",
+        ]
+        columns += ["combinations", *(f"{what} {n}" for what in ("best", "meaning of") for n in self.objectives)]
         rows: list[list[Any]] = []
         for x in self.outcomes:
             front_cells: list[Any] = [None] * 4
@@ -191,7 +205,20 @@ class Comparison:
                 front_cells = [len(x.front.designs), certificate.kind, certificate.gap, certificate.combinations]
             best = [best_value(x.front, n, sense) for n, sense in self.objectives.items()]
             meanings = [x.meanings.get(n) for n in self.objectives]
-            rows.append([x.family, x.title, x.outcome, x.listed, x.sentence, *front_cells, *best, *meanings])
+            rows.append(
+                [
+                    x.family,
+                    x.title,
+                    x.outcome,
+                    x.listed,
+                    x.sentence,
+                    x.instead,
+                    x.not_used,
+                    *front_cells,
+                    *best,
+                    *meanings,
+                ]
+            )
         return columns, rows
 
     def _json(self) -> str:

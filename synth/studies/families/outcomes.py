@@ -53,8 +53,12 @@ class Outcomes:
         front = outcome.front
         if front is not None and front.interrupted and front.designs:
             outcome = replace(outcome, sentence=f"{outcome.sentence}; best found, its search was not finished")
-        not_used = f"; not used: {', '.join(one.not_used)}" if one.not_used else ""
-        return replace(outcome, sentence=outcome.sentence + not_used)
+        not_used = ", ".join(one.not_used)
+        limits = "" if one.misfits else ", ".join(f"{name} {comparison}" for name, comparison in one.as_limits.items())
+        sentence = outcome.sentence + (f"; as limits: {limits}" if limits else "")
+        sentence += f"; not used: {not_used}" if not_used else ""
+        instead = "; ".join(m.partition(": use ")[2] for m in one.misfits) if one.declined else ""
+        return replace(outcome, sentence=sentence, instead=instead, not_used=not_used)
 
     def _of(self, one: Applicant) -> FamilyOutcome:
         d = one.declaration

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from synth.declaration import Declaration
-from synth.errors import InputError, NotCoveredError, at
+from synth.errors import ELSEWHERE, InputError, NotCoveredError, at
 from synth.model.problem import DesignProblem
 from synth.model.registry import every_declaration, every_family, load, skipping_faulty_families
 from synth.question import request, uncertainty
@@ -49,6 +49,7 @@ class Applicant:
     misfits: list[str] = field(default_factory=list)
     declined: bool = False
     not_used: tuple[str, ...] = ()  # requirements of the sheet that cannot matter to it
+    as_limits: Mapping[str, str] = field(default_factory=dict)  # those that are limits here: quantity -> comparison
 
     def robust(self, sheet: Sheet) -> dict[str, Any]:
         """Scatter of the sheet of all, and of its own."""
@@ -57,7 +58,11 @@ class Applicant:
     def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
         """Question of the family: the sheet of all and its own, and the objectives of the ranking."""
         entries: dict[str, Any] = {key: {**sheet[key], **self.family_sheet[key]} for key in ("limits", "fix", "parts")}
-        common = {n: v for n, v in sheet["requirements"].items() if n not in self.not_used}
+        for name, comparison in self.as_limits.items():
+            more = entries["limits"].get(name, [])
+            entries["limits"][name] = [*([more] if isinstance(more, str) else more), comparison]
+        apart = {*self.not_used, *self.problem.as_limits} - {*self.declaration.requirements}
+        common = {n: v for n, v in sheet["requirements"].items() if n not in apart}
         requirements = {**common, **self.family_sheet["requirements"]}
         return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **entries, **ranked)
 
@@ -117,6 +122,7 @@ def applicants(families: object, sheet: Sheet, catalogs: Catalogs) -> list[Appli
     _check_tables(candidates, catalogs)
     for one in candidates:
         one.not_used = tuple(name for name in sheet["requirements"] if name in one.problem.disregards)
+        one.as_limits = _as_limits(one, sheet["requirements"])
         declined = dict.fromkeys(r for name, r in one.problem.declines.items() if name in sheet["requirements"])
         if not one.declined:  # what it cannot do is said alone
             one.declined = bool(declined)
@@ -152,14 +158,19 @@ def _applicant(entry: object, sheet: Sheet, catalogs: Catalogs) -> Applicant:
     try:
         one = Applicant(*about, problem.model(specified, catalogs).declaration)
     except NotCoveredError as error:
-        return Applicant(*about, type(problem)().model(frozenset(), catalogs).declaration, [error.reason], True)
+        return Applicant(
+            *about,
+            type(problem)().model(frozenset(), catalogs).declaration,
+            [error.expected.removeprefix(ELSEWHERE)],
+            True,
+        )
     shared = {n: v for n, v in sheet["options"].items() if n not in problem.options}
     if shared and all(n in one.declaration.options for n in shared):
         one.problem = type(problem)(**{**shared, **problem.options})
         try:
             one.declaration = one.problem.model(specified, catalogs).declaration
         except NotCoveredError as error:
-            one.misfits, one.declined = [error.reason], True
+            one.misfits, one.declined = [error.expected.removeprefix(ELSEWHERE)], True
         except InputError as error:
             one.problem = problem
             one.misfits.append(f"refuses an option ({error})")
@@ -239,8 +250,14 @@ def _check_tables(candidates: Sequence[Applicant], catalogs: Catalogs) -> None:
 
 def _answered(one: Applicant, key: str, name: str) -> bool:
     """Whether a family has an answer to a requirement: with another duty, or why it is none of its own."""
-    answers = (one.problem.understands, one.problem.declines, one.problem.disregards)
+    answers = (one.problem.understands, one.problem.declines, one.problem.disregards, one.problem.as_limits)
     return key == "requirements" and any(name in known for known in answers)
+
+
+def _as_limits(one: Applicant, requirements: Mapping[str, Any]) -> dict[str, str]:
+    """Requirements of a sheet that are limits in a family: quantity -> comparison."""
+    words = [w for w in one.problem.as_limits if w in requirements and w not in one.declaration.requirements]
+    return {one.problem.as_limits[w]: f"{'>=' if w.endswith('_min') else '<='} {requirements[w]}" for w in words}
 
 
 def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
