@@ -13,7 +13,7 @@ from ..components.lining import wear
 from ..components.lining.model import Pair
 from ..components.shaft.model import ShaftRequirements, declare_shaft, shaft_for
 from ..friction.duty import Duty, Size
-from ..friction.engagement import Startup
+from ..friction.engagement import SOFT_START_SHARE, Startup, limit_soft_start
 from ..mechanics import plates
 from ..practice import UNSOURCED
 from ..sources import DRIVE, S1
@@ -180,6 +180,7 @@ class ConeRules(Block):
         source=UNSOURCED,
     )
     wear_life_min = replace(wear.LEAST_LIFE, text="Least engagements until the lining is worn")
+    soft_start_share = SOFT_START_SHARE
 
     @property
     def pull_max(self) -> Any:
@@ -321,5 +322,6 @@ def declare_rules(d: Declaration, cones: Cones, rules: ConeRules, body: ConeBody
         (d.at_least, "pressure_use", pressure, least, "N/mm2", "The lining is used", UNSOURCED),
     ):
         limit(name, value, border, unit, text=text, source=source)
+    limit_soft_start(d, cones.duty, cones.start, rules.soft_start_share)
     if rules.wear_life_min is not None:
         wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough", source=DRIVE)

@@ -13,6 +13,7 @@ import numpy as np
 from synth.declaration import Declaration
 
 from ...friction.duty import Size
+from ...friction.engagement import limit_soft_start
 from ...mechanics import heat, plates
 from ...mechanics import ring as ring_formulas
 from ...practice import UNSOURCED
@@ -314,6 +315,7 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         source=UNSOURCED,
     )
     _limit_mean_temperature(d, built, built.start.friction_work * duty.engagements_per_hour + power, oil)
+    limit_soft_start(d, duty, built.start, rules.soft_start_share)
     if rules.wear_life_min is not None:
         wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
 
