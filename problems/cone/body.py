@@ -13,7 +13,7 @@ from ..components.lining import wear
 from ..components.lining.model import Pair
 from ..components.shaft.model import ShaftRequirements, declare_shaft, shaft_for
 from ..friction.duty import Duty, Size
-from ..friction.engagement import Startup
+from ..friction.engagement import SOFT_START_SHARE, Startup, limit_soft_start
 from ..mechanics import plates
 from ..practice import UNSOURCED
 from ..sources import S1
@@ -182,6 +182,7 @@ class ConeRules(Block):
     wear_life_min = replace(
         wear.LEAST_LIFE, text="Least engagements until the lining is worn; else those in service life"
     )
+    soft_start_share = SOFT_START_SHARE
 
     @property
     def pull_max(self) -> Any:
@@ -323,4 +324,5 @@ def declare_rules(d: Declaration, cones: Cones, rules: ConeRules, body: ConeBody
         (d.at_least, "pressure_use", pressure, least, "N/mm2", "The lining is used", UNSOURCED),
     ):
         limit(name, value, border, unit, text=text, source=source)
+    limit_soft_start(d, cones.duty, cones.start, rules.soft_start_share)
     wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough")

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from synth.declaration import Requirement
+
 from ..mechanics import heat, plates, startup
+from ..practice import UNSOURCED
 from ..sources import PRACTICE, S0, S1
 from .duty import Duty, DutyInRows, Starting
 
@@ -13,6 +16,17 @@ if TYPE_CHECKING:
     from synth.declaration import Declaration
 
     from ..components.lining.model import Pair
+
+SOFT_START_SHARE = Requirement(
+    "-",
+    0.1,
+    lower=0,
+    upper=1,
+    symbol="k_soft",
+    text=f"Least ramp over slip time, where jerk limit is not given ({UNSOURCED})",
+    source=UNSOURCED,
+    group="practice",
+)
 
 
 @dataclass(frozen=True)
@@ -139,6 +153,7 @@ class Startup:
     friction_work: Any
     slip_time: Any
     peak_slip_power: Any
+    ramp_time: Any
 
 
 def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_time: Any) -> Startup:
@@ -158,7 +173,7 @@ def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_ti
     Returns
     -------
     Startup
-        Friction work, slip time and peak slip power.
+        Friction work, slip time, peak slip power and ramp.
     """
     d.at_least(
         "never_starts",
@@ -257,7 +272,14 @@ def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_ti
         "torque would allow",
         source=f"{S1}, omega2C <= omega1",
     )
-    return Startup(work, slip_time, power)
+    return Startup(work, slip_time, power, ramp_time)
+
+
+def limit_soft_start(d: Declaration, duty: Duty, start: Startup, share: Any) -> None:
+    """Declare the least ramp over the slip time [-], where no jerk limit asks for a soft start."""
+    if duty.jerk_limit is None:
+        least, text = share * start.slip_time, "Soft start: the torque does not come as a step"
+        d.at_least("soft_start", start.ramp_time, least, "s", text=text, source=UNSOURCED)
 
 
 def _name_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_time: Any) -> None:

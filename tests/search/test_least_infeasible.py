@@ -108,7 +108,7 @@ def test_where_only_sizes_between_the_makeable_ones_keep_all_limits_a_makeable_o
 
 def test_a_winding_of_a_batch_row_that_only_other_hubs_would_hold_names_its_limits() -> None:
     row = {"required_torque": "460.7 N*m", "bore_diameter": "48 mm", "length_limit": "180 mm"}
-    front = synth.synthesize("wrap_spring", row, points=3)
+    front = synth.synthesize(synth.load("wrap_spring", allow_obsolete="historical"), row, points=3)
     assert not front.designs
     missed = {c["limit"] for c in dict(front.explanation or {})["conflicts"]}
     assert missed

@@ -130,7 +130,8 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
     limits, objectives = done.stdout.split("\nLimits\n")[1].split("\nObjectives\n")
     for name, section, kind in (
         ("ring_ratio_min", limits, "log-convex"),
-        ("sliding_speed", limits, "log-affine"),
+        ("sliding_speed", limits, "log-convex"),  # the lesser of two columns
+        ("core_slenderness", limits, "log-affine"),
         ("outer_diameter", objectives, "log-convex"),
     ):
         assert section.split(f"\n{name} ")[1].split("class: ")[1].startswith(f"{kind} ")

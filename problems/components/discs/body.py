@@ -10,6 +10,7 @@ import numpy as np
 from synth.declaration import Block, Declaration, Requirement
 
 from ...friction.duty import Size
+from ...friction.engagement import SOFT_START_SHARE, limit_soft_start
 from ...mechanics import disc, plates
 from ...practice import UNSOURCED
 from ...sources import DRIVE
@@ -80,6 +81,7 @@ class DiscRules(Block):
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
+    soft_start_share = SOFT_START_SHARE
     top_speed = Requirement(
         "1/min",
         lower=0.1,
@@ -199,33 +201,18 @@ def declare_body(d: Declaration, discs: Discs, body: DiscBody) -> None:
 
 def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
     """Declare the limits that an engineer adds to discs."""
-    ring, pair = discs.ring, discs.pair
-    text = "So many discs are built"
-    d.at_most("discs_practice", discs.pack.discs, rules.discs_max, "-", text=text, source=UNSOURCED)
-    d.at_least(
-        "pressure_plate_stiffness",
-        discs.pack.plate_thickness,
-        2 * ring.outer_radius / rules.plate_stiffness_ratio,
-        "mm",
-        text="The pressure plate does not cone",
-        source=UNSOURCED,
-    )
-    d.at_least(
-        "release_clearance",
-        discs.duty.plate_gap,
-        rules.disc_runout / 2,
-        "mm",
-        text="The disc comes free although it runs out",
-        source=RUNOUT,
-    )
-    d.at_least(
-        "pressure_use",
-        d.derived["surface_pressure"].sx,
-        rules.pressure_use_min * pair.linings.pressure(pair.part),
-        "N/mm2",
-        text="The lining is used",
-        source=UNSOURCED,
-    )
+    ring, pair, pack, pressure = discs.ring, discs.pair, discs.pack, d.derived["surface_pressure"].sx
+    thickness, least = 2 * ring.outer_radius / rules.plate_stiffness_ratio, rules.pressure_use_min
+    used, free = least * pair.linings.pressure(pair.part), "The disc comes free although it runs out"
+    stiff, coned = pack.plate_thickness, "The pressure plate does not cone"
+    for limit, name, value, border, unit, text, source in (
+        (d.at_most, "discs_practice", pack.discs, rules.discs_max, "-", "So many discs are built", UNSOURCED),
+        (d.at_least, "pressure_plate_stiffness", stiff, thickness, "mm", coned, UNSOURCED),
+        (d.at_least, "release_clearance", discs.duty.plate_gap, rules.disc_runout / 2, "mm", free, RUNOUT),
+        (d.at_least, "pressure_use", pressure, used, "N/mm2", "The lining is used", UNSOURCED),
+    ):
+        limit(name, value, border, unit, text=text, source=source)
+    limit_soft_start(d, discs.duty, discs.start, rules.soft_start_share)
     if rules.top_speed is not None:
         d.at_most(
             "rim_speed",

@@ -14,6 +14,7 @@ from synth.declaration import Declaration
 
 from ...duty import cooling
 from ...friction.duty import Size
+from ...friction.engagement import limit_soft_start
 from ...mechanics import plates
 from ...mechanics import ring as ring_formulas
 from ...practice import UNSOURCED
@@ -318,6 +319,7 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         source=UNSOURCED,
     )
     _limit_mean_temperature(d, built, built.start.friction_work * duty.engagements_per_hour + power, oil)
+    limit_soft_start(d, duty, built.start, rules.soft_start_share)
     wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from synth.declaration import Block, Declaration, Option, Requirement
 
 from ...friction.duty import Duty
+from ...friction.engagement import SOFT_START_SHARE
 from ...mechanics import guide_friction
 from ...practice import UNSOURCED
 from ...sources import S0, TYPICAL
@@ -347,6 +348,7 @@ class PackRules(Block):
         source=UNSOURCED,
     )
     wear_life_min = wear.LEAST_LIFE
+    soft_start_share = SOFT_START_SHARE
 
     def limit_stroke(self, d: Declaration, *, stroke: Any, ring: Ring) -> None:
         """Declare the limit of the stroke [m], where an actuator has one."""

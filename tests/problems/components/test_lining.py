@@ -174,3 +174,15 @@ def test_one_disc_is_built_unless_two_are_asked_for():
 def test_oil_ages_before_lining_and_steel_give_way():
     assert allowed(pack(), "oil_temperature") == pytest.approx(80, rel=1e-12)
     assert allowed(pack(), "oil_temperature") < allowed(pack(), "mean_temperature")
+
+
+def test_no_torque_comes_as_a_step_where_no_jerk_is_limited():
+    for found in (disc(), pack(), cone()):
+        ramp, least = found.limits["soft_start"]
+        assert ramp == found.values["ramp_time"]
+        assert least == pytest.approx(0.1 * found.values["slip_time"], rel=1e-12)
+    assert disc(requirements={"soft_start_share": 0.2}).limits["soft_start"][1] == pytest.approx(
+        2 * disc().limits["soft_start"][1], rel=1e-12
+    )
+    for found in (disc(requirements={"jerk_limit": "300 rad/s3"}), disc(practice="off")):
+        assert "soft_start" not in found.limits
