@@ -65,11 +65,11 @@ CASES = {
             ),
             "practice_self": KnownDesign(
                 {
-                    "mean_diameter": "386 mm",
+                    "mean_diameter": "395 mm",
                     "generator_length": "60 mm",
                     "cone_half_angle": "12 deg",
-                    "shell_thickness": "13 mm",
-                    "actuation_force": "4.4 kN",
+                    "shell_thickness": "13.5 mm",
+                    "actuation_force": "4.3 kN",
                     "ramp_time": "0.06 s",
                 },
                 {},

@@ -9,7 +9,7 @@ import numpy as np
 from synth.declaration import Declaration
 
 from .. import cost, practice
-from ..components.lining.model import Pair
+from ..components.lining.model import MakersHeat, Pair, RateHeat
 from ..friction.duty import Duty, Size
 from ..practice import by_scope
 from . import body
@@ -21,6 +21,7 @@ class Sources:
     """The cones by the formulas of their sources, with nothing around them."""
 
     linings = staticmethod(practice.allowed_linings)
+    heat: ClassVar[type[MakersHeat]] = MakersHeat
     mass_of: ClassVar[str] = "Both shells and the lining, times the mass factor of the layout"
     along: ClassVar[str] = "Length of the cone and what the layout adds to it"
     pull_max: Any = None  # pull over spring force; None where the cones must come apart by themselves
@@ -87,6 +88,7 @@ class Ruled(WithBody):
     """Cones by rules of practice."""
 
     linings = staticmethod(practice.current_linings)
+    heat = RateHeat
 
     def __init__(self, d: Declaration, duty: Duty) -> None:
         super().__init__(d, duty)

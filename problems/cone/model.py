@@ -142,7 +142,7 @@ class ConeClutch(DesignProblem):
         shape = self._declare_cone(d, wants=wants, layer=layer)
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(
-            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, linings=layer.linings
+            d, suited=["'cone facing' in surfaces"], duty=duty, lubrication=None, linings=layer.linings, heat=layer.heat
         )
         layout = d.part(
             "cone_layout",

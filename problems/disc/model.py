@@ -70,7 +70,12 @@ class DiscClutch(DesignProblem):
         )
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(
-            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings
+            d,
+            suited=["'disc facing' in surfaces"],
+            duty=duty,
+            lubrication="dry",
+            linings=layer.linings,
+            heat=layer.heat,
         )
         lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
         start = disc_pack.declare_disc_start(d, lined, force=force, ramp_time=ramp_time)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -50,7 +49,7 @@ def stands(d: Declaration) -> bool:
     return bool(np.isnan(_figure(d, TURNING, np.nan)))
 
 
-def refuse_unfit(d: Declaration, lubrication: str | None, *, turns: bool) -> None:
+def refuse_unfit(d: Declaration, lubrication: str | None, *, turning: bool) -> None:
     """Refuse a cooling that does not go with the lubrication, None for any, or with a body that turns.
 
     Raises
@@ -59,18 +58,14 @@ def refuse_unfit(d: Declaration, lubrication: str | None, *, turns: bool) -> Non
         Names those that go.
     """
     chosen = d.options["cooling"].chosen
-    if turns and stands(d):
+    if turning and stands(d):
         fitting = [other for other in d.designations(TABLE) if np.isfinite(_figure(d, TURNING, np.nan, other))]
         raise InputError("cooling_stands", f"cooling {chosen}", f"a cooling of bodies that turn: {', '.join(fitting)}")
-    if lubrication is not None and chosen not in (fitting := list(_fitting(d, lubrication))):
+    suited = ("", "any", lubrication)
+    fitting = [other for other in d.designations(TABLE) if d.cell(TABLE, other, "lubrication") in suited]
+    if lubrication is not None and chosen not in fitting:
         right = f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}"
         raise InputError("lubrication_mismatch", f"cooling {chosen}", right)
-
-
-def _fitting(d: Declaration, lubrication: str) -> Iterator[str]:
-    for other in d.designations(TABLE):
-        if d.cell(TABLE, other, "lubrication") in ("", "any", lubrication):
-            yield other
 
 
 def _figure(d: Declaration, column: str, otherwise: float, of: str | None = None) -> float:

@@ -151,7 +151,9 @@ class ElectromagneticClutch(DesignProblem):
         ring = declare_ring(d, ratio_min=pack_layer.ratio_min, ratio_max=0.25)
         magnet = layer.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication=lubrication, linings=pack_layer.linings)
+        pair = declare_friction_pair(
+            d, suited=SUITED, duty=duty, lubrication=lubrication, linings=pack_layer.linings, heat=pack_layer.heat
+        )
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         stack = plate_pack.Stack(duty, options, wants, ring, pair, pack)
         torque, torques = plate_pack.declare_pack_torques(
@@ -189,14 +191,12 @@ class ElectromagneticClutch(DesignProblem):
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=pack_layer.requirements(d))
         magnet = layer.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings)
+        pair = declare_friction_pair(
+            d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings, heat=pack_layer.heat
+        )
         lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
         start = disc_pack.declare_disc_start(
-            d,
-            lined,
-            force=magnet.actuation_force,
-            ramp_time=ramp_time,
-            needs=(magnet_blocks.HOLDS,),
+            d, lined, force=magnet.actuation_force, ramp_time=ramp_time, needs=(magnet_blocks.HOLDS,)
         )
         discs = disc_pack.Discs(**vars(lined), start=start, size=disc_pack.disc_size(lined))
         disc_pack.declare_disc_inertia(d, discs)
@@ -262,11 +262,7 @@ class ElectromagneticClutch(DesignProblem):
             length=pack.length + magnet.shape.length,
         )
         friction.declare_size(
-            d,
-            size=size,
-            mass_of=layer.mass_of,
-            outside="Outside of pack or magnet",
-            along=layer.along,
+            d, size=size, mass_of=layer.mass_of, outside="Outside of pack or magnet", along=layer.along
         )
         friction.declare_envelope(
             d, duty=pressed.duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length

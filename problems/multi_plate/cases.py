@@ -110,16 +110,16 @@ CASES = {
             ),
             "practice_catalogue": KnownDesign(
                 {
-                    "ring_outer_diameter": "170 mm",
-                    "ring_inner_diameter": "125 mm",
-                    "actuation_force": "26.6 kN",
-                    "ramp_time": "0.7 s",
+                    "ring_outer_diameter": "175 mm",
+                    "ring_inner_diameter": "129 mm",
+                    "actuation_force": "25.5 kN",
+                    "ramp_time": "0.6 s",
                 },
                 {"friction_surfaces": 6},
                 {
                     "friction_pair": "graphitic_wet",
                     "inner_plate": "core 2.5",
-                    "outer_plate": "core 3.5",
+                    "outer_plate": "core 3",
                     "inner_spline": "DIN5464 20x112x125",
                 },
             ),

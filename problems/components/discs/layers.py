@@ -12,6 +12,7 @@ from synth.declaration import Declaration
 from ... import cost, practice
 from ...friction.duty import DutyInRows, DutyOfDiscs, Size
 from ...practice import by_scope
+from ..lining.model import MakersHeat, RateHeat
 from ..shaft.model import ShaftRequirements
 from . import body
 from .body import DiscHousing, DiscRules
@@ -24,6 +25,7 @@ class Sources:
     kind: ClassVar[type[DutyInRows]] = DutyInRows
     linings = staticmethod(practice.allowed_linings)
     ring_ratios: ClassVar[tuple[float, float]] = (0.11, 0.13)
+    heat: ClassVar[type[MakersHeat]] = MakersHeat
     mass_of: ClassVar[str] = "Pressure plates, linings and cores, without flywheel, springs and cover"
     along: ClassVar[str] = "Length of the released discs and pressure plates, without flywheel, springs and cover"
     shaft: ShaftRequirements | None = None
@@ -107,6 +109,7 @@ class Ruled(WithBody):
     kind = DutyOfDiscs
     linings = staticmethod(practice.current_linings)
     ring_ratios = (0.17, 0.28)
+    heat = RateHeat
 
     def __init__(self, d: Declaration, housing: type[DiscHousing], duty: DutyInRows) -> None:
         super().__init__(d, housing, duty)

@@ -17,11 +17,40 @@ if TYPE_CHECKING:
     from ...friction.engagement import Startup
 
 
+PLENTY = 1e12  # J/m2: where a row does not tell what a single engagement may bring, only that of an hour counts
+
+
+class MakersHeat:
+    """Heat that linings stand by their makers: that of one engagement, and that of an hour."""
+
+    @staticmethod
+    def limit(d: Declaration, *, duty: Duty, pair: Pair, single: Any, hourly: Any) -> None:
+        """Declare the limits of heat over area, of an engagement [J/m2] and of an hour [W/m2]."""
+        text = "The lining stands the hourly heat"
+        d.at_most("specific_heat", hourly, pair.hourly_allow, "J/(mm2*h)", text=text, source=f"{S1}, w")
+        text, source = "The lining stands the heat of one engagement", "makers' limit for a single engagement"
+        once = pair.part.optional("q_single_allow")
+        d.at_most("engagement_heat", single, once, "J/mm2", text=text, source=source)
+
+
+class RateHeat(MakersHeat):
+    """Heat that linings stand in practice: by one law from a single engagement to the hourly heat."""
+
+    @staticmethod
+    def limit(d: Declaration, *, duty: Duty, pair: Pair, single: Any, hourly: Any) -> None:
+        """Declare the limit of heat over area, of an engagement [J/m2] at its rate."""
+        once = pair.part.filled("q_single_allow", PLENTY)
+        allowed = heat.allowed_work_at_rate(once, pair.hourly_allow / once, duty.engagements_per_hour)
+        text = "The lining stands the heat of an engagement at this rate"
+        d.at_most("rate_heat", single, allowed, "J/mm2", text=text, source="VDI 2241, from memory; makers' limits")
+
+
 @dataclass(frozen=True)
 class Pair:
     """Slot friction_pair with the friction to reckon with."""
 
     part: Part
+    heat: type[MakersHeat]
     mu_low: Any
     mu_high: Any
     hourly_allow: Any
@@ -30,6 +59,7 @@ class Pair:
 def declare_friction_pair(
     d: Declaration,
     *,
+    heat: type[MakersHeat],
     suited: Sequence[str],
     duty: Duty,
     lubrication: str | None,
@@ -41,6 +71,8 @@ def declare_friction_pair(
     ----------
     d : Declaration
         Takes the declarations.
+    heat : type
+        What heat the lining stands.
     suited : sequence of str
         Conditions on the rows that suit the family.
     duty : Duty
@@ -68,6 +100,7 @@ def declare_friction_pair(
     worst_case = duty.friction_basis == "worst_case"
     pair = Pair(
         part=part,
+        heat=heat,
         mu_low=part.mu_min if worst_case else part.mu_dynamic,
         mu_high=part.mu_max if worst_case else part.mu_dynamic,
         hourly_allow=part.first_of("q_hourly_allow_forced_oil", "q_hourly_allow")
@@ -176,22 +209,7 @@ def declare_surface_loads(
         text="The lining stands the pressure",
         source=f"{S1}, sizing",
     )
-    d.at_most(
-        "specific_heat",
-        hourly,
-        pair.hourly_allow,
-        "J/(mm2*h)",
-        text="The lining stands the hourly heat",
-        source=f"{S1}, w",
-    )
-    d.at_most(
-        "engagement_heat",
-        single,
-        part.optional("q_single_allow"),
-        "J/mm2",
-        text="The lining stands the heat of one engagement",
-        source="makers' limit for a single engagement",
-    )
+    pair.heat.limit(d, duty=duty, pair=pair, single=single, hourly=hourly)
     d.at_most(
         "specific_power",
         density,

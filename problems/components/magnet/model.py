@@ -112,13 +112,7 @@ class MagnetRulesInOil(MagnetRules):
     group = "practice"
 
     oil_temperature_limit = Requirement(
-        "degC",
-        120,
-        lower=20,
-        upper=300,
-        symbol="T_oil_max",
-        text=f"Largest temperature of the magnet in oil, which ages ({UNSOURCED})",
-        source=UNSOURCED,
+        "degC", 120, lower=20, upper=300, symbol="T_oil_max", text="What oil around a magnet stands", source=UNSOURCED
     )
 
     def limit_oil(self, d: Declaration, ambient_temperature: Any) -> None:
@@ -450,12 +444,7 @@ def limit_magnet(
         source="L/R of the circuit; derived",
     )
     d.at_least(
-        "ramp_time",
-        pressed.ramp_time,
-        rules.ramp_time_min,
-        "s",
-        text="An armature needs its time",
-        source=UNSOURCED,
+        "ramp_time", pressed.ramp_time, rules.ramp_time_min, "s", text="An armature needs its time", source=UNSOURCED
     )
 
 

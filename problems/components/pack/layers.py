@@ -11,6 +11,7 @@ from synth.declaration import Declaration, Part
 from ... import cost, practice
 from ...friction.duty import DutyOfPack, DutyOfPlates, Size
 from ...practice import by_scope
+from ..lining.model import MakersHeat, RateHeat
 from ..shaft.model import ShaftRequirements
 from . import body
 from .model import BuiltPack, advise_mean_temperature
@@ -24,6 +25,7 @@ class Sources:
     pack: ClassVar[type[PackRequirements]] = PackRequirements
     linings = staticmethod(practice.allowed_linings)
     ratio_min: ClassVar[float] = 0.10
+    heat: ClassVar[type[MakersHeat]] = MakersHeat
     mass_of: ClassVar[str] = "Plates with linings"
     along: ClassVar[str] = "Length of the released pack, without actuator and end stops"
     objectives: ClassVar[tuple[str, ...]] = ("mass", "actuation_force")  # by default
@@ -103,6 +105,7 @@ class Ruled(WithBody):
     linings = staticmethod(practice.current_linings)
     ratio_min = 0.15
     objectives = ("mass", "length")
+    heat = RateHeat
 
     def __init__(self, d: Declaration, housing: type[body.PackHousing], lubrication: str, required: Any) -> None:
         super().__init__(d, housing, lubrication, required)
