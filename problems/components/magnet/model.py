@@ -18,6 +18,7 @@ from ..lining.model import Pair
 from . import formulas as pot_magnet
 
 HOLDS = "magnet_overcomes_springs"
+OIL = "oil_temperature_limit"
 STICKING_GAP = 0.3e-3  # m, least of the typical gaps
 STICKING_SHARE = 0.75  # least of the typical gaps over their middle, 0.3 and 0.4 mm
 
@@ -102,24 +103,15 @@ class MagnetRules(coil_blocks.CoilRules):
         source=UNSOURCED,
     )
 
-    def limit_oil(self, d: Declaration, ambient_temperature: Any) -> None:
-        """Declare what oil around the magnet stands; a dry one has none."""
 
-
-class MagnetRulesInOil(MagnetRules):
-    """Rules for magnets in oil, all in SI."""
+class OilRules(Block):
+    """What oil around a magnet stands, in SI."""
 
     group = "practice"
 
     oil_temperature_limit = Requirement(
-        "degC", 120, lower=20, upper=300, symbol="T_oil_max", text="What oil around a magnet stands", source=UNSOURCED
+        "degC", 120, lower=0, upper=250, symbol="T_oil_max", text="What oil around a magnet stands", source=UNSOURCED
     )
-
-    def limit_oil(self, d: Declaration, ambient_temperature: Any) -> None:
-        """Declare that the magnet is not too hot for the oil."""
-        hottest = self.oil_temperature_limit - ambient_temperature
-        text = "The oil stands the temperature of the magnet"
-        d.at_most("coil_in_oil", d.derived["coil_temperature_rise"].sx, hottest, "K", text=text, source=UNSOURCED)
 
 
 @dataclass(frozen=True)
@@ -208,8 +200,10 @@ class Magnet:
 
 def declare_magnet_rules(d: Declaration) -> MagnetRules:
     """Declare the requirements that rules for magnets go by, and refuse windows that no coil can have."""
+    rules = d.block(MagnetRules)
     oiled = "lubrication" in d.options and d.options["lubrication"].chosen == "oil"
-    rules = d.block(MagnetRulesInOil if oiled else MagnetRules)
+    if oiled and OIL not in d.requirements:  # which a pack in oil may ask for as well
+        d.block(OilRules)
     coil_blocks.refuse_bad_window(d, rules)
     return rules
 
@@ -422,7 +416,9 @@ def limit_magnet(
     """Declare the limits that an engineer adds to a magnet that presses a pack, and to its coil."""
     wants, unknowns = magnet.wants, magnet.unknowns
     coil_blocks.limit_coil(d, rules=rules, wants=magnet.iron, unknowns=unknowns)
-    rules.limit_oil(d, pressed.duty.ambient_temperature)
+    if OIL in d.requirements:
+        hottest, text = d.requirements[OIL].sx - pressed.duty.ambient_temperature, "The oil stands the magnet"
+        d.at_most("coil_in_oil", d.derived["coil_temperature_rise"].sx, hottest, "K", text=text, source=UNSOURCED)
     linkage = pull.circuit.linkage(unknowns.flux_density)
     rise = coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage)
     worn_pull = _declare_worn_pull(d, pressed, magnet, pull)
