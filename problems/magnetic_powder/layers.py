@@ -12,6 +12,7 @@ from synth.declaration import Block, Declaration, Part, Requirement
 from .. import cost
 from ..components.coil import model as coil_blocks
 from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
+from ..duty import cooling
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
 from . import formulas as powder
@@ -238,6 +239,7 @@ class Ruled(WithBody):
             text="As much powder as the torque needs",
             source=UNSOURCED,
         )
+        cooling.advise_stronger(d, "coil_temperature", cooling.STILL)
         load = d.derive(
             "powder_load",
             "W/kg",

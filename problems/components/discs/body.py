@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Requirement
 
+from ...duty import cooling
 from ...friction.duty import Size
 from ...mechanics import disc, plates
 from ...practice import UNSOURCED
@@ -223,5 +224,6 @@ def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
             text="The disc does not burst",
             source=UNSOURCED,
         )
+    cooling.advise_stronger(d, "mean_temperature")
     if rules.wear_life_min is not None:
         wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)

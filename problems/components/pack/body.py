@@ -326,5 +326,6 @@ def declare_rules(d: Declaration, built: BuiltPack, body: Body, rules: PackRules
         text="The lining stands the mean temperature, drag included",
         source="Neale, Tribology Handbook, Table 7.4",
     )
+    cooling.advise_stronger(d, "mean_temperature")
     if rules.wear_life_min is not None:
         wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)

@@ -6,6 +6,7 @@ import pytest
 
 import synth
 from synth.tables.catalogs import Catalogs
+from tests.problems.of_a_family import remarks
 
 POWDER = {
     "values": {
@@ -119,3 +120,19 @@ def test_without_the_heat_of_one_engagement_only_that_of_an_hour_counts():
     lacking = rows.drop(columns=[head for head in rows if str(head).startswith("q_single_allow")])
     found = synth.evaluate(synth.load("disc_clutch"), LOAD, **DISC, catalogs={"friction_materials": lacking})
     assert found.limits["rate_heat"][1] == pytest.approx(18e6 / 50)
+
+
+def test_the_next_stronger_cooling_is_named_where_little_is_left():
+    cool = disc({"engagements_per_hour": "10 1/h"})
+    assert "stronger_cooling" not in remarks(cool)
+    limit = cool.limits["mean_temperature"]
+    often = f"{9.5 * limit[1] / limit[0]} 1/h"  # 95 % of what the lining stands
+    for chosen, following, share in (("still_air", "finned", 40), ("forced_air", "finned_fan", 64)):
+        scale = {"still_air": 1, "forced_air": 4}[chosen]
+        found = disc({"engagements_per_hour": f"{scale * float(often.split()[0])} 1/h"}, cooling=chosen)
+        text = next(x for x in found.advice if x.startswith("stronger_cooling"))
+        assert f"cooling {following.replace('_', ' ')} would bring the rise to about {share} %" in text
+        again = disc({"engagements_per_hour": f"{scale * float(often.split()[0])} 1/h"}, cooling=following)
+        assert found.steps["cooler_rise"] == pytest.approx(again.values["mean_temperature_rise"])
+    typed = {"engagements_per_hour": often, "heat_transfer": "20 W/(m2*K)"}
+    assert "stronger_cooling" not in remarks(disc(typed))
