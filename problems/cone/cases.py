@@ -65,7 +65,7 @@ CASES = {
             ),
             "practice_self": KnownDesign(
                 {
-                    "mean_diameter": "386 mm",
+                    "mean_diameter": "395 mm",
                     "generator_length": "60 mm",
                     "cone_half_angle": "12 deg",
                     "shell_thickness": "13 mm",

@@ -86,9 +86,9 @@ class DiscClutch(DesignProblem):
         friction.declare_size(d, size=size, mass_of=layer.mass_of, outside="Outside of the cover", along=layer.along)
         layer.declare_body(d, discs)
         layer.declare_cost(d, discs)
-        layer.declare_rules(d, discs)
         disc_pack.declare_disc_inertia(d, discs)
         disc_pack.declare_disc_temperature(d, discs)
+        layer.declare_rules(d, discs)
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         d.headline(
             "mass",

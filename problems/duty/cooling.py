@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,10 +9,12 @@ import numpy as np
 from synth.declaration import Declaration, Option, Part
 from synth.errors import InputError
 
+from ..practice import UNSOURCED
 from ..sources import S0
 
 TABLE = "cooling_options"
 STILL, TURNING = "heat_transfer_still", "heat_transfer"
+TYPED = {TURNING: "heat_transfer", STILL: "still_heat_transfer"}  # requirements that win over a row
 STILL_AIR = 12.0  # of a body that stands, where a table of one's own does not tell [W/(m2 K)]
 
 COOLING = Option(
@@ -50,7 +51,7 @@ def stands(d: Declaration) -> bool:
     return bool(np.isnan(_figure(d, TURNING, np.nan)))
 
 
-def refuse_unfit(d: Declaration, lubrication: str | None, *, turns: bool) -> None:
+def refuse_unfit(d: Declaration, lubrication: str | None, *, turning: bool) -> None:
     """Refuse a cooling that does not go with the lubrication, None for any, or with a body that turns.
 
     Raises
@@ -59,18 +60,33 @@ def refuse_unfit(d: Declaration, lubrication: str | None, *, turns: bool) -> Non
         Names those that go.
     """
     chosen = d.options["cooling"].chosen
-    if turns and stands(d):
+    if turning and stands(d):
         fitting = [other for other in d.designations(TABLE) if np.isfinite(_figure(d, TURNING, np.nan, other))]
         raise InputError("cooling_stands", f"cooling {chosen}", f"a cooling of bodies that turn: {', '.join(fitting)}")
-    if lubrication is not None and chosen not in (fitting := list(_fitting(d, lubrication))):
+    suited = ("", "any", lubrication)
+    fitting = [other for other in d.designations(TABLE) if d.cell(TABLE, other, "lubrication") in suited]
+    if lubrication is not None and chosen not in fitting:
         right = f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}"
         raise InputError("lubrication_mismatch", f"cooling {chosen}", right)
 
 
-def _fitting(d: Declaration, lubrication: str) -> Iterator[str]:
-    for other in d.designations(TABLE):
-        if d.cell(TABLE, other, "lubrication") in ("", "any", lubrication):
-            yield other
+def advise_stronger(d: Declaration, limit: str, column: str = TURNING) -> None:
+    """Remark a limit on a rise that is used by more than 90 %, with the next stronger cooling."""
+    chosen = d.options["cooling"].chosen
+    strength = {x: _figure(d, column, STILL_AIR, x) * _figure(d, "area_factor", 1.0, x) for x in d.designations(TABLE)}
+    suited = (d.cell(TABLE, chosen, "lubrication"), "any")
+    ratios = [(strength[x] / strength[chosen], x) for x in strength if d.cell(TABLE, x, "lubrication") in suited]
+    if max(ratios)[0] <= 1 or TYPED[column] in d.specified:
+        return
+    factor, following = min((x for x in ratios if x[0] > 1), key=lambda x: x[0])
+    used, following = d.limits[limit], following.replace("_", " ")
+    text = f"Rise over ambient with cooling {following}, about"
+    d.step("cooler_rise", "K", used.value / factor, symbol="dT_next", text=text, source=UNSOURCED)
+    message = (
+        f"{limit.replace('_', ' ')} is used by more than 90 %: cooling {following} would bring the rise to about "
+        f"{100 / factor:.0f} % of what it is (cooler rise)"
+    )
+    d.advise("stronger_cooling", used.value > 0.9 * used.limit, message, source=UNSOURCED)
 
 
 def _figure(d: Declaration, column: str, otherwise: float, of: str | None = None) -> float:

@@ -131,21 +131,21 @@ CASES = {
         designs={
             "practice": KnownDesign(
                 {
-                    "ring_outer_diameter": "107 mm",
-                    "ring_inner_diameter": "79 mm",
-                    "inner_pole_width": "13 mm",
-                    "coil_length": "28 mm",
-                    "coil_height": "15 mm",
-                    "yoke_thickness": "10.5 mm",
-                    "flux_density": "1.2843021573852704 T",
-                    "ramp_time": "0.08963995371559914 s",
+                    "ring_outer_diameter": "90 mm",
+                    "ring_inner_diameter": "66 mm",
+                    "inner_pole_width": "14.5 mm",
+                    "coil_length": "24 mm",
+                    "coil_height": "14 mm",
+                    "yoke_thickness": "11.5 mm",
+                    "flux_density": "1.3025386623594057 T",
+                    "ramp_time": "1.7792610406384388 s",
                 },
                 {"friction_surfaces": 4},
                 {
-                    "winding_wire": "Cu 0.56 class 155",
+                    "winding_wire": "Cu 0.5 class 155",
                     "friction_pair": "graphitic_wet",
-                    "inner_plate": "core 1.2",
-                    "outer_plate": "core 1.2",
+                    "inner_plate": "core 1",
+                    "outer_plate": "core 1",
                 },
             ),
             "practice_dry": KnownDesign(

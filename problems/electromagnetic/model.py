@@ -196,11 +196,7 @@ class ElectromagneticClutch(DesignProblem):
         pair = declare_friction_pair(d, suited=SUITED, duty=duty, lubrication="dry", linings=pack_layer.linings)
         lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
         start = disc_pack.declare_disc_start(
-            d,
-            lined,
-            force=magnet.actuation_force,
-            ramp_time=ramp_time,
-            needs=(magnet_blocks.HOLDS,),
+            d, lined, force=magnet.actuation_force, ramp_time=ramp_time, needs=(magnet_blocks.HOLDS,)
         )
         discs = disc_pack.Discs(**vars(lined), start=start, size=disc_pack.disc_size(lined))
         disc_pack.declare_disc_inertia(d, discs)
@@ -266,11 +262,7 @@ class ElectromagneticClutch(DesignProblem):
             length=pack.length + magnet.shape.length,
         )
         friction.declare_size(
-            d,
-            size=size,
-            mass_of=layer.mass_of,
-            outside="Outside of pack or magnet",
-            along=layer.along,
+            d, size=size, mass_of=layer.mass_of, outside="Outside of pack or magnet", along=layer.along
         )
         friction.declare_envelope(
             d, duty=pressed.duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length

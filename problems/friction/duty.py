@@ -238,13 +238,7 @@ class DutyInRows(Duty):
     group = "duty"
 
     starts_in_row = Requirement(
-        "-",
-        lower=1,
-        upper=1e6,
-        optional=True,
-        symbol="n_row",
-        text="Starts of a row that begins cold, after which it cools down; without it the row does not end",
-        source=DRIVE,
+        "-", lower=1, upper=1e6, optional=True, symbol="n_row", text="Starts of a row that begins cold", source=DRIVE
     )
 
     @property
@@ -351,7 +345,7 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
         cooling=cooling_default,
         heat_transfer=lambda duty: cooling.row(d).heat_transfer,
     )
-    cooling.refuse_unfit(d, lubrication, turns=True)
+    cooling.refuse_unfit(d, lubrication, turning=True)
     refuse_contradictions(d, duty)
     if duty.startup_torque is not None:
         d.refuse(

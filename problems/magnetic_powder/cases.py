@@ -98,17 +98,17 @@ CASES = {
         designs={
             "practice": KnownDesign(
                 {
-                    "gap_radius": "95 mm",
-                    "pole_length": "8 mm",
-                    "powder_gap": "1.05 mm",
-                    "coil_length": "22 mm",
-                    "coil_height": "8 mm",
-                    "yoke_thickness": "5.5 mm",
-                    "flux_density": "0.9999999981967138 T",
+                    "gap_radius": "77 mm",
+                    "pole_length": "15 mm",
+                    "powder_gap": "1 mm",
+                    "coil_length": "19 mm",
+                    "coil_height": "7 mm",
+                    "yoke_thickness": "8 mm",
+                    "flux_density": "0.7558659864679936 T",
                     "coil": "rotating",
                 },
                 {},
-                {"winding_wire": "Cu 0.63 class 155", "powder": "carbonyl_graphite"},
+                {"winding_wire": "Cu 0.5 class 155", "powder": "carbonyl_graphite"},
             ),
             "practice_parts": KnownDesign(
                 {

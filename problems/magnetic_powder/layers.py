@@ -12,7 +12,7 @@ from synth.declaration import Block, Declaration, Part, Requirement
 from .. import cost
 from ..components.coil import model as coil_blocks
 from ..components.shaft.model import ShaftSize, declare_shaft, shaft_for
-from ..duty import Start
+from ..duty import Start, cooling
 from ..mechanics import centrifugal
 from ..practice import UNSOURCED, by_scope
 from ..sources import S4, TYPICAL
@@ -252,6 +252,7 @@ class Ruled(WithBody):
             text="As much powder as the torque needs",
             source=UNSOURCED,
         )
+        cooling.advise_stronger(d, "coil_temperature", cooling.STILL)
         if built.slip_heat is not None:
             self.declare_load(d, built.slip_heat / filling, rules.powder_load_limit)
 

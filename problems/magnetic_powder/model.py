@@ -206,7 +206,7 @@ class MagneticPowderClutch(DesignProblem):
         layer_of = LAYERS[practice.declare_scope(d)]
         kind = declare_kind(d, CONTINUOUS_SLIP, {OVERRUN: coverage.BOTH_WAYS})
         wants = d.block(WANTS[kind], cooling=layer_of.cooling)
-        cooling.refuse_unfit(d, "dry", turns=False)
+        cooling.refuse_unfit(d, "dry", turning=False)
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
         iron = coil_blocks.declare_coil_requirements(d, still_heat_transfer=cooling.still_transfer(d))
@@ -249,8 +249,8 @@ class MagneticPowderClutch(DesignProblem):
             source=f"{S4}, figures 2-27 to 2-29",
         )
         if cooling.stands(d):
-            turns = coil.select({"stationary": 0.0, "rotating": 1.0})
-            d.at_most("standing_body", turns, 0.5, "-", text="A jacket needs a body that stands", source=UNSOURCED)
+            rotates = coil.select({"stationary": 0.0, "rotating": 1.0})
+            d.at_most("standing_body", rotates, 0.5, "-", text="A jacket needs a body that stands", source=UNSOURCED)
         part = d.part("powder", "powders", symbol="pw", text="Magnetic powder", source="table powders")
         layout = powder.Layout(
             gap_radius=radius,

@@ -81,7 +81,11 @@ class MultiPlateClutch(DesignProblem):
         )
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(
-            d, suited=["'plate pack' in surfaces"], duty=duty, lubrication=lubrication, linings=layer.linings
+            d,
+            suited=["'plate pack' in surfaces"],
+            duty=duty,
+            lubrication=lubrication,
+            linings=layer.linings,
         )
         plates = None
         if plate_set is not None:

@@ -147,13 +147,7 @@ class CoilRules(Block):
         source=UNSOURCED,
     )
     coil_rise_max = Requirement(
-        "K",
-        80,
-        lower=1,
-        upper=1000,
-        symbol="dT_c_max",
-        text=f"Largest rise of a coil over ambient by its own loss alone ({UNSOURCED}; a maker names 65 K for class F)",
-        source=UNSOURCED,
+        "K", 80, lower=1, upper=1000, symbol="dT_c_max", text="Largest rise by the loss of the coil", source=UNSOURCED
     )
 
 
@@ -540,14 +534,8 @@ def limit_coil(d: Declaration, *, rules: CoilRules, wants: CoilRequirements, unk
         text="The coil is wound for its supply",
         source=UNSOURCED,
     )
-    d.at_most(
-        "coil_rise",
-        d.derived["coil_power"].sx / d.steps["coil_conductance"].sx,
-        rules.coil_rise_max,
-        "K",
-        text="The coil stays cool by itself",
-        source=UNSOURCED,
-    )
+    by_itself, text = d.derived["coil_power"].sx / d.steps["coil_conductance"].sx, "The coil stays cool by itself"
+    d.at_most("coil_rise", by_itself, rules.coil_rise_max, "K", text=text, source=UNSOURCED)
 
 
 def _name_constants(d: Declaration) -> None:

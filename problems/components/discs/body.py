@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Requirement
 
+from ...duty import cooling
 from ...friction.duty import Size
 from ...friction.engagement import SOFT_START_SHARE, limit_soft_start
 from ...mechanics import disc, plates
@@ -222,4 +223,5 @@ def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:
             text="The disc does not burst",
             source=UNSOURCED,
         )
+    cooling.advise_stronger(d, "mean_temperature")
     wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough")

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth.declaration import Block, Declaration, Option, Part, Requirement
 
+from ...mechanics import heat
 from ...practice import UNSOURCED
+from ...sources import S1
+
+if TYPE_CHECKING:
+    from ...friction.duty import Duty
 
 EDGE_SHARE = 1.4  # pressure at the edge of a worn lining over the mean pressure of practice, where a row has none
+PLENTY = 1e12  # J/m2: where a row does not tell what a single engagement may bring, only that of an hour counts
 UNLIMITED = 1e4  # K, above what any surface stands
 
 
@@ -44,6 +50,15 @@ class Makers:
     def peak_temperature(self, part: Part, lining: Any) -> Any:
         """Peak temperature that a pair stands whose lining alone stands another [K]."""
         return lining
+
+    def limit_heat(
+        self, d: Declaration, part: Part, *, duty: Duty, single: Any, hourly: Any, hourly_allow: Any
+    ) -> None:
+        """Declare the limits of heat over area, of an engagement [J/m2] and of an hour [W/m2]."""
+        text, source = "The lining stands the hourly heat", f"{S1}, w"
+        d.at_most("specific_heat", hourly, hourly_allow, "J/(mm2*h)", text=text, source=source)
+        text, source = "The lining stands the heat of one engagement", "makers' limit for a single engagement"
+        d.at_most("engagement_heat", single, part.optional("q_single_allow"), "J/mm2", text=text, source=source)
 
     def limit_edge(self, d: Declaration, part: Part, *, pressure: Any, narrowing: Any) -> None:
         """Declare the pressure at the edge, from the mean pressure [Pa] and half the width over the mean radius [-]."""
@@ -116,6 +131,15 @@ class Practice(Makers):
     def peak_temperature(self, part: Part, lining: Any) -> Any:
         """Peak temperature that lining and mating surface stand [K]."""
         return np.minimum(lining, part.filled("counter_peak_max", UNLIMITED))
+
+    def limit_heat(
+        self, d: Declaration, part: Part, *, duty: Duty, single: Any, hourly: Any, hourly_allow: Any
+    ) -> None:
+        """Declare the limit of heat over area of an engagement [J/m2] at its rate."""
+        once = part.filled("q_single_allow", PLENTY)
+        allowed = heat.allowed_work_at_rate(once, hourly_allow / once, duty.engagements_per_hour)
+        text = "The lining stands the heat of an engagement at this rate"
+        d.at_most("rate_heat", single, allowed, "J/mm2", text=text, source="VDI 2241, from memory; makers' limits")
 
     def limit_edge(self, d: Declaration, part: Part, *, pressure: Any, narrowing: Any) -> None:
         """Declare the pressure at the edge of the worn lining, where pressure times radius is constant."""

@@ -153,13 +153,13 @@ def declare_surface_loads(
         ("surface_pressure", "N/mm2", pressure, "p_s", "Largest pressure on a friction surface", pressure_source),
     ):
         loads[name] = d.derive(name, unit, value, symbol=symbol, text=text, source=source), unit
-    for limit, name, allowed, text, source in (
-        ("surface_pressure", "surface_pressure", stand.pressure(part), "pressure", f"{S1}, sizing"),
-        ("specific_heat", "hourly_heat", pair.hourly_allow, "hourly heat", f"{S1}, w"),
-        ("engagement_heat", "single_heat", part.optional("q_single_allow"), "heat of one engagement", single_source),
-        ("specific_power", "power_density", part.power_density_allow, "peak power", density_source),
-        ("sliding_speed", "sliding_speed", stand.speed(part), "sliding speed", "makers' limit of the lining"),
-    ):
-        value, unit = loads[name]
-        d.at_most(limit, value, allowed, unit, text=f"The lining stands the {text}", source=source)
+
+    def limit(name: str, load: str, allowed: Any, text: str, source: str) -> None:
+        value, unit = loads[load]
+        d.at_most(name, value, allowed, unit, text=f"The lining stands the {text}", source=source)
+
+    limit("surface_pressure", "surface_pressure", stand.pressure(part), "pressure", f"{S1}, sizing")
+    stand.limit_heat(d, part, duty=duty, single=single, hourly=hourly, hourly_allow=pair.hourly_allow)
+    limit("specific_power", "power_density", part.power_density_allow, "peak power", density_source)
+    limit("sliding_speed", "sliding_speed", stand.speed(part), "sliding speed", "makers' limit of the lining")
     stand.limit_edge(d, part, pressure=loads["surface_pressure"][0], narrowing=narrowing)

@@ -18,6 +18,7 @@ from ..lining.model import Pair
 from . import formulas as pot_magnet
 
 HOLDS = "magnet_overcomes_springs"
+OIL = "oil_temperature_limit"
 STICKING_GAP = 0.3e-3  # m, least of the typical gaps
 STICKING_SHARE = 0.75  # least of the typical gaps over their middle, 0.3 and 0.4 mm
 
@@ -432,12 +433,7 @@ def limit_magnet(
         source="L/R of the circuit; derived",
     )
     d.at_least(
-        "ramp_time",
-        pressed.ramp_time,
-        rules.ramp_time_min,
-        "s",
-        text="An armature needs its time",
-        source=UNSOURCED,
+        "ramp_time", pressed.ramp_time, rules.ramp_time_min, "s", text="An armature needs its time", source=UNSOURCED
     )
 
 

@@ -338,3 +338,4 @@ def _limit_mean_temperature(d: Declaration, built: BuiltPack, heating: Any, oil:
     if oil is not None:
         most, text = oil.oil_temperature_limit - duty.ambient_temperature, "The oil in the pack does not age"
         d.at_most("oil_temperature", rise, most, "K", text=text, source=UNSOURCED)
+    cooling.advise_stronger(d, "mean_temperature")

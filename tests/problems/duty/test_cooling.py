@@ -5,6 +5,8 @@ import math
 import pytest
 
 import synth
+from synth.tables.catalogs import Catalogs
+from tests.problems.of_a_family import remarks
 
 POWDER = {
     "values": {
@@ -93,3 +95,44 @@ def test_a_row_of_starts_warms_less_than_starts_without_end():
     mean = -math.expm1(-decays) * endless.values["mean_temperature_rise"]
     assert row.limits["mean_temperature"][0] == pytest.approx(mean)
     assert row.values["mean_temperature_rise"] == row.limits["mean_temperature"][0]
+
+
+RATES = [("moulded_dry", 2.5, 18.0, 60, 0.282698908), ("woven_dry", 1.5, 12.0, 8, 0.948180838)]
+
+
+@pytest.mark.parametrize(("pair", "single", "hourly", "rate", "allowed"), RATES)
+def test_one_law_for_the_heat_of_one_engagement_and_of_an_hour(pair, single, hourly, rate, allowed):
+    asked = {**DISC, "parts": {"friction_pair": pair}}
+    requirements = LOAD | {"engagements_per_hour": f"{rate} 1/h"}
+    on, off = (
+        synth.evaluate(synth.load("disc_clutch", practice=word), requirements, **asked) for word in ("on", "off")
+    )
+    row = on.parts["friction_pair"]
+    assert (row["q_single_allow"], row["q_hourly_allow"] * 3600) == pytest.approx((1e6 * single, 1e6 * hourly))
+    assert on.limits["rate_heat"] == pytest.approx((on.values["single_heat"], 1e6 * allowed))
+    assert not {"engagement_heat", "specific_heat"} & set(on.limits)
+    assert allowed < min(off.limits["engagement_heat"][1], off.limits["specific_heat"][1] * 3600 / rate) / 1e6
+    assert "rate_heat" not in off.limits
+
+
+def test_without_the_heat_of_one_engagement_only_that_of_an_hour_counts():
+    rows = Catalogs().table("friction_materials").to_frame()
+    lacking = rows.drop(columns=[head for head in rows if str(head).startswith("q_single_allow")])
+    found = synth.evaluate(synth.load("disc_clutch"), LOAD, **DISC, catalogs={"friction_materials": lacking})
+    assert found.limits["rate_heat"][1] == pytest.approx(18e6 / 50)
+
+
+def test_the_next_stronger_cooling_is_named_where_little_is_left():
+    cool = disc({"engagements_per_hour": "10 1/h"})
+    assert "stronger_cooling" not in remarks(cool)
+    limit = cool.limits["mean_temperature"]
+    often = f"{9.5 * limit[1] / limit[0]} 1/h"  # 95 % of what the lining stands
+    for chosen, following, share in (("still_air", "finned", 40), ("forced_air", "finned_fan", 64)):
+        scale = {"still_air": 1, "forced_air": 4}[chosen]
+        found = disc({"engagements_per_hour": f"{scale * float(often.split()[0])} 1/h"}, cooling=chosen)
+        text = next(x for x in found.advice if x.startswith("stronger_cooling"))
+        assert f"cooling {following.replace('_', ' ')} would bring the rise to about {share} %" in text
+        again = disc({"engagements_per_hour": f"{scale * float(often.split()[0])} 1/h"}, cooling=following)
+        assert found.steps["cooler_rise"] == pytest.approx(again.values["mean_temperature_rise"])
+    typed = {"engagements_per_hour": often, "heat_transfer": "20 W/(m2*K)"}
+    assert "stronger_cooling" not in remarks(disc(typed))
