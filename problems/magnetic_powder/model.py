@@ -237,8 +237,7 @@ class MagneticPowderClutch(DesignProblem):
             text="Gap between rotor and drum",
             source=f"{S4}, 1 to 1.5 mm",
         )
-        around_gap = (0.02 * size, 2 * size)
-        sections = dict.fromkeys(("coil_length", "coil_height", "yoke_thickness"), around_gap)
+        sections = dict.fromkeys(("coil_length", "coil_height", "yoke_thickness"), (0.02 * size, 2 * size))
         unknowns = d.block(PowderUnknowns, **sections)
         coil = d.choice(
             "coil",

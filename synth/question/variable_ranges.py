@@ -97,6 +97,11 @@ class VariableRanges:
         self.lower[k] = self.upper[k] = self._allowed[0][k] = self._allowed[1][k] = value
         self.pinned[k] = True
 
+    def at_bounds(self, point: np.ndarray, reach: float) -> list[str]:
+        """Variables that lie in a point at an end, other than zero, of what the family searches; ``reach`` relative."""
+        near = np.isclose(point[:, None], self._searched, rtol=reach, atol=0.0).any(axis=1) & (self.lower < self.upper)
+        return [v.name for v, at_end in zip(self.variables, near & (point != 0), strict=True) if at_end]
+
     def grids(self) -> list[np.ndarray]:
         """Return, per variable, the makeable values in force; empty where it is continuous.
 
