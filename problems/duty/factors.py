@@ -27,12 +27,11 @@ def machines(d: Declaration) -> tuple[str, ...]:
 
 def rows_of(d: Declaration, driver: str, machine: str) -> list[int]:
     """Row of a driver and the class of a machine, or both ends of the range that a machine has whatever drives it."""
-    driven, note = _of(d, "driven_class"), _of(d, "note")
+    driver_of, driven, note = (_of(d, column) for column in ("driver_class", "driven_class", "note"))
     if ends := [k for k in _rows(d, BY_MACHINE) if driven[k] == machine]:
         return ends
     classes = {driven[k]: note[k].removeprefix("class ") for k in _rows(d, CLASS_OF)}
-    sought = (driver, classes.get(machine, machine))
-    return [k for k in _rows(d, BY_CLASS) if (_of(d, "driver_class")[k], driven[k]) == sought]
+    return [k for k in _rows(d, BY_CLASS) if (driver_of[k], driven[k]) == (driver, classes.get(machine, machine))]
 
 
 def shock_factor(d: Declaration, driver: str, machine: str) -> float:

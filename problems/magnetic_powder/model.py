@@ -27,7 +27,16 @@ if TYPE_CHECKING:
 
     from synth.drawing import Drawing
 
+SHEAR = 3e4  # shear stress of powder by which the size of a clutch is estimated [Pa]
 SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
+
+
+class PowderUnknowns(coil_blocks.CoilUnknowns):
+    """Coil and iron of clutches of any size."""
+
+    coil_length = replace(coil_blocks.CoilUnknowns.coil_length, lower=1, upper=5000)
+    coil_height = replace(coil_blocks.CoilUnknowns.coil_height, lower=1, upper=5000)
+    yoke_thickness = replace(coil_blocks.CoilUnknowns.yoke_thickness, lower=0.5, upper=5000)
 
 
 class Wants(Drive):
@@ -210,12 +219,14 @@ class MagneticPowderClutch(DesignProblem):
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
         iron = coil_blocks.declare_coil_requirements(d, still_heat_transfer=cooling.still_transfer(d))
+        size = (wants.torque_reserve * wants.required_torque / SHEAR / (2 * np.pi)) ** (1 / 3)
         radius = d.variable(
             "gap_radius",
             "mm",
-            20,
-            150,
+            1,
+            5000,
             grid=1,
+            within=(0.3 * size, 4 * size),
             symbol="r_g",
             text="Outside of the rotor, where the powder acts",
             source=f"{S4} [P4]",
@@ -223,9 +234,10 @@ class MagneticPowderClutch(DesignProblem):
         pole = d.variable(
             "pole_length",
             "mm",
-            5,
-            60,
+            1,
+            5000,
             grid=1,
+            within=(0.05 * size, 3 * size),
             symbol="l_p",
             text="Length of one pole face; there are two",
             source=f"{S4} [P4]",
@@ -240,7 +252,8 @@ class MagneticPowderClutch(DesignProblem):
             text="Gap between rotor and drum",
             source=f"{S4}, 1 to 1.5 mm",
         )
-        unknowns = d.block(coil_blocks.CoilUnknowns)
+        sections = dict.fromkeys(("coil_length", "coil_height", "yoke_thickness"), (0.02 * size, 2 * size))
+        unknowns = d.block(PowderUnknowns, **sections)
         coil = d.choice(
             "coil",
             ("stationary", "rotating"),

@@ -64,7 +64,10 @@ class OptionRecord:
 
 @dataclass(frozen=True)
 class VariableRecord:
-    """An unknown of the search with bounds in SI; ``grid`` holds the makeable values in SI, or is empty."""
+    """An unknown of the search with bounds in SI; ``grid`` holds the makeable values in SI, or is empty.
+
+    ``within``: expressions of requirements, in SI, between which it is searched inside its bounds.
+    """
 
     name: str
     unit: str
@@ -75,6 +78,7 @@ class VariableRecord:
     upper: float
     grid: np.ndarray
     sx: Any
+    within: tuple[ca.SX, ca.SX] | None = None
 
 
 @dataclass(frozen=True)

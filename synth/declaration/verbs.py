@@ -159,12 +159,15 @@ class Variable(BlockField[Quantity]):
 
     default = None
 
-    def declared(self, block: Block, name: str, default: Quantity | float | str | None, group: str) -> Quantity:
-        """Declare the variable; return its symbol. What the search decides belongs to no group."""
-        d = block.declaration
-        if default is not None:
+    def declared(self, block: Block, name: str, default: Any, group: str) -> Quantity:
+        """Declare the variable; return its symbol. What the search decides belongs to no group.
+
+        It has no default; what a use of the block states for it is the range ``within`` which it is searched.
+        """
+        d, bounds = block.declaration, (self.lower, self.upper)
+        if default is not None and not isinstance(default, tuple):
             raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
-        return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
+        return d.variable(name, self.unit, *bounds, self.grid, self.symbol, self.text, self.source, default)
 
 
 @dataclass(frozen=True)
@@ -502,9 +505,13 @@ class Declaration:
         symbol: str | None = None,
         text: str = "",
         source: str = "",
+        within: tuple[Quantity | float, Quantity | float] | None = None,
     ) -> Any:
-        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol. Equal bounds make a constant."""
-        symbol = self._claim(name, symbol)
+        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol. Equal bounds make a constant.
+
+        ``within``: the range that is searched inside the bounds, as expressions of requirements in SI.
+        """
+        symbol, what = self._claim(name, symbol), f"the range of variable {name}"
         parsed = self._unit(f"variable {name}", unit)
         low = self._number(f"the lower end of variable {name}", lower, parsed)
         high = self._number(f"the upper end of variable {name}", upper, parsed)
@@ -516,6 +523,9 @@ class Declaration:
             raise DeclarationError(f"{self.problem}: variable {name}: {error}") from None
         if grid is not None and not len(makeable):
             raise DeclarationError(f"{self.problem}: the grid of variable {name} has no value from {lower} to {upper}")
+        searched = {str(x) for end in within or () for x in ca.symvar(ca.SX(end))} & {*self.variables, *self.counts}
+        if searched:
+            raise DeclarationError(f"{self.problem}: {what} depends on {', '.join(searched)}, which is searched")
         record = VariableRecord(
             name=name,
             unit=unit,
@@ -526,6 +536,7 @@ class Declaration:
             upper=high,
             grid=np.asarray(to_si(makeable, parsed), dtype=float),
             sx=ca.SX.sym(name),
+            within=None if within is None else (self._expression(what, within[0]), self._expression(what, within[1])),
         )
         self.variables[name] = record
         return record.sx

@@ -300,6 +300,7 @@ class Model:
         named += [(f"next row {r.name}", r.sx) for r in d.next_rows.values()]
         named += [(f"refusal {r.code}", r.when) for r in d.refusals]
         named += [(f"advice {a.code}", a.when) for a in d.advices]
+        named += [(f"the range of variable {v.name}", end) for v in self.variables for end in v.within or ()]
         known = {str(s) for s in self.inputs} | {str(c.symbol) for c in self.calls}
         for label, expression in named:
             strange = sorted({str(s) for s in ca.symvar(expression)} - known)

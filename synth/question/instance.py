@@ -63,7 +63,7 @@ class Instance(SearchSpace):
         self.values = RequirementValues.read(model, self.catalogs, asked)
         if refuse:
             refuse_requirements(model, self.values)
-        ranges = VariableRanges(model.variables, request.grid)
+        ranges = VariableRanges(model.variables, request.grid, self.values.ranges(model))
         limits = UserLimits(model, request.limits, request.fix, ranges, restrict)
         selection = select(model, self.catalogs, rules, limits) if restrict else Selection()
         if restrict and refuse:

@@ -64,6 +64,11 @@ class RequirementValues:
         symbols = model.requirement_symbols
         return {**{symbols[name]: value for name, value in self.requirements.items()}, **self.rows}
 
+    def ranges(self, model: Model) -> dict[str, tuple[float, float]]:
+        """Ranges in SI of the variables that are searched within a range made of requirements."""
+        known, within = self.by_symbol(model), {v.name: v.within for v in model.variables if v.within is not None}
+        return {name: (model.number(low, known), model.number(high, known)) for name, (low, high) in within.items()}
+
     def moved(self, model: Model, name: str, value: float) -> RequirementValues:
         """Return the same with another value of one requirement, and of those whose default is made of it.
 

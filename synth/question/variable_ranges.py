@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -22,6 +23,8 @@ class VariableRanges:
     variables : list of VariableRecord
     grid : bool
         Whether only makeable values of gridded variables are asked for.
+    within : mapping, optional
+        Variable -> the range in SI that is searched inside its bounds.
 
     Attributes
     ----------
@@ -31,10 +34,16 @@ class VariableRanges:
         Which are given by the user as one value, makeable or not.
     """
 
-    def __init__(self, variables: Sequence[VariableRecord], grid: bool) -> None:
+    def __init__(
+        self,
+        variables: Sequence[VariableRecord],
+        grid: bool,
+        within: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    ) -> None:
         self.variables, self.grid = list(variables), grid
-        self.lower = np.array([v.lower for v in variables])
-        self.upper = np.array([v.upper for v in variables])
+        self._searched = np.array([_searched(v, within.get(v.name)) for v in variables], dtype=float).reshape(-1, 2)
+        self.lower, self.upper = self._searched.T.copy()
+        self._allowed = np.array([v.lower for v in variables]), np.array([v.upper for v in variables])
         self.pinned = np.zeros(len(variables), dtype=bool)
         self._number = {v.name: k for k, v in enumerate(variables)}
 
@@ -49,11 +58,16 @@ class VariableRanges:
         k = self._number.get(limit.quantity)
         if k is None:
             return
+        least, most = self._allowed
         if limit.sense in ("at_most", "equal"):
-            self.upper[k] = min(self.upper[k], limit.bound)
+            most[k] = min(most[k], limit.bound)
         if limit.sense in ("at_least", "equal"):
-            self.lower[k] = max(self.lower[k], limit.bound)
-        if self.lower[k] > self.upper[k]:
+            least[k] = max(least[k], limit.bound)
+        # What is asked counts where it leaves nothing of the range that is searched otherwise.
+        low, high = self._searched[k]
+        self.lower[k] = max(least[k], low) if low <= most[k] else least[k]
+        self.upper[k] = min(most[k], high) if high >= least[k] else most[k]
+        if least[k] > most[k]:
             v = self.variables[k]
             right = f"limits that leave something of {shown_range(v)}"
             raise InputError(f"limits: {v.name}", typed_quantity(limit.bound, v.unit), right)
@@ -80,8 +94,13 @@ class VariableRanges:
         v = self.variables[k]
         if not within(value, v.lower, v.upper, MARGINS.conversion):
             raise InputError(f"fix: {v.name}", typed, shown_range(v))
-        self.lower[k] = self.upper[k] = value
+        self.lower[k] = self.upper[k] = self._allowed[0][k] = self._allowed[1][k] = value
         self.pinned[k] = True
+
+    def at_bounds(self, point: np.ndarray, reach: float) -> list[str]:
+        """Variables that lie in a point at an end, other than zero, of what the family searches; ``reach`` relative."""
+        near = np.isclose(point[:, None], self._searched, rtol=reach, atol=0.0).any(axis=1) & (self.lower < self.upper)
+        return [v.name for v, at_end in zip(self.variables, near & (point != 0), strict=True) if at_end]
 
     def grids(self) -> list[np.ndarray]:
         """Return, per variable, the makeable values in force; empty where it is continuous.
@@ -101,3 +120,11 @@ class VariableRanges:
                 raise InputError(f"limits: {v.name}", f"{low} .. {high}", right, ("limits", v.name))
             result.append(values[inside])
         return result
+
+
+def _searched(variable: VariableRecord, within: tuple[float, float] | None) -> tuple[float, float]:
+    """Range of a variable, its ends at powers of two, so that questions alike are searched over the same one."""
+    if within is None:
+        return variable.lower, variable.upper
+    low, high = 2.0 ** np.floor(np.log2(within[0])), 2.0 ** np.ceil(np.log2(within[1]))
+    return max(variable.lower, min(low, variable.upper)), min(variable.upper, max(high, variable.lower))

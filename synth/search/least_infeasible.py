@@ -17,6 +17,7 @@ from synth.units import miss_text, typed_quantity
 
 PROVEN, NOT_PROVEN = "No combination is feasible.", "No feasible design was found; that there is none is not proven."
 NEAREST = "The nearest design found"
+AT_BOUND = "(its bound, no limit of physics)"
 BETWEEN = "Sizes between the makeable ones would keep every limit; the nearest makeable design found"
 
 
@@ -133,6 +134,8 @@ def _explanation(
     parts, counts, choices = form.instance.combinations.describe(combination)
     model = form.model
     nearest = {v.name: typed_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
+    reach = form.tuning.heuristics.least_infeasible.at_bound
+    nearest |= {name: f"{nearest[name]} {AT_BOUND}" for name in form.instance.ranges.at_bounds(variables, reach)}
     nearest |= {n: typed_number(v) for n, v in counts.items()} | dict(choices)
     sentences = "; ".join(c["sentence"] for c in conflicts)
     # What holds by the tolerance of limits alone misses none.

@@ -427,6 +427,8 @@ class LeastInfeasibleLimits:
         From which each combination is solved where there are few.
     never : float
         Relative: more than any limit can be missed by, which is twice the larger side.
+    at_bound : float
+        Relative. How near to its bound a size counts as lying there: solvers end inside.
     """
 
     tries: int = 400
@@ -434,6 +436,7 @@ class LeastInfeasibleLimits:
     parents: int = 3
     starts: int = 16
     never: float = 10.0
+    at_bound: float = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)

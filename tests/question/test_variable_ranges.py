@@ -3,9 +3,10 @@
 import pytest
 
 from synth import DesignProblem
-from synth.errors import InputError
+from synth.errors import DeclarationError, InputError
 from synth.question.variable_ranges import VariableRanges
 from synth.tables.catalogs import Catalogs
+from tests.asking import instance_of
 
 
 class Plate(DesignProblem):
@@ -53,3 +54,53 @@ def test_a_range_between_two_makeable_values_is_refused_where_they_are_asked_for
     assert not len(free.grids()[0])
     with pytest.raises(InputError, match="makeable value"):
         own.grids()
+
+
+class Rod(DesignProblem):
+    name, title = "rod", "Rod"
+    sources = ("test",)
+
+    def declare(self, d):
+        force = d.requirement("force", "N", lower=1, upper=1e9, symbol="F", text="Pull")
+        size = (force / 1e6) ** 0.5
+        d.variable("diameter", "mm", 1, 5000, grid=1, symbol="b", text="Diameter", within=(0.4 * size, 3 * size))
+        d.objective("diameter", "min")
+
+
+@pytest.mark.parametrize(
+    ("force", "low", "high"),
+    [("1e4 N", 2**-5, 2**-1), ("1.2e4 N", 2**-5, 2**-1), ("1 N", 0.001, 2**-8), ("1e8 N", 4.0, 5.0)],
+)
+def test_a_range_made_of_requirements_is_rounded_outwards_inside_the_bounds(force, low, high):
+    found = instance_of(Rod(), {"force": force}, Catalogs({})).ranges
+    assert (found.lower[0], found.upper[0]) == (low, high)
+
+
+@pytest.mark.parametrize(
+    ("limits", "fix", "low", "high"),
+    [
+        ({"diameter": "<= 100 mm"}, {}, 2**-5, 0.1),
+        ({"diameter": "<= 20 mm"}, {}, 0.001, 0.02),
+        ({"diameter": ">= 2 m"}, {}, 2.0, 5.0),
+        ({"diameter": ["<= 900 mm", ">= 800 mm"]}, {}, 0.8, 0.9),
+        ({}, {"diameter": "3 m"}, 3.0, 3.0),
+    ],
+)
+def test_what_is_asked_counts_beside_a_range_made_of_requirements(limits, fix, low, high):
+    found = instance_of(Rod(), {"force": "1e4 N"}, Catalogs({}), limits=limits, fix=fix).ranges
+    assert (found.lower[0], found.upper[0]) == (low, high)
+
+
+def test_a_range_of_what_is_searched_is_refused():
+    class Wrong(Rod):
+        name = "wrong"
+
+        def declare(self, d):
+            super().declare(d)
+            d.variable("length", "mm", 1, 10, within=(0.5 * self_of(d), 5))
+
+    def self_of(d):
+        return d.variables["diameter"].sx
+
+    with pytest.raises(DeclarationError, match="the range of variable length depends on diameter"):
+        Wrong().model(frozenset({"force"}), Catalogs({}))

@@ -34,7 +34,7 @@ def nearest(torque: str) -> tuple[dict[str, float], dict[str, Any]]:
 @pytest.mark.parametrize("torque", ["60 kN*m", "900 kN*m"])
 def test_far_from_everything_feasible_the_nearest_design_is_still_a_clutch(torque: str) -> None:
     missed, explanation = nearest(torque)
-    sizes = {name: float(text.split()[0]) for name, text in explanation["nearest"].items() if text.endswith("mm")}
+    sizes = {name: float(text.split()[0]) for name, text in explanation["nearest"].items() if " mm" in text}
     assert sizes["ring_inner_diameter"] < sizes["ring_outer_diameter"]
     # It bears a good part of the load at least: chance alone finds designs that do.
     assert missed["torque_capacity"] < 0.9
@@ -113,3 +113,12 @@ def test_a_winding_of_a_batch_row_that_only_other_hubs_would_hold_names_its_limi
     missed = {c["limit"] for c in dict(front.explanation or {})["conflicts"]}
     assert missed
     assert missed <= {"closing_torque", "wire_stress", "interference_range", "length"}
+
+
+@pytest.mark.slow
+def test_a_nearest_design_tells_which_of_its_sizes_lie_at_a_bound() -> None:
+    wants = {"required_torque": "2e6 N*m", "driver_speed": "500 1/min"}
+    front = synth.synthesize("magnetic_powder_clutch", wants, points=1)
+    sizes = dict(front.explanation or {})["nearest"]
+    assert sizes["powder_gap"] == "1 mm (its bound, no limit of physics)"
+    assert "bound" not in sizes["gap_radius"]

@@ -8,6 +8,7 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Option, Requirement
 
+from ...duty import of_drive
 from ...friction.duty import Duty
 from ...friction.engagement import SOFT_START_SHARE
 from ...mechanics import guide_friction
@@ -144,15 +145,8 @@ class PackRequirements(Block):
         source=f"{S0}, mu1",
         group="material",
     )
-    hub_bore_diameter = Requirement(
-        "mm",
-        lower=2,
-        upper=700,
-        optional=True,
-        symbol="d_hub_min",
-        text="Least mean diameter 2a of the inner spline: room for the shaft",
-        source="requirement of the drive",
-        group="envelope",
+    hub_bore_diameter = of_drive(
+        "mm", 2, 700, "d_hub_min", "Least mean diameter 2a of the inner spline: room for the shaft", group="envelope"
     )
     drag_torque_limit = Requirement(
         "N*m",
