@@ -11,12 +11,13 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
+from typing import Any
 
 import casadi as ca
 
 from synth.analysis.restate import question_of
 from synth.declaration import Declaration, Origin
-from synth.declaration.records import Choice, Count, VariableRecord
+from synth.declaration.records import Choice, Constant, Count, Derived, RequirementRecord, Step, VariableRecord
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
@@ -145,29 +146,24 @@ def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list
     defaults = _defaults(model)
     for r in d.requirements.values():
         if r.sx is not None and not r.follows:
-            common = {"unit": r.unit, "text": r.text, "source": r.source, "bounds": (r.lower, r.upper)}
-            quantities.append(
-                NamedQuantity(
-                    name=r.name,
-                    kind="requirement",
-                    symbol=r.symbol,
-                    group=r.group,
-                    expression=defaults.get(r.name),
-                    **common,  # type: ignore[arg-type]
-                )
-            )
+            default = defaults.get(r.name)
+            quantities.append(_quantity(r, "requirement", group=r.group, expression=default, bounds=(r.lower, r.upper)))
     for v in d.variables.values():
-        quantities.append(_searched(v, "variable", (v.lower, v.upper)))
+        quantities.append(_quantity(v, "variable", bounds=(v.lower, v.upper)))
     for c in d.counts.values():
         step = float(c.values[1] - c.values[0]) if len(c.values) > 1 else None
-        quantities.append(replace(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))), step=step))
+        quantities.append(_quantity(c, "count", bounds=(float(c.values[0]), float(c.values[-1])), step=step))
     for choice in d.choices.values():
-        quantities.append(replace(_searched(choice, "choice", None), labels=choice.labels))
+        quantities.append(_quantity(choice, "choice", labels=choice.labels))
     quantities += _of_rows(model, instance.catalogs, rows)
     return _with_distinct_symbols(quantities, d)
 
 
-def _searched(record: VariableRecord | Count | Choice, kind: str, bounds: tuple[float, float] | None) -> NamedQuantity:
+_Declared = RequirementRecord | VariableRecord | Count | Choice | Derived | Step | Constant
+
+
+def _quantity(record: _Declared, kind: str, **more: Any) -> NamedQuantity:
+    """Quantity of a declared record; choices have no unit."""
     return NamedQuantity(
         name=record.name,
         kind=kind,
@@ -175,7 +171,7 @@ def _searched(record: VariableRecord | Count | Choice, kind: str, bounds: tuple[
         unit=getattr(record, "unit", "-"),
         text=record.text,
         source=record.source,
-        bounds=bounds,
+        **more,
     )
 
 
@@ -266,16 +262,15 @@ class _Formulas:
     def read(model: Model) -> _Formulas:
         """Read the formulas of a model from its trace."""
         d = model.declaration
-        limits = list(d.limits.values())
         following = {r.name: r for r in d.requirements.values() if r.follows and r.sx is not None}
         expressions = [*(q.sx for q in d.derived.values()), *(q.sx for q in d.steps.values())]
         expressions += [r.default for r in following.values()]
-        expressions += [side for x in limits for side in (x.value, x.limit)] + [a.when for a in d.advices]
+        expressions += [side for x in d.limits.values() for side in (x.value, x.limit)] + [a.when for a in d.advices]
         everything = ca.vertsplit(expanded(ca.vertcat(*expressions), model.calls)) if expressions else []
         program = Program(model.inputs, everything)
         nodes = iter(program.outputs)
         named = {name: next(nodes) for name in (*d.derived, *d.steps, *following)}
-        sides = {x.name: (next(nodes), next(nodes)) for x in limits}
+        sides = {name: (next(nodes), next(nodes)) for name in d.limits}
         conditions = [next(nodes) for _ in d.advices]
         leaves = _input_names(model, program)
         for name, node in named.items():
@@ -290,56 +285,43 @@ class _Formulas:
         records: dict[str, NamedQuantity] = {}
         for name, node in named.items():
             record = d.derived.get(name) or d.steps.get(name) or following[name]
-            is_leaf = leaves.get(node) == name
-            records[name] = NamedQuantity(
-                name=name,
-                kind="derived" if name in d.derived else "step",
-                symbol=record.symbol,
-                unit=record.unit,
-                text=record.text,
-                source=record.source,
-                expression=reader.written_out(node) if is_leaf else reader.tree(node),
-                needs=needs[name],
-            )
+            tree = reader.written_out(node) if leaves.get(node) == name else reader.tree(node)
+            kind = "derived" if name in d.derived else "step"
+            records[name] = _quantity(record, kind, expression=tree, needs=needs[name])
         for node, name in helpers.items():
-            records[name] = NamedQuantity(
-                name=name, kind="helper", symbol=name, unit="-", expression=reader.written_out(node), needs=needs[name]
-            )
-        known = {x.name: x for x in model.constraints}
-        rules = [
-            LimitRule(
-                name=x.name,
-                sense=x.sense,
-                unit=x.unit,
-                text=x.text,
-                source=x.source,
-                value=reader.tree(sides[x.name][0]),
-                limit=reader.tree(sides[x.name][1]),
-                guard=x.guard,
-                scale=x.scale,
-                needs=known[x.name].behind,
-                optional=tuple(model.data_inputs[k].label for k in known[x.name].void_without),
-                stated_by="user" if x.origin in (Origin.USER, Origin.PIN) else "family",
-            )
-            for x in limits
-        ]
-        remarks = [
-            RemarkRule(code=a.code, condition=reader.tree(node), message=a.message, source=a.source)
-            for a, node in zip(d.advices, conditions, strict=True)
-        ]
-        constants = [
-            NamedQuantity(
-                name=c.name,
-                kind="constant",
-                symbol=c.symbol,
-                unit=c.unit,
-                text=c.text,
-                source=c.source,
-                value=c.value,
-            )
-            for c in d.constants.values()
-        ]
-        return _Formulas(tuple(constants), tuple(_in_order(records)), tuple(rules), tuple(remarks))
+            tree, more = reader.written_out(node), needs[name]
+            records[name] = NamedQuantity(name=name, kind="helper", symbol=name, unit="-", expression=tree, needs=more)
+        return _Formulas(
+            tuple(_quantity(c, "constant", value=c.value) for c in d.constants.values()),
+            tuple(_in_order(records)),
+            _rules(model, {name: (reader.tree(a), reader.tree(b)) for name, (a, b) in sides.items()}),
+            tuple(
+                RemarkRule(code=a.code, condition=reader.tree(node), message=a.message, source=a.source)
+                for a, node in zip(d.advices, conditions, strict=True)
+            ),
+        )
+
+
+def _rules(model: Model, sides: Mapping[str, tuple[Expression, Expression]]) -> tuple[LimitRule, ...]:
+    """Limits of a model, with the formulas of their sides."""
+    known = {x.name: x for x in model.constraints}
+    return tuple(
+        LimitRule(
+            name=x.name,
+            sense=x.sense,
+            unit=x.unit,
+            text=x.text,
+            source=x.source,
+            value=sides[x.name][0],
+            limit=sides[x.name][1],
+            guard=x.guard,
+            scale=x.scale,
+            needs=known[x.name].behind,
+            optional=tuple(model.data_inputs[k].label for k in known[x.name].void_without),
+            stated_by="user" if x.origin in (Origin.USER, Origin.PIN) else "family",
+        )
+        for x in model.declaration.limits.values()
+    )
 
 
 def _turned_round(program: Program, leaves: Mapping[int, str]) -> dict[int, str]:

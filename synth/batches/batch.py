@@ -227,6 +227,14 @@ class _TemporaryFolder:
         weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
 
 
+def _common(common: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """What is asked in all rows of parts, limits and pins."""
+    return {
+        name: {str(key): stated_value(x) for key, x in as_mapping(common[name], name, EXAMPLES[name]).items()}
+        for name in ("parts", "limits", "fix")
+    }
+
+
 class BatchJob:
     """The steps of a batch: plan, work, write. Each can be repeated, by any process.
 
@@ -278,15 +286,20 @@ class BatchJob:
             "seed": settings.seed,
             "time_limit": settings.time_limit,
         }
-        self.common = {
-            name: {str(key): stated_value(value) for key, value in as_mapping(entries, name, EXAMPLES[name]).items()}
-            for name in ("parts", "limits", "fix")
-            for entries in [common[name]]
-        }
+        self.common = _common(common)
         self.catalog_spec = str(Path(catalogs).resolve()) if isinstance(catalogs, (str, Path)) else catalogs
         self.catalogs = as_catalogs(self.catalog_spec)
         self.questioner = Questioner(self.table, problem, self.mapping, self.settings, self.common, self.catalogs)
-        self.hashes = {
+        self.hashes = self._hashes()
+        self.basis = digest([self.settings, {k: v for k, v in self.hashes.items() if k != "rows"}])
+        self.id = self._id()
+        self.address: Any = database or file_url(folder.resolve() / DATABASE)
+        self.remarks = RowRemarks(numbers.plan)
+        self._store: Store | None = None
+
+    def _hashes(self) -> dict[str, str]:
+        """Digests of what the answers depend on."""
+        return {
             "rows": self.table.digest(),
             "code": code_digest(),
             "native code": native_code(),
@@ -294,9 +307,11 @@ class BatchJob:
             "families": problem_digest(self.questioner.problems()),
             "tables": self.catalogs.digest(),
         }
-        self.basis = digest([self.settings, {k: v for k, v in self.hashes.items() if k != "rows"}])
+
+    def _id(self) -> str:
+        """Name of the job: the same for the same rows, settings, programs and tables."""
         user_family = self.questioner.user_family
-        self.id = digest(
+        return digest(
             [
                 self.basis,
                 self.hashes["rows"],
@@ -308,9 +323,6 @@ class BatchJob:
                 None if user_family is None else user_family.__qualname__,
             ]
         )[:16]
-        self.address: Any = database or file_url(folder.resolve() / DATABASE)
-        self.remarks = RowRemarks(numbers.plan)
-        self._store: Store | None = None
 
     @property
     def store(self) -> Store:

@@ -286,18 +286,8 @@ class Questioner:
         faults: list[Fault] = []
         requirements: dict[str, str] = {}
         numbers: dict[str, float] = {}
-        by_block: dict[str, dict[str, Any]] = {
-            name: {str(k): v for k, v in self.common.get(name, {}).items()} for name in (LIMITS, FIX, PARTS)
-        }
+        by_block = self._blocks(line, cells, faults)
         sources: dict[str, RowColumn] = {}
-        for name in (LIMITS, FIX, PARTS):
-            text = self._cell(name, cells)
-            if text:
-                column = self.structural[name]
-                try:
-                    by_block[name] |= READERS[name](text, f"column {column.title}")
-                except InputError as error:
-                    faults.append(Fault.of(line, column.title, error))
         for column, word in variant.columns:
             text = cells[column.position].strip()
             if not text:
@@ -329,6 +319,20 @@ class Questioner:
             **{name: dict(sorted(entries.items())) for name, entries in by_block.items()},
         }
         return question, [numbers[name] for name in question["requirements"]], unused
+
+    def _blocks(self, line: int, cells: tuple[str, ...], faults: list[Fault]) -> dict[str, dict[str, Any]]:
+        """Limits, pins and rules of parts of a row over those of all rows; what is wrong joins the faults."""
+        blocks: dict[str, dict[str, Any]] = {}
+        for name in (LIMITS, FIX, PARTS):
+            blocks[name] = {str(k): v for k, v in self.common.get(name, {}).items()}
+            text = self._cell(name, cells)
+            if text:
+                column = self.structural[name]
+                try:
+                    blocks[name] |= READERS[name](text, f"column {column.title}")
+                except InputError as error:
+                    faults.append(Fault.of(line, column.title, error))
+        return blocks
 
     @staticmethod
     def _value(column: RowColumn, word: Word, text: str) -> tuple[str, float]:

@@ -268,6 +268,18 @@ class Store(JobQueue):
             members,
         )
 
+    def _add_results(self, connection: sa.Connection, job: str, outcomes: Mapping[str, Outcome]) -> None:
+        layouts = {digest(o.layout): o.layout for o in outcomes.values() if o.layout is not None}
+        if layouts:
+            rows = [{"job": job, "key": key, "content": layout} for key, layout in layouts.items()]
+            connection.execute(self.insert_once(Layout), rows)
+        if outcomes:
+            new = [
+                {**vars(o), "job": job, "key": key, "layout": None if o.layout is None else digest(o.layout)}
+                for key, o in outcomes.items()
+            ]
+            connection.execute(self.insert_once(Result), new)
+
     def finish(
         self,
         job: str,
@@ -310,19 +322,7 @@ class Store(JobQueue):
         with self.engine.begin() as connection:
             if not hand_over(connection, claim, owner, state=DONE, attempts=attempts):
                 return False
-            layouts = {digest(o.layout): o.layout for o in final.values() if o.layout is not None}
-            if layouts:
-                connection.execute(
-                    self.insert_once(Layout), [{"job": job, "key": k, "content": v} for k, v in layouts.items()]
-                )
-            if final:
-                connection.execute(
-                    self.insert_once(Result),
-                    [
-                        {**vars(o), "job": job, "key": key, "layout": None if o.layout is None else digest(o.layout)}
-                        for key, o in final.items()
-                    ],
-                )
+            self._add_results(connection, job, final)
             for keys, tried in ((again, attempts), (list(ungrouped), claim.attempts)):
                 if keys:
                     self._add_units(connection, job, [[key] for key in keys], tried)

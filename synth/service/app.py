@@ -80,37 +80,7 @@ def create_app(
     file_engines : EngineCalls, optional
         For files that are read or made; by default the same.
     """
-
-    def shares(places: int) -> FairShares:
-        return FairShares(places, settings.tenant_share, settings.token_share, settings.requests_at_once)
-
-    metrics = ServiceMetrics(settings, store)
-    small = SmallWork(
-        engines,
-        shares(settings.engines),
-        Times(queue=settings.queue_wait, deadline=settings.small_deadline, limit=settings.small_limit),
-        metrics.questions("small"),
-    )
-    files = SmallWork(
-        file_engines or engines,
-        shares(settings.file_engines),
-        Times(queue=settings.queue_wait, deadline=settings.file_deadline, limit=settings.file_limit),
-        metrics.questions("files"),
-    )
-    context = ServiceContext(
-        settings=settings,
-        store=store,
-        accounts=Accounts(store),
-        small=small,
-        files=files,
-        metrics=metrics,
-        facts=CodeFacts(small, settings.remembered, settings.retry_after),
-        requests=shares(settings.requests_at_once),
-        uploads=shares(settings.uploads_at_once),
-        failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
-        write_probe=WriteProbe(store, settings.ready_write),
-        hub=EventHub(settings, store),
-    )
+    context = _context(settings, store, engines, file_engines or engines)
     app = DescribedService(
         title="clutchsynth",
         version=version("clutchsynth"),
@@ -128,7 +98,7 @@ def create_app(
             Middleware(HostCheck, settings),
             Middleware(CrossSiteCheck, settings),
             Middleware(Callers, context),
-            Middleware(RequestLimit, settings, context.requests, metrics),
+            Middleware(RequestLimit, settings, context.requests, context.metrics),
             Middleware(BodyCheck, settings, context.uploads),
         ],
     )
@@ -141,6 +111,43 @@ def create_app(
     for router in OUTSIDE:
         app.include_router(router, include_in_schema=False)
     return app
+
+
+def _context(
+    settings: ServiceSettings, store: Store, engines: EngineCalls, file_engines: EngineCalls
+) -> ServiceContext:
+    """What requests share: accounts, engines with their fair shares, and figures."""
+
+    def shares(places: int) -> FairShares:
+        return FairShares(places, settings.tenant_share, settings.token_share, settings.requests_at_once)
+
+    metrics = ServiceMetrics(settings, store)
+    small = SmallWork(
+        engines,
+        shares(settings.engines),
+        Times(queue=settings.queue_wait, deadline=settings.small_deadline, limit=settings.small_limit),
+        metrics.questions("small"),
+    )
+    files = SmallWork(
+        file_engines,
+        shares(settings.file_engines),
+        Times(queue=settings.queue_wait, deadline=settings.file_deadline, limit=settings.file_limit),
+        metrics.questions("files"),
+    )
+    return ServiceContext(
+        settings=settings,
+        store=store,
+        accounts=Accounts(store),
+        small=small,
+        files=files,
+        metrics=metrics,
+        facts=CodeFacts(small, settings.remembered, settings.retry_after),
+        requests=shares(settings.requests_at_once),
+        uploads=shares(settings.uploads_at_once),
+        failed_tokens=FailedTokens(settings.failed_tokens, settings.failed_window, settings.addresses),
+        write_probe=WriteProbe(store, settings.ready_write),
+        hub=EventHub(settings, store),
+    )
 
 
 def _watch(context: ServiceContext) -> None:

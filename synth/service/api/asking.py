@@ -33,12 +33,16 @@ CHECKED = 16  # digits of a place in a list that tell whether it belongs to the 
 NOT_MODIFIED: dict[int | str, dict[str, Any]] = {304: {"description": "It is as you know it (If-None-Match)."}}
 ENDED: dict[int | str, dict[str, Any]] = {409: {"description": "The job is not in a state in which this can be done."}}
 
+
+def word(description: str | None = None, longest: int = LONGEST, examples: list[Any] | None = None) -> Any:
+    """Parameter of an address that is a short text."""
+    return Query(max_length=longest, pattern=WORD, description=description, examples=examples)
+
+
 Limit = Annotated[int | None, Query(ge=1, description="Entries at most.")]
-Cursor = Annotated[
-    str | None, Query(max_length=2 * LONGEST, pattern=WORD, description="Of the page before: what it calls `next`.")
-]
+Cursor = Annotated[str | None, word("Of the page before: what it calls `next`.", 2 * LONGEST)]
 State = Literal["open", "running", "done", "cancelled", "failed", "stopped"]
-Word = Annotated[str | None, Query(max_length=LONGEST, pattern=WORD)]
+Word = Annotated[str | None, word()]
 JobId = Annotated[str, Path(description="Id of a job.", examples=["0j3k5m7n9pqrstvwxyz0123456"])]
 
 

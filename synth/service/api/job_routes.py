@@ -27,6 +27,7 @@ from synth.service.api.asking import (
     place_of,
     tag_of,
     tagged,
+    word,
 )
 from synth.service.api.family_routes import must_be_family
 from synth.service.api.presenting import job_answer, job_bytes, job_place
@@ -37,7 +38,7 @@ from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, ServiceError, not_found
 from synth.service.security import header
 from synth.service.small_work import asker_of
-from synth.service.wording import PRINTED, WORD
+from synth.service.wording import PRINTED
 from synth.workers.engine_tasks import CHANGED_TASK
 
 router = APIRouter(prefix=API, tags=["jobs"])
@@ -95,12 +96,8 @@ async def list_jobs(
     context: Context,
     state: Annotated[list[State] | None, Query(description="Only those in these states.")] = None,
     kind: Annotated[str | None, Query(json_schema_extra={"enum": list(KINDS)})] = None,
-    family: Annotated[
-        str | None, Query(max_length=LONGEST, pattern=WORD, description="Only those that ask it.")
-    ] = None,
-    q: Annotated[
-        str | None, Query(max_length=LONGEST, pattern=WORD, description="A text in the title, or an id.")
-    ] = None,
+    family: Annotated[str | None, word("Only those that ask it.")] = None,
+    q: Annotated[str | None, word("A text in the title, or an id.")] = None,
     parent: Word = None,
     follows: Annotated[
         bool | None, Query(description="Only those that follow from another job, or only those that follow from none.")
@@ -131,11 +128,8 @@ async def list_jobs(
         before=None if place is None else (place[0], place[1]),
         most=most + 1,
     )
-    following = None
-    if len(jobs) > most:
-        jobs = jobs[:most]
-        following = cursor_of([jobs[-1].created, jobs[-1].id], scope)
-    return JobList(jobs=[job_answer(request, job) for job in jobs], next=following)
+    following = cursor_of([jobs[most - 1].created, jobs[most - 1].id], scope) if len(jobs) > most else None
+    return JobList(jobs=[job_answer(request, job) for job in jobs[:most]], next=following)
 
 
 @router.get("/jobs/{job}", response_model=JobAnswer, responses=NOT_MODIFIED, summary="A job")

@@ -17,7 +17,6 @@ from synth.queue.models import Job
 from synth.queue.records import Record, Sources
 from synth.service.api.asking import (
     ENDED,
-    LONGEST,
     NOT_MODIFIED,
     Cursor,
     Limit,
@@ -28,13 +27,13 @@ from synth.service.api.asking import (
     place_of,
     refuse_live,
     tagged,
+    word,
 )
 from synth.service.api.schemas import ColumnAnswer, DesignPage, RowAnswer, RowPage, RowRecord
 from synth.service.auth import Reader
 from synth.service.context import API, Context, ServiceContext, in_thread
 from synth.service.errors import JSON, not_found
 from synth.service.small_work import asker_of
-from synth.service.wording import WORD
 from synth.workers.engine_tasks import DESIGNS_TASK, RENDER_TASK
 
 router = APIRouter(prefix=API, tags=["results"])
@@ -89,27 +88,11 @@ async def list_designs(
     found: OwnJob,
     principal: Reader,
     context: Context,
-    family: Annotated[
-        str | None, Query(max_length=LONGEST, pattern=WORD, description="Of a job that compares several.")
-    ] = None,
+    family: Annotated[str | None, word("Of a job that compares several.")] = None,
     where: Annotated[
-        str | None,
-        Query(
-            max_length=10_000,
-            pattern=WORD,
-            description="A condition on columns.",
-            examples=["mass < '20 kg' and status == 'optimal'"],
-        ),
+        str | None, word("A condition on columns.", 10_000, ["mass < '20 kg' and status == 'optimal'"])
     ] = None,
-    sort: Annotated[
-        str | None,
-        Query(
-            max_length=LONGEST,
-            pattern=WORD,
-            description="A column; with - before it from the largest.",
-            examples=["-mass"],
-        ),
-    ] = None,
+    sort: Annotated[str | None, word("A column; with - before it from the largest.", examples=["-mass"])] = None,
     limit: Limit = None,
     cursor: Cursor = None,
 ) -> DesignPage:
