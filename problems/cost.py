@@ -90,12 +90,7 @@ class Special:
 
 
 def declare_cost(
-    d: Declaration,
-    *,
-    mass: Any,
-    parts: Any,
-    lining: tuple[Part, Any] | None = None,
-    special: Sequence[Special] = (),
+    d: Declaration, *, mass: Any, parts: Any, lining: tuple[Part, Any] | None = None, special: Sequence[Special] = ()
 ) -> None:
     """Declare the relative cost of a design and the objective that asks for it.
 

@@ -36,10 +36,7 @@ NUMERATORS = (1, 2, 3, 4, 5, 7, 8, 11, 16, 32)
 
 
 def write(
-    expression: Expression,
-    names: Mapping[str, str],
-    helper: Helper | None = None,
-    doubtful: Collection[str] = (),
+    expression: Expression, names: Mapping[str, str], helper: Helper | None = None, doubtful: Collection[str] = ()
 ) -> str:
     """Return a tree as the formula of a cell, without the sign of equality in front.
 

@@ -378,10 +378,7 @@ def _draw_spans(axis: Axes, spans: Sequence[Mapping[str, Any]], marks: Sequence[
 
 
 def _label_rows(
-    spans: Sequence[Mapping[str, Any]],
-    marks: Sequence[Mapping[str, Any]],
-    limits: tuple[float, float],
-    width: float,
+    spans: Sequence[Mapping[str, Any]], marks: Sequence[Mapping[str, Any]], limits: tuple[float, float], width: float
 ) -> list[tuple[float, str, int, str]]:
     """Return position, text, row and colour of the labels above the panels, so that none covers another."""
     scale = width / (limits[1] - limits[0])

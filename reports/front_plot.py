@@ -161,11 +161,7 @@ def front_svg(front: ParetoFront, chosen: Sequence[int] = (), linked: bool = Tru
 
 
 def front_file(
-    designs: Sequence[Design],
-    objectives: Mapping[str, str],
-    title: str,
-    proven: str = "",
-    families: Sequence[str] = (),
+    designs: Sequence[Design], objectives: Mapping[str, str], title: str, proven: str = "", families: Sequence[str] = ()
 ) -> str:
     """Return the designs of a front as an SVG file that says by itself what it shows; nothing where there is no front.
 

@@ -316,10 +316,7 @@ class _Report:
         for name in sorted(ranked, key=lambda name: name not in design.violated):
             value, limit = design.limits[name]
             used, unit = design.utilisation.get(name), self.frame.limit_units.get(name, "-")
-            bad, tight = (
-                name in design.violated,
-                binds(used, self.frame.limit_senses[name]),
-            )
+            bad, tight = (name in design.violated, binds(used, self.frame.limit_senses[name]))
             verdict: Cell = Strong("VIOLATED") if bad else "holds" if used is not None else "not checked"
             digits = FULL_DIGITS if bad else DIGITS
             sides: list[Cell] = (

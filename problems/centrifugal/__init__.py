@@ -4,22 +4,8 @@ from __future__ import annotations
 
 from .body import Built
 from .duty import COMMON, SOURCES, Duty
-from .engagement import (
-    Contact,
-    declare_band,
-    declare_clamp,
-    declare_contact,
-    declare_full_clamp,
-    declare_stop_force,
-)
-from .flyweights import (
-    Flyweights,
-    Weights,
-    advise_gravity,
-    declare_rest_radius,
-    declare_weights,
-    limit_weight_room,
-)
+from .engagement import Contact, declare_band, declare_clamp, declare_contact, declare_full_clamp, declare_stop_force
+from .flyweights import Flyweights, Weights, advise_gravity, declare_rest_radius, declare_weights, limit_weight_room
 from .lining import Lining, advise_release_gap, declare_lining, declare_wear
 from .rules import LeverRules, Rules
 

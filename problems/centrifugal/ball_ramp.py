@@ -45,13 +45,7 @@ class CentrifugalBallRamp(DesignProblem):
         wants = ball_blocks.declare_force_limits(d, duty=duty)
         rest = blocks.declare_rest_radius(d)
         gap = d.variable(
-            "plate_gap",
-            "mm",
-            1.5,
-            6,
-            symbol="h",
-            text="Travel of the pressure plate to contact",
-            source=f"{S4}, h",
+            "plate_gap", "mm", 1.5, 6, symbol="h", text="Travel of the pressure plate to contact", source=f"{S4}, h"
         )
         deflection = d.variable(
             "spring_preload_deflection",

@@ -69,13 +69,7 @@ def declare_bosses(d: Declaration, built: Built, duty: WholeDuty, parts: Parts) 
     lining = built.lining
     pair, rho = lining.pair, duty.steel_density
     discs = centrifugal.further_discs_mass(
-        rho,
-        lining.surfaces,
-        lining.ratio,
-        lining.outer_radius,
-        duty.hub_radius,
-        pair.density,
-        pair.lining_thickness,
+        rho, lining.surfaces, lining.ratio, lining.outer_radius, duty.hub_radius, pair.density, pair.lining_thickness
     )
     bosses = 2 * duty.boss_mass(rho)
     for name, value, symbol, text in (
@@ -140,12 +134,7 @@ def _declare_cost(d: Declaration, built: Built, complete: Parts) -> None:
     lining, flyweights, springs = built.lining, built.flyweights, built.springs
     special = [
         cost.Special(
-            one.part.slot + "s",
-            one.part,
-            amount=one.count,
-            mass=one.mass,
-            pieces=one.count,
-            factor=cost.SPRING_WIRE,
+            one.part.slot + "s", one.part, amount=one.count, mass=one.mass, pieces=one.count, factor=cost.SPRING_WIRE
         )
         for one in springs
     ]

@@ -182,11 +182,7 @@ BUILT_TWO_SPRINGS_LEVER = KnownDesign(
         "lining_outer_radius": "54 mm",
     },
     {**BUILT_SPRINGS, "clamp_springs": 8, "weights": 6},
-    {
-        "return_spring": "CS-2x10x12.5",
-        "clamp_spring": "CS-2.5x12.5x5.5",
-        "friction_pair": "metal_ceramic_bronze_dry",
-    },
+    {"return_spring": "CS-2x10x12.5", "clamp_spring": "CS-2.5x12.5x5.5", "friction_pair": "metal_ceramic_bronze_dry"},
 )
 
 CASES = {
@@ -226,7 +222,7 @@ CASES = {
                     "objectives": ["outer_diameter", "engagement_band"],
                 },
                 tighten={"required_torque": "65 N*m", "idle_margin_min": "1.2"},
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -236,7 +232,7 @@ CASES = {
                     "ball": ["ball 18", "ball 20"],
                     "return_spring": ["CS-1x5x3.5"],
                     "friction_pair": ["metal_ceramic_bronze_dry"],
-                },
+                }
             },
         ),
         culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
@@ -254,11 +250,7 @@ CASES = {
                     "lining_outer_radius": "80 mm",
                 },
                 {"return_springs": 3, "balls": 8, "friction_surfaces": 8},
-                {
-                    "ball": "ball 20",
-                    "return_spring": "CS-1.25x6.3x5.5",
-                    "friction_pair": "metal_ceramic_bronze_dry",
-                },
+                {"ball": "ball 20", "return_spring": "CS-1.25x6.3x5.5", "friction_pair": "metal_ceramic_bronze_dry"},
             ),
         },
     ),
@@ -281,10 +273,7 @@ CASES = {
         feasible={
             "balls": Case(
                 options=SOURCES,
-                requirements={
-                    **CAPPED,
-                    "outer_diameter_limit": "150 mm",
-                },
+                requirements={**CAPPED, "outer_diameter_limit": "150 mm"},
                 settings={
                     "parts": {"ball": ["ball 25", "ball 30"], **STIFF},
                     "limits": {"balls": "4 .. 5", "return_springs": "2 .. 3", "clamp_springs": "3 .. 4"},
@@ -292,7 +281,7 @@ CASES = {
                     "objectives": ["outer_diameter", "engagement_band"],
                 },
                 tighten={"required_torque": "94 N*m", "lining_wear": "0.6 mm"},
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -350,7 +339,7 @@ CASES = {
                     "points": 2,
                 },
                 tighten={"hub_radius": "21 mm"},
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -400,7 +389,7 @@ CASES = {
                     "points": 2,
                 },
                 tighten={"hub_radius": "21 mm"},
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,

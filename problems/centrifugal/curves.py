@@ -178,10 +178,7 @@ def ball_ramp_path(spec: Mapping[str, Any], design: Design) -> Path:
         regimes=("at rest", "travelling", "clamping"),
         columns=columns,
         panels=[
-            {
-                "label": "force [N]",
-                "columns": ["centrifugal force [N]", "spring force [N]", "clamp force [N]"],
-            },
+            {"label": "force [N]", "columns": ["centrifugal force [N]", "spring force [N]", "clamp force [N]"]},
             {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
             {"label": "gap [mm]", "columns": ["gap [mm]"]},
         ],
@@ -245,10 +242,7 @@ def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Des
         regimes=("at rest", "tension disc", "both", "clamping", "at the stop"),
         columns=columns,
         panels=[
-            {
-                "label": "force [N]",
-                "columns": ["centrifugal force [N]", "clamp force [N]", "stop force [N]"],
-            },
+            {"label": "force [N]", "columns": ["centrifugal force [N]", "clamp force [N]", "stop force [N]"]},
             {"label": "spring force [N]", "columns": ["return spring force [N]", "clamp spring force [N]"]},
             {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
             {"label": "gap [mm]", "columns": ["plate gap [mm]", "stop gap [mm]"]},

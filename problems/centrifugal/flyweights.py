@@ -93,13 +93,7 @@ def declare_weights(d: Declaration, *, duty: Duty) -> Weights:
         group="practice",
     )
     mass = d.variable(
-        "flyweight_mass",
-        "kg",
-        0.05,
-        5,
-        symbol="m_f",
-        text="Mass of all weights together",
-        source=f"{S4}, m",
+        "flyweight_mass", "kg", 0.05, 5, symbol="m_f", text="Mass of all weights together", source=f"{S4}, m"
     )
     arm = d.variable(
         "flyweight_arm",

@@ -124,13 +124,7 @@ class RodLegs(Legs):
                 "k_F",
                 "Force of the clamp springs at the stop over that at contact",
             ),
-            (
-                "band_squared",
-                "-",
-                squared,
-                "k_band",
-                "Square of the stop speed over the contact speed",
-            ),
+            ("band_squared", "-", squared, "k_band", "Square of the stop speed over the contact speed"),
         ):
             d.step(name, unit, value, symbol=symbol, text=text, source=RECONSTRUCTED)
 

@@ -259,13 +259,7 @@ def built(lining: blocks.Lining, lever: Lever, springs: Sequence[SpringSet], dis
 
 
 def advise_lever(
-    d: Declaration,
-    *,
-    duty: blocks.Duty,
-    lining: blocks.Lining,
-    lever: Lever,
-    start_pull: Any,
-    stop_pull: Any,
+    d: Declaration, *, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, start_pull: Any, stop_pull: Any
 ) -> Any:
     """Declare the force on the stop [N], and remark what rests on assumptions and what must be watched for.
 

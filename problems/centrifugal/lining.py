@@ -111,14 +111,7 @@ def declare_lining(d: Declaration, *, duty: Duty, linings: Makers) -> Lining:
         text="The lining is not too wide: it wears evenly",
         source="practice",
     )
-    d.at_most(
-        "ring_ratio_max",
-        ratio,
-        duty.ring_ratio_max,
-        "-",
-        text="The lining is not too narrow",
-        source="practice",
-    )
+    d.at_most("ring_ratio_max", ratio, duty.ring_ratio_max, "-", text="The lining is not too narrow", source="practice")
     lining = Lining(inner, outer, ratio, surfaces, pair, linings)
     for name, unit, value, symbol, text in (
         ("lining_area", "cm2", lining.area, "A_l", "All linings"),

@@ -50,13 +50,7 @@ class Rules(Block):
         source=UNSOURCED,
     )
     friction_surfaces_max = Requirement(
-        "-",
-        4,
-        lower=2,
-        upper=8,
-        symbol="z_max",
-        text=f"Most friction surfaces ({UNSOURCED})",
-        source=UNSOURCED,
+        "-", 4, lower=2, upper=8, symbol="z_max", text=f"Most friction surfaces ({UNSOURCED})", source=UNSOURCED
     )
     gap_per_surface_min = Requirement(
         "mm",

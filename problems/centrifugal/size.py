@@ -35,8 +35,7 @@ def declare_parts(d: Declaration, *, duty: Duty, built: Built) -> Parts:
         "outer_diameter",
         "mm",
         centrifugal.outside_diameter(
-            lining.outer_radius + duty.rim_width,
-            flyweights.end_radius + flyweights.half_height + duty.wall_thickness,
+            lining.outer_radius + duty.rim_width, flyweights.end_radius + flyweights.half_height + duty.wall_thickness
         ),
         symbol="D",
         text="Outside diameter over lining and flyweights, whichever reaches further",

@@ -114,12 +114,7 @@ def of_path(spec: Mapping[str, Any], path: Path, speed: float) -> pd.DataFrame:
     return _frame(spec, rows, S4)
 
 
-def of_lever(
-    spec: Mapping[str, Any],
-    design: Design,
-    kind: lever_curves.LeverKind,
-    speed: float,
-) -> pd.DataFrame:
+def of_lever(spec: Mapping[str, Any], design: Design, kind: lever_curves.LeverKind, speed: float) -> pd.DataFrame:
     """Return the state of a clutch whose levers clamp by springs, with new and with worn linings.
 
     Where the levers jump, the speed is reached from below and from above.

@@ -303,10 +303,7 @@ class CentrifugalTwoSpring(DesignProblem):
         )
         # The contact speed sees their force alone; room and stroke of the clamp springs decide with radius and ramp.
         d.split_last(
-            "return_spring",
-            "return_springs",
-            "return_preload_deflection",
-            unless=("engagement_band", "idle_margin"),
+            "return_spring", "return_springs", "return_preload_deflection", unless=("engagement_band", "idle_margin")
         )
         clamping = spring_sets.declare_springs(
             d,
@@ -340,21 +337,9 @@ class CentrifugalTwoSpring(DesignProblem):
             ("return_preload", "N", way.return_preload, "F_10", "Force of the return springs at rest"),
             ("clamp_preload", "N", way.clamp_preload, "F_20", "Force of the clamp springs at rest"),
             ("contact_force", "N", way.contact_force, "F_a", "Force of the return springs at contact"),
-            (
-                "stop_spring_force",
-                "N",
-                way.stop_force,
-                "F_b",
-                "Force of the clamp springs at the stop",
-            ),
+            ("stop_spring_force", "N", way.stop_force, "F_b", "Force of the clamp springs at the stop"),
             ("start_travel", "mm", way.start_travel, "x_s", "Travel of the tension disc until the plate moves"),
-            (
-                "disc_contact_travel",
-                "mm",
-                way.contact_travel,
-                "x_c",
-                "Travel of the tension disc at contact",
-            ),
+            ("disc_contact_travel", "mm", way.contact_travel, "x_c", "Travel of the tension disc at contact"),
             ("return_rate", "N/mm", way.return_rate, "s_1", "Rate of the return springs"),
             ("clamp_rate", "N/mm", way.clamp_rate, "s_2", "Rate of the clamp springs"),
             ("start_radius", "mm", at_start, "r_s", "Radius of the flyweights when the plate begins to move"),

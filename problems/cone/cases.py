@@ -104,7 +104,7 @@ CASES = {
                     "fix": {"ramp_time": "0.5 s"},
                 },
                 tighten={"overload_torque": "1100 N*m", "length_limit": "88 mm"},
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -114,5 +114,5 @@ CASES = {
         culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force"}),
         names=NAMES / "names.csv",
         sound=sound_cones,
-    ),
+    )
 }

@@ -10,20 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from synth import Design
-from synth.drawing import (
-    XY,
-    Angle,
-    Area,
-    Balloon,
-    Detail,
-    Dimension,
-    Drawing,
-    Hatch,
-    Item,
-    Slant,
-    Vertex,
-    diameter,
-)
+from synth.drawing import XY, Angle, Area, Balloon, Detail, Dimension, Drawing, Hatch, Item, Slant, Vertex, diameter
 
 from ..components.drawn import DrawnComponent, section
 from ..components.lining.drawing import DrawnLining, drawn_lining
@@ -106,10 +93,7 @@ def cone_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
         "cones, engaged",
         cones,
         around,
-        overall=(
-            Dimension((start, across), (end, across), "length", "top"),
-            diameter(end, across, "outer_diameter"),
-        ),
+        overall=(Dimension((start, across), (end, across), "length", "top"), diameter(end, across, "outer_diameter")),
         omitted=omitted,
         remarks=(
             "Double-dot-dash lines are neighbours and envelopes: the length that the layout takes, which is a typical "

@@ -381,15 +381,7 @@ class ConeClutch(DesignProblem):
             )
 
     def _declare_seating(
-        self,
-        d: Declaration,
-        *,
-        duty: friction.Duty,
-        wants: Wants,
-        pair: Pair,
-        shape: Cone,
-        torque: Any,
-        pressure: Any,
+        self, d: Declaration, *, duty: friction.Duty, wants: Wants, pair: Pair, shape: Cone, torque: Any, pressure: Any
     ) -> None:
         """Declare torque and pressure after vibration has removed the axial friction."""
         d.derive(
@@ -426,15 +418,7 @@ class ConeClutch(DesignProblem):
             )
 
     def _declare_release(
-        self,
-        d: Declaration,
-        *,
-        duty: friction.Duty,
-        wants: Wants,
-        layer: Sources,
-        pair: Pair,
-        shape: Cone,
-        force: Any,
+        self, d: Declaration, *, duty: friction.Duty, wants: Wants, layer: Sources, pair: Pair, shape: Cone, force: Any
     ) -> None:
         """Declare the release force and the limit against self-locking, or against a pull that is too hard."""
         release = d.derive(

@@ -97,12 +97,8 @@ CASES = {
                     "outer_diameter_limit": "240 mm",
                 },
                 settings={"parts": {"friction_pair": ["wound_yarn_dry", "moulded_dry"]}},
-                tighten={
-                    "load_torque": "64 N*m",
-                    "outer_diameter_limit": "215 mm",
-                    "temperature_rise_limit": "60 K",
-                },
-            ),
+                tighten={"load_torque": "64 N*m", "outer_diameter_limit": "215 mm", "temperature_rise_limit": "60 K"},
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -117,5 +113,5 @@ CASES = {
         culprits=frozenset({"torque_capacity", "worn_torque_capacity", "outer_diameter", "actuation_force"}),
         names=NAMES / "names.csv",
         sound=sound_discs,
-    ),
+    )
 }

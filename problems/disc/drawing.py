@@ -44,11 +44,7 @@ def disc_drawing(spec: Mapping[str, Any], design: Design) -> Drawing:
         discs,
         around=(drawn_hubs(size, discs, across),),
         overall=(Dimension((0.0, across), (end, across), "length", "top"), diameter(end, across, "outer_diameter")),
-        omitted=(
-            "flywheel but for its face",
-            "rivets and cushion springs of the linings, torsion damper",
-            *omitted,
-        ),
+        omitted=("flywheel but for its face", "rivets and cushion springs of the linings, torsion damper", *omitted),
         remarks=(
             f"The discs are drawn released; {assumed}. Pressure plates are drawn as wide as the friction ring, as "
             "their mass is computed.",

@@ -35,16 +35,7 @@ class DiscClutch(DesignProblem):
 
     name = "disc_clutch"
     title = "Disc clutch"
-    sources = (
-        LIST_S1,
-        SHIGLEY_DISC,
-        NEALE,
-        LIST_S0,
-        ARCHARD,
-        DISC_WEAR,
-        DISC_RUN_OUT,
-        *SHAFT,
-    )
+    sources = (LIST_S1, SHIGLEY_DISC, NEALE, LIST_S0, ARCHARD, DISC_WEAR, DISC_RUN_OUT, *SHAFT)
     simulation_settings = startup_curves.SETTINGS
     understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
     declines, disregards, as_limits = coverage.ENGAGED_DRY, ("peak_torque",), coverage.ENVELOPE
@@ -70,12 +61,7 @@ class DiscClutch(DesignProblem):
         )
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(
-            d,
-            suited=["'disc facing' in surfaces"],
-            duty=duty,
-            lubrication="dry",
-            linings=layer.linings,
-            take_up="soft",
+            d, suited=["'disc facing' in surfaces"], duty=duty, lubrication="dry", linings=layer.linings, take_up="soft"
         )
         lined = disc_pack.LinedDiscs(duty, ring, pair, pack)
         start = disc_pack.declare_disc_start(d, lined, force=force, ramp_time=ramp_time)

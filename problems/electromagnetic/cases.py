@@ -104,11 +104,8 @@ CASES = {
                     },
                     "limits": {"inner_pole_width": "12 mm .. 16 mm"},
                 },
-                tighten={
-                    "load_torque": "9 N*m",
-                    "pull_in_margin": "1.4",
-                },
-            ),
+                tighten={"load_torque": "9 N*m", "pull_in_margin": "1.4"},
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -183,5 +180,5 @@ CASES = {
                 {"winding_wire": "Cu 0.63 class 180", "friction_pair": "sinter_bronze_dry"},
             ),
         },
-    ),
+    )
 }

@@ -25,18 +25,7 @@ from ..components.ring.model import declare_ring
 from ..duty import coverage
 from ..friction import startup_curves
 from ..mechanics import magnetics
-from ..sources import (
-    ARCHARD,
-    DISC_RUN_OUT,
-    DISC_WEAR,
-    LIST_S0,
-    LIST_S1,
-    NEALE,
-    PLATES_IN_USE,
-    S4,
-    SHAFT,
-    SHIGLEY_DISC,
-)
+from ..sources import ARCHARD, DISC_RUN_OUT, DISC_WEAR, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S4, SHAFT, SHIGLEY_DISC
 from .layers import LAYERS, Sources
 
 if TYPE_CHECKING:

@@ -340,11 +340,7 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
     InputError
         When the cooling does not go with the lubrication, or with what turns.
     """
-    duty = d.block(
-        kind,
-        cooling=cooling_default,
-        heat_transfer=lambda duty: cooling.row(d).heat_transfer,
-    )
+    duty = d.block(kind, cooling=cooling_default, heat_transfer=lambda duty: cooling.row(d).heat_transfer)
     cooling.refuse_unfit(d, lubrication, turning=True)
     refuse_contradictions(d, duty)
     if duty.startup_torque is not None:

@@ -156,10 +156,7 @@ def _driver(spec: Mapping[str, Any]) -> dict[str, Any]:
         breakdown_torque=motor["pullout_torque_ratio"] * motor["rated_torque"] * ratio,
         breakdown_slip=slip or motors.breakdown_slip(motor["rated_slip"], motor["pullout_torque_ratio"]),
     )
-    return {
-        "driver_inertia": spec.get("driver_inertia") or motor["rotor_inertia"] * ratio**2,
-        "driver_torque": curve,
-    }
+    return {"driver_inertia": spec.get("driver_inertia") or motor["rotor_inertia"] * ratio**2, "driver_torque": curve}
 
 
 def _frame(problem: DesignProblem, spec: Mapping[str, Any], run: StartupRun, more: str) -> pd.DataFrame:

@@ -75,12 +75,8 @@ CASES = {
                     "limits": {"gap_radius": "60 mm .. 90 mm"},
                     "objectives": ["mass", "input_inertia"],
                 },
-                tighten={
-                    "required_torque": "32 N*m",
-                    "outer_diameter_limit": "250 mm",
-                    "iron_flux_limit": "1.2 T",
-                },
-            ),
+                tighten={"required_torque": "32 N*m", "outer_diameter_limit": "250 mm", "iron_flux_limit": "1.2 T"},
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -125,5 +121,5 @@ CASES = {
                 {"winding_wire": "Cu 0.56 class 155", "powder": "carbonyl_graphite"},
             ),
         },
-    ),
+    )
 }

@@ -467,13 +467,7 @@ def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
         ("body_bore", "mm", layout.bore, "r_b", "Bore of the body around the coil"),
         ("outer_radius", "mm", layout.outer_radius, "R_out", "Outside of the yoke"),
         ("face_length", "mm", layout.face_length, "l_f", "Length of rotor and powder gap"),
-        (
-            "rim_section_width",
-            "mm",
-            rim,
-            "w_rim",
-            "Section of the rim of the rotor over its circumference",
-        ),
+        ("rim_section_width", "mm", rim, "w_rim", "Section of the rim of the rotor over its circumference"),
         ("rim_radius", "mm", layout.gap_radius - layout.thickness, "r_rim", "Inside of the rim of the rotor"),
         ("yoke_ratio", "-", layout.yoke_ratio, "k_y", "Mean radius of the yoke over that of the powder gap"),
         ("air_flux_share", "-", layout.air_flux_share, "k_a", "Flux density in the air gap over that in the powder"),
@@ -483,14 +477,7 @@ def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
 
 
 def _declare_size(
-    d: Declaration,
-    *,
-    layer: Sources,
-    part: Part,
-    coil: Choice,
-    layout: powder.Layout,
-    rim: Any,
-    copper_section: Any,
+    d: Declaration, *, layer: Sources, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
 ) -> Sized:
     wants = layer.wants
     filling = d.derive(
@@ -545,12 +532,7 @@ def _declare_size(
         source=f"{S4} [P10]",
     )
     diameter = d.derive(
-        "outer_diameter",
-        "mm",
-        2 * layout.outer_radius,
-        symbol="D",
-        text="Outside of the yoke",
-        source="geometry",
+        "outer_diameter", "mm", 2 * layout.outer_radius, symbol="D", text="Outside of the yoke", source="geometry"
     )
     sized = Sized(mass=rotor + drum + body + copper + filling, copper=copper, powder=filling)
     weight, extent = layer.declare_around(d, sized, layout)

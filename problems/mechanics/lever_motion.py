@@ -17,17 +17,7 @@ import numpy as np
 from . import Quantity, centrifugal
 from . import centrifugal_levers as levers
 
-__all__ = [
-    "CLAMP",
-    "CONTACT",
-    "REST",
-    "STOP",
-    "TRAVEL",
-    "Borders",
-    "Motion",
-    "ReversedLever",
-    "RodLever",
-]
+__all__ = ["CLAMP", "CONTACT", "REST", "STOP", "TRAVEL", "Borders", "Motion", "ReversedLever", "RodLever"]
 
 REST, TRAVEL, CONTACT, CLAMP, STOP = range(5)
 _ROUNDING = 1e-12

@@ -6,10 +6,7 @@ import numpy as np
 
 from . import Quantity
 
-__all__ = [
-    "breakdown_slip",
-    "kloss_torque",
-]
+__all__ = ["breakdown_slip", "kloss_torque"]
 
 
 def kloss_torque(

@@ -104,11 +104,7 @@ def lining_mass(density: Quantity, thickness: Quantity, area: Quantity) -> Quant
 
 
 def pack_length(
-    surfaces: Quantity,
-    inner_thickness: Quantity,
-    outer_thickness: Quantity,
-    lining_thickness: Quantity,
-    gap: Quantity,
+    surfaces: Quantity, inner_thickness: Quantity, outer_thickness: Quantity, lining_thickness: Quantity, gap: Quantity
 ) -> Quantity:
     """Length of the released pack.
 

@@ -11,10 +11,7 @@ from __future__ import annotations
 
 from . import Quantity, centrifugal
 
-__all__ = [
-    "inertia_at_clutch",
-    "load_at_clutch",
-]
+__all__ = ["inertia_at_clutch", "load_at_clutch"]
 
 
 def load_at_clutch(

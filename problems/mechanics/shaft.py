@@ -14,14 +14,7 @@ import numpy as np
 
 from . import Quantity
 
-__all__ = [
-    "BOSS_LENGTH",
-    "TEST_BAR",
-    "boss_mass",
-    "fatigue_shear",
-    "shaft_diameter",
-    "size_factor",
-]
+__all__ = ["BOSS_LENGTH", "TEST_BAR", "boss_mass", "fatigue_shear", "shaft_diameter", "size_factor"]
 
 BOSS_LENGTH = 1.2  # of the shaft diameter: room for a parallel key that carries the torque of the shaft
 _NOTCH_FACTOR = 2.0  # of a keyway: stress that counts for fatigue over that of the plain shaft

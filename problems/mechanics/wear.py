@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from . import Quantity
 
-__all__ = [
-    "wear_life",
-]
+__all__ = ["wear_life"]
 
 
 def wear_life(area: Quantity, depth: Quantity, wear_rate: Quantity, friction_work: Quantity) -> Quantity:

@@ -170,11 +170,7 @@ CASES = {
                     "limits": {"friction_surfaces": "6 .. 8", "outer_diameter": "<= 400 mm"},
                     "fix": {"ramp_time": "0.3 s"},
                 },
-                tighten={
-                    "load_torque": "125 N*m",
-                    "actuation_force_limit": "5 kN",
-                    "hub_bore_diameter": "70 mm",
-                },
+                tighten={"load_torque": "125 N*m", "actuation_force_limit": "5 kN", "hub_bore_diameter": "70 mm"},
             ),
         },
         infeasible=Case(
@@ -188,5 +184,5 @@ CASES = {
         culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force", "lug_pressure_outer"}),
         names=NAMES / "names.csv",
         sound=sound_rings,
-    ),
+    )
 }

@@ -36,14 +36,7 @@ class MultiPlateClutch(DesignProblem):
 
     name = "multi_plate_clutch"
     title = "Multi-plate clutch"
-    sources = (
-        LIST_S0,
-        LIST_S1,
-        NEALE,
-        ARCHARD,
-        *PLATES_IN_USE,
-        *SHAFT,
-    )
+    sources = (LIST_S0, LIST_S1, NEALE, ARCHARD, *PLATES_IN_USE, *SHAFT)
     simulation_settings = startup_curves.SETTINGS
     understands = (
         *friction.COMMON,
@@ -81,11 +74,7 @@ class MultiPlateClutch(DesignProblem):
         )
         ramp_time = friction.declare_ramp_time(d)
         pair = declare_friction_pair(
-            d,
-            suited=["'plate pack' in surfaces"],
-            duty=duty,
-            lubrication=lubrication,
-            linings=layer.linings,
+            d, suited=["'plate pack' in surfaces"], duty=duty, lubrication=lubrication, linings=layer.linings
         )
         plates = None
         if plate_set is not None:

@@ -28,12 +28,7 @@ def sound_couplings(rng: np.random.Generator, instance: Instance, count: int) ->
 
 
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
-MILL_COUPLING = {
-    "arm_radius": "62 mm",
-    "guide_half_length": "72 mm",
-    "offset_capacity": "5.5 mm",
-    "balance": "no",
-}
+MILL_COUPLING = {"arm_radius": "62 mm", "guide_half_length": "72 mm", "offset_capacity": "5.5 mm", "balance": "no"}
 
 CASES = {
     "roller_coupling": FamilyCases(
@@ -74,17 +69,8 @@ CASES = {
             "mill": Case(
                 options=SOURCES,
                 requirements={**MILL, "outer_diameter_limit": "260 mm"},
-                settings={
-                    "parts": {
-                        "roller": ["6203", "6204", "6303"],
-                        "float_material": ["100Cr6", "EN AW-7075-T6"],
-                    },
-                },
-                tighten={
-                    "required_torque": "320 N*m",
-                    "offset": "7 mm",
-                    "pin_shear_limit": "36 N/mm2",
-                },
+                settings={"parts": {"roller": ["6203", "6204", "6303"], "float_material": ["100Cr6", "EN AW-7075-T6"]}},
+                tighten={"required_torque": "320 N*m", "offset": "7 mm", "pin_shear_limit": "36 N/mm2"},
             ),
             "angled_fan": Case(
                 requirements={
@@ -98,16 +84,10 @@ CASES = {
                 },
                 options={**SOURCES, "roller_contact": "crowned"},
                 settings={
-                    "parts": {
-                        "roller": ["NATV 12", "NATR 12", "NATV 15"],
-                        "float_material": ["100Cr6", "Ti-6Al-4V"],
-                    },
+                    "parts": {"roller": ["NATV 12", "NATR 12", "NATV 15"], "float_material": ["100Cr6", "Ti-6Al-4V"]},
                     "objectives": ["outer_diameter", "pin_force"],
                 },
-                tighten={
-                    "required_torque": "130 N*m",
-                    "vibration_limit": "20 N",
-                },
+                tighten={"required_torque": "130 N*m", "vibration_limit": "20 N"},
             ),
         },
         infeasible=Case(
@@ -118,5 +98,5 @@ CASES = {
         culprits=frozenset({"outer_diameter", "pin_shear", "hertz", "roller_gap", "run_in"}),
         names=NAMES / "names.csv",
         sound=sound_couplings,
-    ),
+    )
 }

@@ -1375,11 +1375,7 @@ def floating_mass_travel(angle: Quantity, offset: Quantity, speed: Quantity) -> 
     >>> tuple(float(x) for x in floating_mass_travel(0.0, 0.010, 100.0))
     (0.0, 0.0, 100.0)
     """
-    return (
-        offset * (1 - np.cos(angle)),
-        offset * speed * np.sin(angle),
-        offset * speed**2 * np.cos(angle),
-    )
+    return (offset * (1 - np.cos(angle)), offset * speed * np.sin(angle), offset * speed**2 * np.cos(angle))
 
 
 def floating_mass_forces(

@@ -85,7 +85,7 @@ CASES = {
                     "hub_shear_limit": "60 N/mm2",
                     "interference_tolerance": "0.06 mm",
                 },
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,
@@ -155,7 +155,7 @@ CASES = {
                     "hub_wall_min": "5 mm",
                     "actuator_torque_limit": "5 N*m",
                 },
-            ),
+            )
         },
         infeasible=Case(
             options=SOURCES,

@@ -141,10 +141,7 @@ def friction_marks(clutch: Fitted) -> list[dict[str, Any]]:
 def torque_lines(spec: Mapping[str, Any], number: int = 0) -> list[dict[str, Any]]:
     """Return lines at the torque to hold and the peak torque."""
     needed = spec["slip_safety"] * spec["required_torque"]
-    return [
-        *line(number, needed, "slip_safety × required_torque"),
-        *line(number, spec["peak_torque"], "peak_torque"),
-    ]
+    return [*line(number, needed, "slip_safety × required_torque"), *line(number, spec["peak_torque"], "peak_torque")]
 
 
 def section_moments(
@@ -201,11 +198,7 @@ def along_the_coils(
     return frame(
         columns,
         title="Tension, pressure and stress along the coils of one hub; the gap is at the right",
-        panels=[
-            panel("tension [N]", tension),
-            panel("pressure [N/mm2]", pressure),
-            panel("stress [N/mm2]", stress),
-        ],
+        panels=[panel("tension [N]", tension), panel("pressure [N/mm2]", pressure), panel("stress [N/mm2]", stress)],
         lines=[
             *line(1, clutch.pressure_allow, "p_allow", MEGA),
             *line(2, clutch.bending_allow, "allowed stress", MEGA),
@@ -322,9 +315,7 @@ def _torque_over_interference(clutch: Fitted, spec: Mapping[str, Any], values: M
     return frame(
         columns,
         title="What more or less interference does",
-        panels=[
-            *(panel(name, [name]) for name in names[1:]),
-        ],
+        panels=[*(panel(name, [name]) for name in names[1:])],
         marks=[mark(here / MM, "interference")],
         lines=[
             *torque_lines(spec)[:1],
@@ -342,10 +333,7 @@ def _interference_along(
     from_free_end = 2 * math.pi * coil * clutch.mu_max * clutch.radius_ratio
     overload = section_moments(clutch, values["wire_torque"], high, clutch.mu_max, high, coil)
     cases = {
-        "required": (
-            low,
-            section_moments(clutch, spec["required_torque"], low, clutch.mu_min, low, coil),
-        ),
+        "required": (low, section_moments(clutch, spec["required_torque"], low, clutch.mu_min, low, coil)),
         "overload": (high, overload),
         "resting": (high, np.full_like(coil, high)),
         "overrunning": (high, high * np.exp(-from_free_end)),
@@ -354,10 +342,7 @@ def _interference_along(
 
 
 def _windup(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) -> pd.DataFrame:
-    slips = {
-        "loosest": (low, clutch.mu_min),
-        "tightest": (high, clutch.mu_max),
-    }
+    slips = {"loosest": (low, clutch.mu_min), "tightest": (high, clutch.mu_max)}
     limits = {k: float(formulas.closing_torque(m, clutch.belt_exponent(mu))) for k, (m, mu) in slips.items()}
     end = max(spec["required_torque"], min(spec["peak_torque"], max(limits.values())))
     torque = np.unique(

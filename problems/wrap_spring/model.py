@@ -228,11 +228,7 @@ class Rules(body.SpringRules):
                 "overrun_life",
                 "h",
                 formulas.overrun_life(
-                    pair.wearable_depth,
-                    pair.wear_rate,
-                    pair.mu_max,
-                    d.derived["overrun_pv"].sx,
-                    wants.overrun_duty,
+                    pair.wearable_depth, pair.wear_rate, pair.mu_max, d.derived["overrun_pv"].sx, wants.overrun_duty
                 ),
                 symbol="t_wear",
                 text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",

@@ -39,11 +39,7 @@ from .view_places import CENTRE_OVER
 STYLE = "CLUTCHSYNTH"
 FONT = "arial.ttf"
 # Line types, by names that other programs know, as lengths of dashes (positive) and gaps [mm on paper].
-DASHES = {
-    "HIDDEN": (3.0, -1.0),
-    "CENTER": (8.0, -1.0, 0.5, -1.0),
-    "PHANTOM": (8.0, -1.0, 0.5, -1.0, 0.5, -1.0),
-}
+DASHES = {"HIDDEN": (3.0, -1.0), "CENTER": (8.0, -1.0, 0.5, -1.0), "PHANTOM": (8.0, -1.0, 0.5, -1.0, 0.5, -1.0)}
 # Layer: line type, width in hundredths of a millimetre, colour.
 LAYERS = {
     "OUTLINE": ("Continuous", 50, 7),

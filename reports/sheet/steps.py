@@ -113,10 +113,7 @@ class Steps:
 
     def _inserted(self, shown_tree: Expression, exact: Expression, value: float, in_si: bool) -> Layout:
         """Return a formula with as many digits of its numbers as its result needs."""
-        digits = next(
-            (n for n in MORE_DIGITS if self._is_enough(exact, value, in_si, n)),
-            MORE_DIGITS[-1],
-        )
+        digits = next((n for n in MORE_DIGITS if self._is_enough(exact, value, in_si, n)), MORE_DIGITS[-1])
         return Typesetter(self.quantities, self._leaf(in_si, digits), numeric=True).lay(shown_tree)
 
     def _leaf(self, in_si: bool, digits: int = STEP_DIGITS) -> ByNumber:

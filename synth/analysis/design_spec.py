@@ -30,12 +30,7 @@ def must_be_a_design(spec: Spec) -> None:
     """Refuse a spec of several families, without values, or with something left to fix."""
     must_be_one_family(spec)
     if spec.values is None:
-        raise InputError(
-            f"{spec.file}: values",
-            None,
-            A_DESIGN,
-            ("values",),
-        )
+        raise InputError(f"{spec.file}: values", None, A_DESIGN, ("values",))
     if spec.fix:
         right = "these under values: a given design has nothing left to fix"
         raise InputError(f"{spec.file}: fix", ", ".join(spec.fix), right, ("fix",))

@@ -243,10 +243,7 @@ def _solve_for(
     names = list(derived)
     target = np.array([derived[n] for n in names])
     scale = np.maximum(np.abs(target), DERIVED.smallest)
-    function = model.function(
-        ("solve", tuple(missing), tuple(names)),
-        lambda: _derived_function(model, missing, names),
-    )
+    function = model.function(("solve", tuple(missing), tuple(names)), lambda: _derived_function(model, missing, names))
     lower, upper = np.array([v.lower for v in unknown]), np.array([v.upper for v in unknown])
 
     def difference(x: np.ndarray) -> np.ndarray:

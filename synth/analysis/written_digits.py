@@ -18,11 +18,7 @@ AGREE = 2e-10  # relative; objectives that agree so far are the same for whoever
 
 
 def written_digits(
-    space: SearchSpace,
-    points: np.ndarray,
-    data: Sequence[Any],
-    result: Evaluation,
-    objectives: Sequence[str],
+    space: SearchSpace, points: np.ndarray, data: Sequence[Any], result: Evaluation, objectives: Sequence[str]
 ) -> list[int]:
     """Return, per design, how many significant digits its variables need so that it stays what it is.
 

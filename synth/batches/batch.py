@@ -520,11 +520,7 @@ class BatchJob:
         self.remarks.add(row)
         question = None
         if row.question is not None:
-            question = {
-                "key": row.key,
-                "structure": row.structure,
-                "content": row.question,
-            }
+            question = {"key": row.key, "structure": row.structure, "content": row.question}
         return {
             "line": row.line,
             "position": canonical_position(row.cells),
@@ -542,11 +538,7 @@ class BatchJob:
     # -- work and results ----------------------------------------------------------------------
 
     def result(
-        self,
-        workers: int,
-        scheduler: str | None,
-        progress: BatchProgress | None,
-        keep: object = None,
+        self, workers: int, scheduler: str | None, progress: BatchProgress | None, keep: object = None
     ) -> BatchResult:
         """Plan, work off and write the job, as ``batch`` does; ``keep`` lives as long as the result."""
         with closing(self), claimed(self.folder, self.id):

@@ -91,10 +91,7 @@ def error_text(error: BaseException) -> str:
 
 
 def answered_together(
-    questions: Mapping[str, RowQuestion],
-    settings: Mapping[str, object],
-    shared: Shared,
-    progress: Progress | None,
+    questions: Mapping[str, RowQuestion], settings: Mapping[str, object], shared: Shared, progress: Progress | None
 ) -> dict[str, dict[str, Any]]:
     """Search the designs for the questions of a group at once.
 

@@ -9,9 +9,7 @@ from synth.batches.solve import UNGROUPED
 from synth.batches.store import Outcome
 
 
-def sorted_out(
-    results: Mapping[str, RowAnswer],
-) -> tuple[dict[str, Outcome], dict[str, str], dict[str, str]]:
+def sorted_out(results: Mapping[str, RowAnswer]) -> tuple[dict[str, Outcome], dict[str, str], dict[str, str]]:
     """Answers, errors, and reasons to leave the group, of what ``solve_unit`` returns; by question."""
     outcomes: dict[str, Outcome] = {}
     errors: dict[str, str] = {}

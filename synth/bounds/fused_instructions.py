@@ -48,32 +48,16 @@ RUNS: dict[Op, Run] = {
         "k y l m",
     ),
     Op.DIFFERENCE_BACK: Run(
-        (
-            (Op.MUL_SUB, "s x l k+"),
-            (Op.MUL_SUB, "t x+ m k"),
-            (Op.MET_ADD, "x k y k+ y+"),
-            *MET_OTHER,
-        ),
-        "k y l m",
+        ((Op.MUL_SUB, "s x l k+"), (Op.MUL_SUB, "t x+ m k"), (Op.MET_ADD, "x k y k+ y+"), *MET_OTHER), "k y l m"
     ),
     Op.AT_MOST: Run(((Op.MUL, "s b c"), (Op.KILL_ABOVE, "z x s"), (Op.FMIN, "x+ x+ s"), (Op.GT, "o x+ d")), "b c o d"),
     Op.AT_LEAST: Run(((Op.MUL, "s b c"), (Op.KILL_BELOW, "z x+ s"), (Op.FMAX, "x x s"), (Op.LT, "o x d")), "b c o d"),
     Op.SUM: Run(
-        (
-            (Op.ADD_SUB_MUL, "s a b c a"),
-            (Op.FMAX, "x x s"),
-            (Op.ADD_ADD_MUL, "s a+ b+ c a+"),
-            (Op.FMIN, "x+ x+ s"),
-        ),
+        ((Op.ADD_SUB_MUL, "s a b c a"), (Op.FMAX, "x x s"), (Op.ADD_ADD_MUL, "s a+ b+ c a+"), (Op.FMIN, "x+ x+ s")),
         "a b c",
     ),
     Op.DIFFERENCE: Run(
-        (
-            (Op.SUB_SUB_MUL, "s a b+ c a"),
-            (Op.FMAX, "x x s"),
-            (Op.SUB_ADD_MUL, "s a+ b c a+"),
-            (Op.FMIN, "x+ x+ s"),
-        ),
+        ((Op.SUB_SUB_MUL, "s a b+ c a"), (Op.FMAX, "x x s"), (Op.SUB_ADD_MUL, "s a+ b c a+"), (Op.FMIN, "x+ x+ s")),
         "a b c",
     ),
     Op.TERM_BACK: Run(((Op.FMAX_MUL_SUB, "x x k l y+"), (Op.FMIN_MUL_SUB, "x+ x+ k+ m y")), "k y l m"),

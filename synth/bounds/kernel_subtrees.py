@@ -97,10 +97,7 @@ class CutoffTables:
 class _TreeStructure(ctypes.Structure):
     """The structure ``Tree`` of the C source."""
 
-    _fields_ = (
-        *((name, ctypes.c_longlong) for name in NUMBERS),
-        *((name, ctypes.c_void_p) for name in PLACES),
-    )
+    _fields_ = (*((name, ctypes.c_longlong) for name in NUMBERS), *((name, ctypes.c_void_p) for name in PLACES))
 
 
 class Halves:

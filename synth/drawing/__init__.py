@@ -26,19 +26,7 @@ Sheet, scale, places of dimensions and numbers, title block and parts list are m
 
 from synth.drawing.marks import Angle, Balloon, Detail, Dimension, Edge, Measured, Radius, Slant, diameter
 from synth.drawing.record import Drawing, Hatch, Item, View, Weight
-from synth.drawing.shapes import (
-    XY,
-    Arc,
-    Area,
-    Box2,
-    Circle,
-    Drawable,
-    Line,
-    LineKind,
-    Vertex,
-    disc,
-    rectangle,
-)
+from synth.drawing.shapes import XY, Arc, Area, Box2, Circle, Drawable, Line, LineKind, Vertex, disc, rectangle
 
 __all__ = [
     "XY",

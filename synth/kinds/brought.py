@@ -168,9 +168,7 @@ def _needed() -> Mapping[str, tuple[tuple[str, str, tuple[str, ...]], ...]]:
 
 
 def _remarks(
-    written: DelimitedText,
-    columns: Sequence[Mapping[str, object]],
-    missing: Sequence[tuple[str, str, tuple[str, ...]]],
+    written: DelimitedText, columns: Sequence[Mapping[str, object]], missing: Sequence[tuple[str, str, tuple[str, ...]]]
 ) -> list[str]:
     """Return in sentences what whoever brings a table should look at."""
     told = [written.sentence()] if written.sentence() else []

@@ -17,16 +17,7 @@ from synth.analysis.design_spec import design_of_spec, must_be_a_design
 from synth.declaration import Declaration
 from synth.errors import InputError, SeveralErrors, at, gathered
 from synth.kinds import comparison, synthesis
-from synth.kinds.asked import (
-    CATALOGS,
-    FAMILY,
-    MAPPINGS,
-    catalogs_of,
-    check_entry,
-    digests,
-    settings_of,
-    spec_of,
-)
+from synth.kinds.asked import CATALOGS, FAMILY, MAPPINGS, catalogs_of, check_entry, digests, settings_of, spec_of
 from synth.kinds.settings import KIND_SETTINGS, KindSettings
 from synth.model.model import Model
 from synth.model.problem import DesignProblem

@@ -29,11 +29,7 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
     asked, settings = question_of(spec, sources)
     checked(asked, settings)
     stated = stated_spec(asked, settings)
-    return CheckedRequest(
-        request=stated,
-        title=titled(asked),
-        families=(asked.problem.name,),
-    )
+    return CheckedRequest(request=stated, title=titled(asked), families=(asked.problem.name,))
 
 
 def checked(asked: Request, settings: SearchSettings) -> None:

@@ -48,9 +48,7 @@ def read(request: Mapping[str, object], sources: Sources) -> CheckedRequest:
         front = front_in(records, of.family, check=False)
         families, title = (front.frame.family,), front.frame.title
     return CheckedRequest(
-        request={**of.to_json(), **asked.to_json()},
-        title=f"Verification: {title}",
-        families=families,
+        request={**of.to_json(), **asked.to_json()}, title=f"Verification: {title}", families=families
     )
 
 

@@ -15,16 +15,7 @@ import casadi as ca
 
 from synth.declaration import Declaration, Part, Refusal
 from synth.errors import InputError, at
-from synth.tables.conditions import (
-    Condition,
-    Junction,
-    Negation,
-    Node,
-    Test,
-    Value,
-    may_be_condition,
-    parse_condition,
-)
+from synth.tables.conditions import Condition, Junction, Negation, Node, Test, Value, may_be_condition, parse_condition
 from synth.tables.schema import Column
 from synth.text.row_cells import text_code
 from synth.units import parse_quantity

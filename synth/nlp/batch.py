@@ -320,13 +320,7 @@ class BatchNlp:
         return np.concatenate([allowed, cutoffs], axis=1).T
 
     def _finished(
-        self,
-        problems: Problems,
-        ends: Ends,
-        scales: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        worth: np.ndarray,
+        self, problems: Problems, ends: Ends, scales: np.ndarray, low: np.ndarray, high: np.ndarray, worth: np.ndarray
     ) -> Solutions:
         constraints = self.functions.n_constraints
         logs = self.log_variables[:, None]

@@ -18,10 +18,7 @@ _shipped: dict[str, Catalogs] = {}
 
 
 def catalogs_for(
-    problem: DesignProblem,
-    spec: UserTables,
-    base: Path | None = None,
-    kept: KeptRows | None = None,
+    problem: DesignProblem, spec: UserTables, base: Path | None = None, kept: KeptRows | None = None
 ) -> Catalogs:
     """Return catalogues for what the user gave with a question.
 

@@ -104,11 +104,7 @@ class _Reading:
 
 
 def leave_out_without_value(
-    model: Model,
-    ranges: VariableRanges,
-    values: RequirementValues,
-    selection: Selection,
-    quantities: Sequence[str],
+    model: Model, ranges: VariableRanges, values: RequirementValues, selection: Selection, quantities: Sequence[str]
 ) -> None:
     """Leave out rows, counts and choices with which a quantity has no finite value, whatever else is chosen.
 

@@ -47,12 +47,7 @@ class SearchSpace(ABC):
     floors: Mapping[int, np.ndarray] = MappingProxyType({})
 
     def __init__(
-        self,
-        model: Model,
-        ranges: VariableRanges,
-        limits: UserLimits,
-        selection: Selection,
-        combinations: Combinations,
+        self, model: Model, ranges: VariableRanges, limits: UserLimits, selection: Selection, combinations: Combinations
     ) -> None:
         self.model, self.ranges, self.limits = model, ranges, limits
         self.selection, self.combinations = selection, combinations

@@ -14,14 +14,7 @@ import sqlalchemy as sa
 from sqlalchemy.orm import Session
 
 from synth.queue.job_table import BATCH, DONE, LIVE, OPEN, ROWS, RUNNING, RUNNING_LIMIT, Ending, JobTable, insert_event
-from synth.queue.models import (
-    Job,
-    RowQuestion,
-    Tenant,
-    WorkerSign,
-    WorkUnit,
-    moment,
-)
+from synth.queue.models import Job, RowQuestion, Tenant, WorkerSign, WorkUnit, moment
 from synth.queue.owners import has_died
 
 
@@ -262,12 +255,7 @@ class JobQueue(JobTable):
         with self.engine.begin() as connection:
             adopted = connection.execute(
                 sa.update(Job)
-                .where(
-                    Job.state.in_(LIVE),
-                    Job.kind != BATCH,
-                    Job.code != code,
-                    Job.code.not_in(living),
-                )
+                .where(Job.state.in_(LIVE), Job.kind != BATCH, Job.code != code, Job.code.not_in(living))
                 .values(code=code)
             )
         return int(adopted.rowcount)

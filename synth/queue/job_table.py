@@ -17,16 +17,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, aliased
 
 from synth.queue.database import Database, encoded
-from synth.queue.models import (
-    Event,
-    Job,
-    JobRecord,
-    Tenant,
-    Upload,
-    WorkerSign,
-    WorkUnit,
-    moment,
-)
+from synth.queue.models import Event, Job, JobRecord, Tenant, Upload, WorkerSign, WorkUnit, moment
 from synth.queue.records import Record
 
 OPEN, RUNNING, DONE, CANCELLED, FAILED, STOPPED = "open", "running", "done", "cancelled", "failed", "stopped"

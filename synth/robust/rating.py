@@ -79,10 +79,7 @@ class Rater:
     # -- numbers -------------------------------------------------------------------------------
 
     def rate(
-        self,
-        designs: Sequence[Design],
-        progress: Progress | None = None,
-        deadline: float = math.inf,
+        self, designs: Sequence[Design], progress: Progress | None = None, deadline: float = math.inf
     ) -> tuple[list[DesignRating], str]:
         """Return the rating of each design, and what stopped the work before the last one.
 

@@ -123,14 +123,7 @@ class Formulation:
         self.followers: dict[RequirementValues, dict[str, dict[str, float]]] = {}  # of each question
         # By combination and makeable values, where the full tolerance was needed: whether something does without it.
         self.kept_closely: dict[tuple[int, bytes], bool] = {}
-        self.boxes = BoxOperations(
-            self.bounding,
-            self.makeable,
-            self.objectives,
-            self.bounded,
-            counters,
-            self.tuning,
-        )
+        self.boxes = BoxOperations(self.bounding, self.makeable, self.objectives, self.bounded, counters, self.tuning)
         self.points = PointEvaluation(
             self.instance, self.constraints, self.goals, self.objectives, self._immovable, self.tuning
         )

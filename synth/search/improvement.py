@@ -81,11 +81,7 @@ def improve(
 
 
 def improve_for(
-    front: ParetoFront,
-    request: Request,
-    settings: SearchSettings,
-    name: str,
-    progress: Progress | None = None,
+    front: ParetoFront, request: Request, settings: SearchSettings, name: str, progress: Progress | None = None
 ) -> ParetoFront:
     """Answer a request as ``synthesize`` does, from the front of an earlier search of the same one.
 

@@ -52,11 +52,7 @@ class ServiceServer(uvicorn.Server):
     """
 
     def __init__(
-        self,
-        config: uvicorn.Config,
-        context: ServiceContext,
-        ready: Callable[[], None],
-        ending: Callable[[], None],
+        self, config: uvicorn.Config, context: ServiceContext, ready: Callable[[], None], ending: Callable[[], None]
     ) -> None:
         super().__init__(config)
         self._context, self._ready, self._ending = context, ready, ending

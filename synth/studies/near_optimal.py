@@ -224,10 +224,7 @@ def read_share(within: object) -> float:
         share = parse_quantity(within, "-", "within")
     if not 0 < share <= NEAR.widest:
         raise InputError(
-            "within",
-            within,
-            f"more than 0 and at most {percent(NEAR.widest)}, for example '2 %'",
-            ("within",),
+            "within", within, f"more than 0 and at most {percent(NEAR.widest)}, for example '2 %'", ("within",)
         )
     return share
 

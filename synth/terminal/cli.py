@@ -283,12 +283,7 @@ def run(
 @app.command()
 @takes(ExplainOptions)
 def explain(
-    options: ExplainOptions,
-    *,
-    spec: SpecFile,
-    folder: Folder = None,
-    csv: Csv = "en",
-    quiet: Quiet = False,
+    options: ExplainOptions, *, spec: SpecFile, folder: Folder = None, csv: Csv = "en", quiet: Quiet = False
 ) -> None:
     """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
     from synth.question.spec import read_spec

@@ -25,12 +25,7 @@ def register(app: typer.Typer) -> None:
 
 @takes(WhatIfOptions)
 def whatif(
-    options: WhatIfOptions,
-    *,
-    spec: SpecFile,
-    folder: Folder = None,
-    csv: Csv = "en",
-    quiet: Quiet = False,
+    options: WhatIfOptions, *, spec: SpecFile, folder: Folder = None, csv: Csv = "en", quiet: Quiet = False
 ) -> None:
     """Answer a spec for many values of a requirement, limit, weight, part or option; run again to go on."""
     from synth.question.spec import read_spec

@@ -187,11 +187,7 @@ def _inputs(
 
 
 def _serves(
-    model: Model,
-    instances: Sequence[Instance],
-    columns: _VariantColumns,
-    used: frozenset[str],
-    evaluation: Evaluation,
+    model: Model, instances: Sequence[Instance], columns: _VariantColumns, used: frozenset[str], evaluation: Evaluation
 ) -> NDArray[np.bool_]:
     """Tell, per pair, whether all limits hold and the question allows these parts, counts, choices and sizes."""
     count = columns.count

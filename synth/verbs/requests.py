@@ -229,8 +229,7 @@ class FrontRequest(VerbRequest):
         needed="the id of a job that has found a front",
     )
     family: str | None = field(
-        ValueKind(family_schema, text("the name of a family")),
-        "Of a job that compares several: which front is meant.",
+        ValueKind(family_schema, text("the name of a family")), "Of a job that compares several: which front is meant."
     )
 
 

@@ -61,10 +61,7 @@ LOADERS: Mapping[str, Callable[[Path, str], object]] = {"calculation": load_calc
 
 
 def verify(
-    front: ParetoFront,
-    problem: Family | None = None,
-    catalogs: UserTables = None,
-    time_limit: float = 120.0,
+    front: ParetoFront, problem: Family | None = None, catalogs: UserTables = None, time_limit: float = 120.0
 ) -> Verification:
     """Check a front without help of the search that made it.
 

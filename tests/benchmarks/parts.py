@@ -160,11 +160,7 @@ def nlp(settings: Settings) -> list[Report]:
 
     more = {"count": 2000, "referee": 10, "repeats": 1} if settings.quick else {"repeats": settings.repeat}
     found = nlp_rate.measure(**more)
-    ways = {
-        "over arrays": "numpy",
-        "by the kernel": "kernel",
-        "IPOPT one by one": "ipopt",
-    }
+    ways = {"over arrays": "numpy", "by the kernel": "kernel", "IPOPT one by one": "ipopt"}
     table = [{"solver": label, "NLPs per second and core": found[name]} for label, name in ways.items()]
     return [Report("nlp", table, [f"a feasible optimum found for {100 * found['solved']:.2f} % of the problems"])]
 

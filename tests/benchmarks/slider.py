@@ -92,11 +92,7 @@ def main(moves: int) -> None:
     """Print the figures."""
     if CHROMIUM is None:
         sys.exit(MISSING)
-    with (
-        served() as service,
-        httpx.Client(base_url=service.url, timeout=30.0) as client,
-        chromium() as browser,
-    ):
+    with served() as service, httpx.Client(base_url=service.url, timeout=30.0) as client, chromium() as browser:
         page = browser.new_page(viewport={"width": DESKTOP[0], "height": DESKTOP[1]})
         opened, first = first_start(page, service.url)
         front = submit(client, spec())

@@ -375,12 +375,7 @@ def test_a_point_survives_the_inverse_of_a_saturated_exponential(value):
 # -- limits that are void in some rows ---------------------------------------------------------------
 
 LEVELS = pd.DataFrame(
-    {
-        "designation": ["known", "void"],
-        "level [-]": [5.0, None],
-        "price [-]": [2.0, 1.0],
-        "source": ["test", "test"],
-    }
+    {"designation": ["known", "void"], "level [-]": [5.0, None], "price [-]": [2.0, 1.0], "source": ["test", "test"]}
 )
 
 
@@ -608,7 +603,6 @@ def test_the_root_box_holds_all_feasible_designs(family):
     assert_kept(form.boxes.contract(leaves, None), points, phi, form)
     for k in range(0, len(points), 40):
         alone = replace(
-            form.boxes.contract(form.boxes.box_of(int(family.combinations[k])), None),
-            tag=np.zeros(1, dtype=np.int32),
+            form.boxes.contract(form.boxes.box_of(int(family.combinations[k])), None), tag=np.zeros(1, dtype=np.int32)
         )
         assert_kept(alone, points[k : k + 1], phi[k : k + 1], form)

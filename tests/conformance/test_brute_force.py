@@ -24,7 +24,7 @@ SETTINGS = {
         "friction_pair": ["paper_wet", "sinter_bronze_wet", "graphitic_wet"],
         "inner_plate": ["core 1.5", "core 2"],
         "outer_plate": ["core 1.5", "core 2"],
-    },
+    }
 }
 INSTANCES = {
     "hoist": (

@@ -87,12 +87,7 @@ PRESSED = {
     "outer_plate": ["core 1.5"],
     "winding_wire": ["Cu 0.5 class 155"],
 }
-PINNED = {
-    "ramp_time": "0.1 s",
-    "ring_outer_diameter": "112 mm",
-    "ring_inner_diameter": "90 mm",
-    "coil_length": "30 mm",
-}
+PINNED = {"ramp_time": "0.1 s", "ring_outer_diameter": "112 mm", "ring_inner_diameter": "90 mm", "coil_length": "30 mm"}
 MAGNETS = {
     "friction_surfaces": "2 .. 4",
     "inner_pole_width": "11 mm .. 14 mm",

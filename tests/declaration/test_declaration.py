@@ -884,12 +884,7 @@ PINS = pd.DataFrame(
     }
 )
 CLIPS = pd.DataFrame(
-    {
-        "designation": ["small", "large"],
-        "over [mm]": [8.0, 12.0],
-        "up_to [mm]": [12.0, 20.0],
-        "source": ["made up"] * 2,
-    }
+    {"designation": ["small", "large"], "over [mm]": [8.0, 12.0], "up_to [mm]": [12.0, 20.0], "source": ["made up"] * 2}
 )
 BOUGHT = Catalogs({"pins": PINS, "clips": CLIPS})
 

@@ -21,10 +21,7 @@ from tests.terminal.test_choice_commands import SEVERAL
 from tests.terminal.test_cli import HOIST, SMALL, refused
 from tests.waiting import PATIENCE, until
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX"),
-]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")]
 
 TIGHT = SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")
 HEADER = (

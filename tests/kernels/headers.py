@@ -24,10 +24,7 @@ MADE = "/* Made by `make kernels`; edits are lost. */"
 
 def headers() -> dict[str, str]:
     """Name of each header -> its text."""
-    bodies = {
-        "box_record.h": box_record(),
-        "solver_record.h": solver_record(),
-    }
+    bodies = {"box_record.h": box_record(), "solver_record.h": solver_record()}
     return {name: "\n".join([MADE, *lines]) + "\n" for name, lines in bodies.items()}
 
 

@@ -195,8 +195,7 @@ def test_what_no_file_can_hold_is_refused() -> None:
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
 LININGS = TableText(
-    reference="my_linings@3",
-    csv="designation,friction_minimum_dynamic [-],density [kg/m3]\nmine,0.3,1800\n",
+    reference="my_linings@3", csv="designation,friction_minimum_dynamic [-],density [kg/m3]\nmine,0.3,1800\n"
 )
 
 
@@ -416,11 +415,7 @@ def test_an_earlier_job_that_has_not_what_is_wanted_is_not_told_as_missing(name:
         ([], ("rows",), "request: rows: got an empty list"),
         ({}, ("rows",), "request: rows: got an empty mapping"),
         ([{"load_torque": "50 N*m"}, 1], ("rows", 1), "request: rows: entry 2: got 1; expected an object such as"),
-        (
-            [{}, {"a": ""}],
-            ("rows",),
-            "request: rows: got objects without values; expected names with values in them",
-        ),
+        ([{}, {"a": ""}], ("rows",), "request: rows: got objects without values; expected names with values in them"),
     ],
 )
 def test_rows_that_are_none_are_told_as_what_they_are(rows: Any, path: tuple[Any, ...], told: str) -> None:

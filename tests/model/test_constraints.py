@@ -240,9 +240,7 @@ def test_rows_of_the_solver_are_logarithms_or_shares_of_the_size_of_a_miss(asked
     tasks = Tasks(nothing, nothing, np.full((len(rows), goals), np.inf), form.objectives.scales, 0.0)
     points, data = asked.variables[rows], asked.instance.data(asked.combinations[rows])
     found = nlp.solve(
-        tasks,
-        ProblemInputs(data, points, points, form.bounds, void_limits(form.constraints, data, len(rows))),
-        points,
+        tasks, ProblemInputs(data, points, points, form.bounds, void_limits(form.constraints, data, len(rows))), points
     )
     np.testing.assert_allclose(found.violation, expected, rtol=1e-6, atol=1e-8)
 

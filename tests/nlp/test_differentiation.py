@@ -68,15 +68,7 @@ def derivatives(expression, log, sense, logs):
     moved = ca.substitute([value], x, inputs)[0]
     form = ca.log(moved / bound) if log else (moved - bound) * size
     forms = ca.vertcat(-form if sense == "at_least" else form, -ca.log(1 + inputs[0] ** 2))
-    function = ca.Function(
-        "f",
-        [s, d, w],
-        [
-            forms,
-            ca.jacobian(forms, s),
-            ca.hessian(ca.dot(w, forms), s)[0],
-        ],
-    )
+    function = ca.Function("f", [s, d, w], [forms, ca.jacobian(forms, s), ca.hessian(ca.dot(w, forms), s)[0]])
     theirs = [function(y[:, k], data[k], weights[:, k]) for k in range(COUNT)]
     theirs = [np.stack([np.array(t[m]) for t in theirs], axis=-1) for m in range(3)]
     return (np.array(out[:2])[:, None], ours_j, ours_h), theirs

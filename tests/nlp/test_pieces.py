@@ -186,19 +186,7 @@ def clipped(rng: np.random.Generator, n: int) -> Written:
 
 
 CONVEX = (convex, ramps)
-KINDS = (
-    convex,
-    either_limit,
-    least_of_both,
-    absolute,
-    ramps,
-    bent,
-    step,
-    nested,
-    behind_conditions,
-    equality,
-    clipped,
-)
+KINDS = (convex, either_limit, least_of_both, absolute, ramps, bent, step, nested, behind_conditions, equality, clipped)
 QUICK = (either_limit, bent, step, clipped)  # for the referee
 STARTS = 6
 

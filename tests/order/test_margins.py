@@ -81,9 +81,7 @@ def test_a_front_of_negative_makeable_values_is_whole():
 @pytest.mark.usefixtures("code")
 def test_thin_boxes_of_any_sign_are_kept_and_split():
     form = Formulation(
-        instance_of(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False),
-        {"cost": "min"},
-        1,
+        instance_of(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False), {"cost": "min"}, 1
     )
     size = 4096
     rng = np.random.default_rng(0)

@@ -23,16 +23,7 @@ def counts(**more):
 
 
 @pytest.mark.parametrize(
-    "asked",
-    [
-        [1, 3, 4],
-        (4, 1, 3),
-        {3, 4, 1},
-        np.array([1, 3, 4]),
-        ["1", "3", "4"],
-        "[1, 3, 4]",
-        [1.0, "[3,4]"],
-    ],
+    "asked", [[1, 3, 4], (4, 1, 3), {3, 4, 1}, np.array([1, 3, 4]), ["1", "3", "4"], "[1, 3, 4]", [1.0, "[3,4]"]]
 )
 def test_entries_without_a_sign_are_the_values_allowed(asked):
     assert counts(limits={"plates": asked}) == [1, 3, 4]

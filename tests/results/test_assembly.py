@@ -96,12 +96,7 @@ def test_statistics_go_through_files_and_processes(front: ParetoFront) -> None:
 
 
 @pytest.mark.parametrize(
-    "change",
-    [
-        lambda x: x.__setitem__("boxes", 1),
-        lambda x: x.__delitem__("boxes"),
-        lambda x: setattr(x, "boxes", 1),
-    ],
+    "change", [lambda x: x.__setitem__("boxes", 1), lambda x: x.__delitem__("boxes"), lambda x: setattr(x, "boxes", 1)]
 )
 def test_statistics_cannot_be_changed(front: ParetoFront, change: Any) -> None:
     before = dict(front.statistics)

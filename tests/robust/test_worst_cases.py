@@ -74,8 +74,7 @@ def test_a_side_that_is_not_taken_may_be_undefined():
 
 
 @pytest.mark.parametrize(
-    "formula",
-    [lambda q: 1 / (0.9137 - q[0]), lambda q: np.tan(1.571 * q[0]), lambda q: 1 / (q[0] - q[1] + 0.0137)],
+    "formula", [lambda q: 1 / (0.9137 - q[0]), lambda q: np.tan(1.571 * q[0]), lambda q: 1 / (q[0] - q[1] + 0.0137)]
 )
 def test_a_pole_within_the_range_is_never_said_to_hold(formula):
     told = ScatteredLimit(formula, 2, 1e9).rated()

@@ -239,12 +239,7 @@ class Unit(DesignProblem):
 
 
 UNITS = pd.DataFrame(
-    {
-        "designation": ["A", "B"],
-        "torque [N*m]": [10.0, 8.0],
-        "mass [kg]": [None, 4.0],
-        "diameter [mm]": [80.0, 85.0],
-    }
+    {"designation": ["A", "B"], "torque [N*m]": [10.0, 8.0], "mass [kg]": [None, 4.0], "diameter [mm]": [80.0, 85.0]}
 )
 NEEDED = "no value in column mass, which mass needs"
 
@@ -257,11 +252,7 @@ NEEDED = "no value in column mass, which mass needs"
         ({"objectives": ["outer_diameter", "mass"]}, "B", NEEDED),
         ({"limits": {"mass": "<= 5 kg"}}, "B", NEEDED),
         ({"limits": {"mass": ">= 1 kg"}}, "B", NEEDED),
-        (
-            {"parts": {"unit": "mass < 5"}},
-            "B",
-            "no value in column mass, which the condition mass < 5 asks for",
-        ),
+        ({"parts": {"unit": "mass < 5"}}, "B", "no value in column mass, which the condition mass < 5 asks for"),
         ({"parts": {"unit": "mass < 5 or torque > 9"}}, "A", ""),
         ({"parts": {"unit": "mass < 5 and torque > 11 or torque < 9"}}, "B", ""),
     ],

@@ -240,19 +240,13 @@ def test_a_value_takes_the_place_of_what_was_said() -> None:
     unset = steps({"load": "7, 9 kN"}, {"share": 2})
     assert [q.instance.values.requirements["load"] for q in unset.questions] == pytest.approx([7000, 9000])
     weights = steps({"weights.bulk": "0.5, 4"}, weights={"cost": 3, "bulk": 7})
-    assert [dict(q.weights) for q in weights.questions] == [
-        {"cost": 3, "bulk": 0.5},
-        {"cost": 3, "bulk": 4},
-    ]
+    assert [dict(q.weights) for q in weights.questions] == [{"cost": 3, "bulk": 0.5}, {"cost": 3, "bulk": 4}]
     parts = steps({"parts.rope": [["rope a", "rope c"]]}, parts={"rope": ["rope b"]})
     (question,) = parts.questions
     (slot,) = question.instance.selection.slots
     assert [slot.table.designations[r] for r in slot.rows] == ["rope a", "rope c"]
     option = steps({"options.thick": "given, makeable", "load": "5 kN"})
-    assert [q.instance.problem.options for q in option.questions] == [
-        {"thick": "given"},
-        {"thick": "makeable"},
-    ]
+    assert [q.instance.problem.options for q in option.questions] == [{"thick": "given"}, {"thick": "makeable"}]
 
 
 @pytest.mark.parametrize(

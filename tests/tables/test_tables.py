@@ -500,10 +500,7 @@ def test_extension(shipped: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("more", "expected"),
-    [
-        (["a,1\n"], "stands in parts.csv, line 2"),
-        (["x,1\n", "x,2\n"], "stands in mine0.csv, line 2"),
-    ],
+    [(["a,1\n"], "stands in parts.csv, line 2"), (["x,1\n", "x,2\n"], "stands in mine0.csv, line 2")],
 )
 def test_extension_refuses_a_designation_twice(shipped: Path, tmp_path: Path, more: list[str], expected: str) -> None:
     paths = [user(tmp_path, f"designation,mass\n{rows}", f"mine{i}.csv") for i, rows in enumerate(more)]

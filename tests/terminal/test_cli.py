@@ -475,11 +475,7 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
     with subprocess.Popen(
-        [*COMMAND, *LONG_SEARCH, "-o", "out"],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [*COMMAND, *LONG_SEARCH, "-o", "out"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
         assert process.stderr is not None
         assert "designs" in process.stderr.readline()  # of the progress: the search has begun

@@ -73,10 +73,7 @@ def test_a_front_in_either_style_holds(saved: Path) -> None:
         (["explain", "spec.yaml"], ["explanation.csv"]),
         (["simulate", "de/design_01.yaml"], ["second_opinion.csv"]),
         (["curves", "cone_clutch", "spec.yaml"], []),
-        (
-            ["whatif", "spec.yaml", "--vary", "load_torque=60, 62 N*m"],
-            ["whatif.csv", "breaks.csv"],
-        ),
+        (["whatif", "spec.yaml", "--vary", "load_torque=60, 62 N*m"], ["whatif.csv", "breaks.csv"]),
         (["prices", "de", "--design", "1"], ["prices.csv"]),
         (["near-equals", "de"], ["near_equals.csv"]),
         (["rate", "de", "--over", "load_torque=+-5 %"], ["rating.csv", "robust.csv"]),

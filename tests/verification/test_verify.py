@@ -36,15 +36,7 @@ FEW_PLATES = {"plate": ["core 1", "core 2", "core 4"]}
 
 def test_nothing_is_shared_with_the_search():
     # What was asked is shared (tables and declarations read into an instance), and the tolerance of limits.
-    allowed = {
-        "proof",
-        "verification",
-        "model",
-        "question",
-        "results",
-        "units",
-        "special",
-    }
+    allowed = {"proof", "verification", "model", "question", "results", "units", "special"}
     allowed |= {"errors", "folders", "text"}  # these read and write: no design is in them
     for path in (ROOT / "synth").glob("*/*.py"):
         if path.parent.name not in ("proof", "verification") or path.name == "verify_comparison.py":

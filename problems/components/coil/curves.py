@@ -146,10 +146,7 @@ class CoilDrawings:
         return result
 
     def torque_over_current(
-        self,
-        columns: Mapping[str, Any],
-        panels: Sequence[Mapping[str, Any]],
-        lines: Sequence[dict[str, Any]],
+        self, columns: Mapping[str, Any], panels: Sequence[Mapping[str, Any]], lines: Sequence[dict[str, Any]]
     ) -> pd.DataFrame:
         """Torque, what the family adds, and temperature rise over the current, with their limits.
 
@@ -170,13 +167,7 @@ class CoilDrawings:
         import pandas as pd
 
         value, current, heat = self.design.values, self.currents, self.heat
-        frame = pd.DataFrame(
-            {
-                "current [A]": current,
-                **columns,
-                "temperature rise [K]": heat.rise(current),
-            }
-        )
+        frame = pd.DataFrame({"current [A]": current, **columns, "temperature rise [K]": heat.rise(current)})
         highest = self.design.steps["wire_current_limit"]
         frame.attrs = {
             "title": f"{self.problem.title}: torque over current",

@@ -192,12 +192,7 @@ def declare_body(d: Declaration, discs: Discs, body: DiscBody) -> None:
         text="Engagements until the linings are worn",
     )
     if life is not None:
-        d.advise(
-            "few_starts",
-            life < FEW_STARTS,
-            "the linings last for less than 20 000 engagements",
-            source=UNSOURCED,
-        )
+        d.advise("few_starts", life < FEW_STARTS, "the linings last for less than 20 000 engagements", source=UNSOURCED)
 
 
 def declare_rules(d: Declaration, discs: Discs, rules: DiscRules) -> None:

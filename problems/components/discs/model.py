@@ -144,12 +144,7 @@ class Discs(LinedDiscs):
 
 
 def declare_disc_pack(
-    d: Declaration,
-    *,
-    duty: DutyInRows,
-    ring: Ring,
-    wants: DiscRequirements,
-    facing: Facing | None = None,
+    d: Declaration, *, duty: DutyInRows, ring: Ring, wants: DiscRequirements, facing: Facing | None = None
 ) -> DiscPack:
     """Declare requirements and unknowns of a disc pack, and the limit of its bore.
 

@@ -202,11 +202,7 @@ def made_plates(d: Declaration, *, options: PackOptions, wants: PackRequirements
     lugs = d.block(wants.lugs)
     lug = lugs.lug_clearance
     inner_plate = d.part(
-        "inner_plate",
-        "core_plates",
-        symbol="ip",
-        text="Steel core of the inner plates",
-        source="table core_plates",
+        "inner_plate", "core_plates", symbol="ip", text="Steel core of the inner plates", source="table core_plates"
     )
     outer_plate = d.part(
         "outer_plate",

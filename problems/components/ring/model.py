@@ -94,11 +94,7 @@ def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float, listed: 
         outer, inner = _named(d, listed)
         range_of_ratio = d.block(RingRange, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
     least, most = range_of_ratio.ring_ratio_min, range_of_ratio.ring_ratio_max
-    d.refuse(
-        "bad_ratio",
-        least > most,
-        "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both",
-    )
+    d.refuse("bad_ratio", least > most, "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both")
     mean = d.derive(
         "mean_diameter",
         "mm",
@@ -130,21 +126,9 @@ def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float, listed: 
         source=S0,
     )
     d.at_least(
-        "ring_ratio_min",
-        ratio,
-        least,
-        "-",
-        text="The ring is not too narrow",
-        source=f"{S1}, empirical range of c",
+        "ring_ratio_min", ratio, least, "-", text="The ring is not too narrow", source=f"{S1}, empirical range of c"
     )
-    d.at_most(
-        "ring_ratio_max",
-        ratio,
-        most,
-        "-",
-        text="The ring is not too wide",
-        source=f"{S1}, empirical range of c",
-    )
+    d.at_most("ring_ratio_max", ratio, most, "-", text="The ring is not too wide", source=f"{S1}, empirical range of c")
     return Ring(
         ratio_min=least,
         ratio_max=most,

@@ -77,13 +77,7 @@ class SpringRules(Block):
         text="historical: also dry hubs, on which steel galls, where nothing overruns",
     )
     coils_per_hub_max = Requirement(
-        "-",
-        8,
-        lower=2,
-        upper=12,
-        symbol="n_max",
-        text=f"Most coils on one hub ({UNSOURCED})",
-        source=UNSOURCED,
+        "-", 8, lower=2, upper=12, symbol="n_max", text=f"Most coils on one hub ({UNSOURCED})", source=UNSOURCED
     )
     spring_index_max = Requirement(
         "-",

@@ -44,9 +44,7 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
 
 
 def joint_answers(
-    questions: Sequence[Question],
-    progress: Progress | None = None,
-    time_limit: float | None = None,
+    questions: Sequence[Question], progress: Progress | None = None, time_limit: float | None = None
 ) -> list[ParetoFront | None]:
     """Return the front of each question of a group; None where a question is better asked alone.
 
@@ -75,10 +73,7 @@ class JointFrontSearch:
     """
 
     def __init__(
-        self,
-        questions: Sequence[Question],
-        progress: Progress | None = None,
-        time_limit: float | None = None,
+        self, questions: Sequence[Question], progress: Progress | None = None, time_limit: float | None = None
     ) -> None:
         self.questions, self.progress = list(questions), progress
         self.tuning, self.limits = questions[0].tuning, questions[0].tuning.joint

@@ -60,12 +60,7 @@ class JointReport:
         self.gap, self.tuning = questions[0].settings.gap, questions[0].tuning
 
     def fronts(
-        self,
-        pool: Boxes,
-        chosen: Sequence[Candidate],
-        traded: int,
-        solves: int,
-        same: Mapping[int, int] = NO_OTHER,
+        self, pool: Boxes, chosen: Sequence[Candidate], traded: int, solves: int, same: Mapping[int, int] = NO_OTHER
     ) -> list[ParetoFront | None]:
         """Front of each question that has designs, ties settled; None where a separate search is better.
 

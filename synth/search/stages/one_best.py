@@ -114,12 +114,7 @@ def _closed_together(state: FrontState, k: int, plain: Formulation) -> float | N
 
 
 def better_in(
-    state: FrontState,
-    k: int,
-    fixed_cutoffs: np.ndarray,
-    start: Candidate,
-    node_limit: int,
-    finest: float = np.inf,
+    state: FrontState, k: int, fixed_cutoffs: np.ndarray, start: Candidate, node_limit: int, finest: float = np.inf
 ) -> Candidate | None:
     """Best design in one objective after few boxes, without proof.
 

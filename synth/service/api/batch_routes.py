@@ -82,11 +82,7 @@ async def check_batch(asked: BatchBody, principal: Reader, context: Context) -> 
 
 @router.post("/batches", status_code=202, response_model=JobAnswer, responses=SUBMITTED, summary="Ask for a batch")
 async def make_batch(
-    request: Request,
-    asked: BatchBody,
-    principal: Submitter,
-    context: Context,
-    idempotency_key: IdempotencyKey = None,
+    request: Request, asked: BatchBody, principal: Submitter, context: Context, idempotency_key: IdempotencyKey = None
 ) -> Response:
     """Ask all rows of a table: a job of the kind batch. The same table, asked the same way, is the same job."""
     return await submitted(request, context, principal, Wish(kind=BATCH, request=asked), idempotency_key)

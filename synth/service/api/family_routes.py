@@ -11,13 +11,7 @@ from synth.plugins import family_names
 from synth.queue.accounts import Principal
 from synth.queue.tenant_files import TenantFiles
 from synth.service.api.asking import LONGEST, NOT_MODIFIED, tagged_json
-from synth.service.api.schemas import (
-    EXAMPLES,
-    CheckAnswer,
-    DeclarationAnswer,
-    ExampleList,
-    FamilyList,
-)
+from synth.service.api.schemas import EXAMPLES, CheckAnswer, DeclarationAnswer, ExampleList, FamilyList
 from synth.service.auth import Reader
 from synth.service.code_facts import declaration_asked
 from synth.service.context import API, Context, ServiceContext, in_thread
@@ -63,8 +57,7 @@ async def read_family(
     principal: Reader,
     context: Context,
     options: Annotated[
-        str | None,
-        Query(max_length=LONGEST, pattern=WORD, description=f"Options that are chosen, {OPTIONS}."),
+        str | None, Query(max_length=LONGEST, pattern=WORD, description=f"Options that are chosen, {OPTIONS}.")
     ] = None,
 ) -> Response:
     """Tell what a form has to show: requirements, options, parts and objectives, with units, ranges and sources."""

@@ -32,10 +32,7 @@ router = APIRouter(prefix=API, tags=["results"])
 CSV = ".csv"
 VERSION = version("clutchsynth")
 ANY_FILE: dict[int | str, dict[str, Any]] = {
-    200: {
-        "description": "The file.",
-        "content": {media.partition(";")[0]: {"schema": {}} for media in MEDIA.values()},
-    },
+    200: {"description": "The file.", "content": {media.partition(";")[0]: {"schema": {}} for media in MEDIA.values()}},
     501: {"description": "It needs an extra that is not installed here."},
     **NOT_MODIFIED,
     **ENDED,

@@ -69,13 +69,7 @@ async def _summary_of_batch(context: ServiceContext, principal: Principal, job: 
     if not job.rows:
         raise not_found(NO_RESULT)
     url = context.store.engine.url.render_as_string(hide_password=False)
-    payload = {
-        "job": job.id,
-        "kind": job.kind,
-        "updated": job.updated,
-        "name": name,
-        "sources": Sources(database=url),
-    }
+    payload = {"job": job.id, "kind": job.kind, "updated": job.updated, "name": name, "sources": Sources(database=url)}
     found: Record = await context.files.ask(asker_of(principal), RENDER_TASK, payload)
     return found
 

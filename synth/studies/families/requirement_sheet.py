@@ -27,11 +27,7 @@ from synth.units import parse_unit
 
 ANY = "any"
 KEYS = ("options", "requirements", "limits", "fix", "parts", "robust")
-EXAMPLES = {
-    **request.EXAMPLES,
-    "options": "{'friction_basis': 'worst_case'}",
-    "robust": "{'friction': '+-10 %'}",
-}
+EXAMPLES = {**request.EXAMPLES, "options": "{'friction_basis': 'worst_case'}", "robust": "{'friction': '+-10 %'}"}
 LEAST_OBJECTIVES, MOST_OBJECTIVES = 2, 3
 
 Sheet = Mapping[str, Mapping[str, Any]]

@@ -152,12 +152,7 @@ class PriceStore:
 
     def text(self) -> str:
         """Content of the file."""
-        content = {
-            "format": PRICES_FORMAT,
-            "fingerprint": self.fingerprint,
-            "front": self.front,
-            "designs": self.known,
-        }
+        content = {"format": PRICES_FORMAT, "fingerprint": self.fingerprint, "front": self.front, "designs": self.known}
         return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
     def get(self, design: int) -> list[Price] | None:

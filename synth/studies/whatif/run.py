@@ -148,13 +148,7 @@ def study_of(
 class _Run:
     """One study under way."""
 
-    def __init__(
-        self,
-        steps: Steps,
-        progress: Progress | None,
-        time_limit: float | None,
-        folder: Path | None,
-    ) -> None:
+    def __init__(self, steps: Steps, progress: Progress | None, time_limit: float | None, folder: Path | None) -> None:
         self.steps, self.progress = steps, progress
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit

@@ -60,10 +60,7 @@ ALWAYS = {
     "spring1_force",
     "spring2_force",
 }
-OWN = {
-    "ball_ramp": {"ball_hertz", "hub_clearance", "ramp_returns"},
-    "lever": {"weight_clear_of_hub", "lever_angle"},
-}
+OWN = {"ball_ramp": {"ball_hertz", "hub_clearance", "ramp_returns"}, "lever": {"weight_clear_of_hub", "lever_angle"}}
 MECHANISMS = ("ball_ramp", "lever")
 
 

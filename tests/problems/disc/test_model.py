@@ -295,12 +295,7 @@ def test_curves_of_a_design_meet_it():
     problem, spec = spec_of(requirements=OPTIONAL)
     found = design(requirements=OPTIONAL)
     curves = problem.curves(spec, found)
-    assert set(curves) == {
-        "diameter_over_lining",
-        "startup_over_torque",
-        "pressure_over_radius",
-        "torque_over_force",
-    }
+    assert set(curves) == {"diameter_over_lining", "startup_over_torque", "pressure_over_radius", "torque_over_force"}
     pressure = curves["pressure_over_radius"]
     radius, worn = pressure["radius [mm]"] / 1e3, pressure["worn-in lining [N/mm2]"] * 1e6
     carried = np.trapezoid(worn * 2 * np.pi * radius, radius)

@@ -68,15 +68,9 @@ def test_load_of_a_machine_where_no_inertia_is_started(family):
 @pytest.mark.parametrize(
     ("stated", "said"),
     [
-        (
-            {**HOIST, "load_torque": "100 N*m"},
-            "one of load_torque and machine; .* different torques",
-        ),
+        ({**HOIST, "load_torque": "100 N*m"}, "one of load_torque and machine; .* different torques"),
         ({**HOIST, "power": "3 kW"}, "one of power and machine; at the clutch they are different torques"),
-        (
-            {**HOIST, "driven_inertia": 1},
-            "one of driven_inertia and machine; .* different inertias",
-        ),
+        ({**HOIST, "driven_inertia": 1}, "one of driven_inertia and machine; .* different inertias"),
         ({"lifted_mass": "2000 kg"}, "a drum_diameter .* with lifted_mass"),
         ({"load_torque": "9 N*m", "driven_inertia": 1, "machine_ratio": 2}, "which alone are reduced"),
         ({**HOIST, "machine_ratio": 0}, "requirement machine_ratio: got 0; expected 0.001 to 10000"),

@@ -129,14 +129,7 @@ def test_faster_is_the_same_law():
 # -- misprints of the source: the printed form fails where the corrected one balances -----------------
 
 ALPHA = math.radians(40)
-SEEN = {
-    "speed": 130.0,
-    "mass": 0.25,
-    "rest_radius": 0.070,
-    "ratio": math.tan(ALPHA),
-    "preload": 240.0,
-    "rate": 60e3,
-}
+SEEN = {"speed": 130.0, "mass": 0.25, "rest_radius": 0.070, "ratio": math.tan(ALPHA), "preload": 240.0, "rate": 60e3}
 
 
 def unbalanced(x):

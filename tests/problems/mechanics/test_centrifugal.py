@@ -86,13 +86,7 @@ BUILT = [
     ),
     (
         centrifugal.overall_length,
-        {
-            "plates_thickness": "m",
-            "surfaces": "-",
-            "lining_thickness": "m",
-            "travel": "m",
-            "flyweight_width": "m",
-        },
+        {"plates_thickness": "m", "surfaces": "-", "lining_thickness": "m", "travel": "m", "flyweight_width": "m"},
         "m",
     ),
 ]
@@ -153,10 +147,7 @@ def test_ball_efficiency_is_the_statics_of_a_ball_that_rolls_on_the_ramp(ratio, 
     alpha = math.atan(ratio)
     force_c = 700.0
     system = np.array(
-        [
-            [math.cos(alpha), sign * mu * (1 + math.sin(alpha))],
-            [math.sin(alpha), -1 - sign * mu * math.cos(alpha)],
-        ]
+        [[math.cos(alpha), sign * mu * (1 + math.sin(alpha))], [math.sin(alpha), -1 - sign * mu * math.cos(alpha)]]
     )
     normal, plate = np.linalg.solve(system, [force_c, 0.0])
     loss = centrifugal.contact_loss(mu, ratio)
@@ -172,10 +163,7 @@ def test_power_going_in_and_out_balances(mu):
         alpha, plate = math.atan(ratio), 200.0
         loss = centrifugal.contact_loss(mu, ratio)
         slip = 1 + math.sin(alpha)
-        for efficiency, sign in (
-            (centrifugal.outward_efficiency(loss), 1),
-            (centrifugal.inward_efficiency(loss), -1),
-        ):
+        for efficiency, sign in ((centrifugal.outward_efficiency(loss), 1), (centrifugal.inward_efficiency(loss), -1)):
             force_c = plate / (ratio * efficiency)
             work = force_c * math.sin(alpha) - plate * math.cos(alpha)
             assert work == pytest.approx(sign * mu * plate * slip, abs=1e-9)

@@ -26,13 +26,7 @@ BURIED_RING = {"inner_radius": (0.5, 0.9), "outer_radius": (1.0, 2.0), "inner_di
 BURIED_RING |= {"outer_diameter": (1.0, 2.0)}
 
 DM_C = {"mean_diameter": "m", "ring_ratio": "-"}
-START = {
-    "torque": "N m",
-    "load_torque": "N m",
-    "driven_inertia": "kg m2",
-    "driver_speed": "1/s",
-    "ramp_time": "s",
-}
+START = {"torque": "N m", "load_torque": "N m", "driven_inertia": "kg m2", "driver_speed": "1/s", "ramp_time": "s"}
 KAPPAS = {"inner_ratio": "-", "outer_ratio": "-"}
 SPLINES = {"friction_radius": "m", "inner_spline_radius": "m", "outer_spline_radius": "m"}
 HEAT = {"friction_work": "J", "switching_rate": "1/s"}
@@ -71,11 +65,7 @@ CASES = [
     ),
     (ring.worn_torque, {"surfaces": "-", "mu": "-", "force": "N", "mean_diameter": "m"}, "N m"),
     (ring.worn_peak_pressure, {"force": "N", **DM_C}, "Pa"),
-    (
-        guide_friction.guide_ratio,
-        {"mu": "-", "mu_guide": "-", "friction_radius": "m", "spline_radius": "m"},
-        "-",
-    ),
+    (guide_friction.guide_ratio, {"mu": "-", "mu_guide": "-", "friction_radius": "m", "spline_radius": "m"}, "-"),
     (guide_friction.guide_number, {"mu": "-", "mu_guide": "-", **SPLINES}, "-"),
     (guide_friction.damped_guide_number, {"guide_number": "-"}, "-"),
     (guide_friction.guarded_damping, {"guide_number": "-"}, "-"),
@@ -108,11 +98,7 @@ CASES = [
         {"first": "N", "second": "N", "third": "N", "mu": "-", "mu_guide": "-", **SPLINES},
         "N",
     ),
-    (
-        guide_friction.guide_jams,
-        {"mu": "-", "mu_guide": "-", "friction_radius": "m", "spline_radius": "m"},
-        "-",
-    ),
+    (guide_friction.guide_jams, {"mu": "-", "mu_guide": "-", "friction_radius": "m", "spline_radius": "m"}, "-"),
     (startup.never_starts, {"torque": "N m", "load_torque": "N m"}, "-"),
     (
         startup.burn_out_time,
@@ -126,11 +112,7 @@ CASES = [
     (startup.run_up_work, {"torque": "N m", "load_torque": "N m", "energy": "J"}, "J"),
     (startup.ramp_relief, DRIVEN, "J"),
     (startup.driven_back_work, DRIVEN, "J"),
-    (
-        startup.catch_up_time,
-        {"torque": "N m", "driven_inertia": "kg m2", "driver_speed": "1/s", "ramp_time": "s"},
-        "s",
-    ),
+    (startup.catch_up_time, {"torque": "N m", "driven_inertia": "kg m2", "driver_speed": "1/s", "ramp_time": "s"}, "s"),
     (
         startup.active_lock_in_ramp,
         {"torque": "N m", "load_torque": "N m", "momentum": "kg m2/s", "ramp_time": "s"},
@@ -182,27 +164,11 @@ CASES = [
     (heat.power_density, {"slip_power": "W", "area": "m2"}, "W/m2"),
     (heat.mean_temperature_rise, {**HEAT, **COOLING}, "K"),
     (heat.thermal_time_constant, {"heat_capacity": "J/K", **COOLING}, "s"),
-    (
-        positional(heat.peak_rise_per_work),
-        {"switching_rate": "1/s", "heat_capacity": "J/K", **COOLING},
-        "K/J",
-    ),
+    (positional(heat.peak_rise_per_work), {"switching_rate": "1/s", "heat_capacity": "J/K", **COOLING}, "K/J"),
     (heat.peak_temperature_rise, {**HEAT, "heat_capacity": "J/K", **COOLING}, "K"),
-    (
-        positional(heat.row_share),
-        {"n": "-", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"},
-        "-",
-    ),
-    (
-        heat.rise_after,
-        {"n": "-", "work": "J", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"},
-        "K",
-    ),
-    (
-        partial(heat.conductance, moving=3.0, speed=0.0),
-        {"still": "W/(m2 K)", "area": "m2", "area_factor": "-"},
-        "W/K",
-    ),
+    (positional(heat.row_share), {"n": "-", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"}, "-"),
+    (heat.rise_after, {"n": "-", "work": "J", "rate": "1/s", "capacity": "J/K", "conductance": "W/K"}, "K"),
+    (partial(heat.conductance, moving=3.0, speed=0.0), {"still": "W/(m2 K)", "area": "m2", "area_factor": "-"}, "W/K"),
     (heat.oil_flow, {"heat": "W", "rise": "K", "volumetric_heat": "J/(m3 K)"}, "m3/s"),
     (heat.adiabatic_rise, {"friction_work": "J", "mass": "kg", "specific_heat": "J/(kg K)", "share": "-"}, "K"),
     (
@@ -225,13 +191,7 @@ CASES = [
     (plates.lining_mass, {"density": "kg/m3", "thickness": "m", "area": "m2"}, "kg"),
     (
         plates.pack_length,
-        {
-            "surfaces": "-",
-            "inner_thickness": "m",
-            "outer_thickness": "m",
-            "lining_thickness": "m",
-            "gap": "m",
-        },
+        {"surfaces": "-", "inner_thickness": "m", "outer_thickness": "m", "lining_thickness": "m", "gap": "m"},
         "m",
     ),
     (plates.drum_diameter, {"outer_spline_radius": "m", "drum_wall": "m"}, "m"),
@@ -242,11 +202,7 @@ CASES = [
         {"plate_torque": "N m", "spline_radius": "m", "lug_count": "-", "lug_height": "m", "thickness": "m"},
         "Pa",
     ),
-    (
-        plates.drag_torque,
-        {"surfaces": "-", "viscosity": "Pa s", "speed_difference": "1/s", **DM_C, "gap": "m"},
-        "N m",
-    ),
+    (plates.drag_torque, {"surfaces": "-", "viscosity": "Pa s", "speed_difference": "1/s", **DM_C, "gap": "m"}, "N m"),
     (plates.stroke, {"surfaces": "-", "gap": "m", "wear_depth": "m"}, "m"),
     (
         plates.pack_inner_inertia,
@@ -270,14 +226,7 @@ CASES = [
     (wear.wear_life, {"area": "m2", "depth": "m", "wear_rate": "m3/J", "friction_work": "J"}, "-"),
     (
         plates.squeeze_time,
-        {
-            "viscosity": "Pa s",
-            "force": "N",
-            "inner_radius": "m",
-            "outer_radius": "m",
-            "start_gap": "m",
-            "end_gap": "m",
-        },
+        {"viscosity": "Pa s", "force": "N", "inner_radius": "m", "outer_radius": "m", "start_gap": "m", "end_gap": "m"},
         "s",
     ),
     (
@@ -300,11 +249,7 @@ CASES = [
     (disc.surface_count, {"discs": "-"}, "-"),
     (disc.pressure_plate_mass, {"density": "kg/m3", "thickness": "m", "ring_area": "m2"}, "kg"),
     (disc.lining_inertia, {"density": "kg/m3", "thickness": "m", **DM_C}, "kg m2"),
-    (
-        disc.core_inertia,
-        {"density": "kg/m3", "thickness": "m", "outer_radius": "m", "hub_radius": "m"},
-        "kg m2",
-    ),
+    (disc.core_inertia, {"density": "kg/m3", "thickness": "m", "outer_radius": "m", "hub_radius": "m"}, "kg m2"),
     (disc.disc_inertia, {"discs": "-", "lining": "kg m2", "core": "kg m2"}, "kg m2"),
     (
         disc.clutch_length,
@@ -334,11 +279,7 @@ CASES = [
     (cone.seated_force, {"spring_force": "N", "half_angle": "-"}, "N"),
     (cone.bearing_force, {"spring_force": "N", "force_closed": "-"}, "N"),
     (cone.largest_diameter, {"mean_diameter": "m", "generator_length": "m", "half_angle": "-"}, "m"),
-    (
-        cone.overall_diameter,
-        {"largest_diameter": "m", "shell_thickness": "m", "lining_thickness": "m"},
-        "m",
-    ),
+    (cone.overall_diameter, {"largest_diameter": "m", "shell_thickness": "m", "lining_thickness": "m"}, "m"),
     (cone.overall_length, {"generator_length": "m", "half_angle": "-", "length_add": "m"}, "m"),
     (cone.shell_mass, {"density": "kg/m3", "area": "m2", "shell_thickness": "m"}, "kg"),
     (

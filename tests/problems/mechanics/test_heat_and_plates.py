@@ -71,12 +71,7 @@ def test_heat_goes_into_air_and_oil_by_the_worked_numbers():
 
 @pytest.mark.parametrize(
     ("single", "hourly", "per_hour", "allowed"),
-    [
-        (1.8, 25, 50, 0.436562769),
-        (1.5, 12, 8, 0.948180838),
-        (2.5, 18, 60, 0.282698908),
-        (1.8, 250, 50, 1.68808226),
-    ],
+    [(1.8, 25, 50, 0.436562769), (1.5, 12, 8, 0.948180838), (2.5, 18, 60, 0.282698908), (1.8, 250, 50, 1.68808226)],
 )
 def test_allowed_work_has_single_and_hourly_heat_as_its_ends(single, hourly, per_hour, allowed):
     def law(rate):

@@ -39,11 +39,7 @@ CASES = [
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
         "A/m",
     ),
-    (
-        magnetics.froehlich_field,
-        {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
-        "A/m",
-    ),
+    (magnetics.froehlich_field, {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"}, "A/m"),
     (
         magnetics.iron_reluctivity,
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},

@@ -230,12 +230,7 @@ def test_both_sides_of_every_branch_are_finite():
         values = ca.vertcat(
             *(
                 function(*symbols, kind)
-                for function in (
-                    startup.slip_time,
-                    startup.friction_work,
-                    startup.peak_slip_power,
-                    startup.lock_torque,
-                )
+                for function in (startup.slip_time, startup.friction_work, startup.peak_slip_power, startup.lock_torque)
             )
         )
         both = ca.Function("both", symbols, [values, ca.jacobian(values, ca.vertcat(*symbols))])

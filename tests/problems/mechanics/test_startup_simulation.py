@@ -175,15 +175,7 @@ def test_torque_that_falls_away_loses_lock_and_load_and_finds_both_again():
     # After lock-up the torque falls to a tenth, the load comes to rest, and the torque returns.
     ramp = ((0, 0), (0.1, 1), (0.4, 1), (0.45, 0.1), (0.8, 0.1), (0.9, 1), (1, 1))
     run = simulate_startup(1080, 600, 3, 26.6, 20, ramp=ramp, hold_time=20)
-    assert names(run) == [
-        "load starts",
-        "lock-up",
-        "slips again",
-        "load stops",
-        "load starts",
-        "lock-up",
-        "ramp ends",
-    ]
+    assert names(run) == ["load starts", "lock-up", "slips again", "load stops", "load starts", "lock-up", "ramp ends"]
     assert run.outcome == "locked"
     assert abs(energy_error(run)) < 1e-9
     again = next(event.time for event in run.events if event.name == "slips again")

@@ -20,28 +20,16 @@ CASES = [
         {"contact_force": "N", "clamp_preload": "N", "clamp_deflection": "m", "plate_travel": "m"},
         "m",
     ),
-    (
-        two_spring.stop_force,
-        {"clamp_preload": "N", "clamp_rate": "N/m", "plate_travel": "m", "stop_travel": "m"},
-        "N",
-    ),
+    (two_spring.stop_force, {"clamp_preload": "N", "clamp_rate": "N/m", "plate_travel": "m", "stop_travel": "m"}, "N"),
     (two_spring.clamp_force, {"stop_force": "N", "contact_force": "N"}, "N"),
-    (
-        two_spring.worn_clamp_force,
-        {"clamp_force": "N", "return_rate": "N/m", "clamp_rate": "N/m", "wear": "m"},
-        "N",
-    ),
+    (two_spring.worn_clamp_force, {"clamp_force": "N", "return_rate": "N/m", "clamp_rate": "N/m", "wear": "m"}, "N"),
     (
         two_spring.worn_contact_travel,
         {"contact_travel": "m", "return_rate": "N/m", "clamp_rate": "N/m", "wear": "m"},
         "m",
     ),
     (two_spring.disc_travel, {"force": "N", **SPRINGS, "plate_travel": "m", "stop_travel": "m"}, "m"),
-    (
-        two_spring.plate_travel_at,
-        {"force": "N", "return_preload": "N", "return_rate": "N/m", "plate_travel": "m"},
-        "m",
-    ),
+    (two_spring.plate_travel_at, {"force": "N", "return_preload": "N", "return_rate": "N/m", "plate_travel": "m"}, "m"),
     (two_spring.clamp_force_at, {"force": "N", "contact_force": "N", "stop_force": "N"}, "N"),
     (two_spring.stop_load, {"force": "N", "stop_force": "N"}, "N"),
 ]

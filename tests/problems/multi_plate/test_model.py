@@ -267,8 +267,7 @@ def test_a_clutch_weaker_than_its_load_never_starts():
 
 def test_inner_plates_that_jam_are_no_design():
     found = design(
-        requirements={"lug_clearance": "30 mm"},
-        values={"ring_outer_diameter": "76 mm", "ring_inner_diameter": "56 mm"},
+        requirements={"lug_clearance": "30 mm"}, values={"ring_outer_diameter": "76 mm", "ring_inner_diameter": "56 mm"}
     )
     assert "guide_jams" in found.violated
     assert math.isnan(found.values["torque_sum_factor"])

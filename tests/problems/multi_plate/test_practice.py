@@ -116,15 +116,7 @@ WORKED = {
         set(),
     ),
 }
-RULES = (
-    "surfaces_practice",
-    "core_slenderness",
-    "stroke",
-    "piston_fits",
-    "hub_room",
-    "drag_ratio",
-    "mean_temperature",
-)
+RULES = ("surfaces_practice", "core_slenderness", "stroke", "piston_fits", "hub_room", "drag_ratio", "mean_temperature")
 
 
 def design(case, requirements=None, **options):

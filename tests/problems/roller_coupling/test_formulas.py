@@ -107,11 +107,7 @@ CASES = [
     (rc.float_section, {**FLOAT, "guide_angle": "-"}, "m2"),
     (rc.float_width, {"contact_length": "m", "axial_slide": "m", "axial_play": "m"}, "m"),
     (rc.float_mass, {"density": "kg/m3", "width": "m", "section": "m2"}, "kg"),
-    (
-        rc.roller_mass,
-        {"bearing_mass": "kg", "pin_density": "kg/m3", "bore": "m", "width": "m", "pin_gap": "m"},
-        "kg",
-    ),
+    (rc.roller_mass, {"bearing_mass": "kg", "pin_density": "kg/m3", "bore": "m", "width": "m", "pin_gap": "m"}, "kg"),
     (rc.arms_mass, {"density": "kg/m3", "arm_radius": "m", "bore": "m"}, "kg"),
     (rc.ligament_stress, {"factor": "-", "normal_force": "N", "rim": "m", "width": "m"}, "Pa"),
     (rc.driven_angle, {"driving_angle": "-", "shaft_angle": "-"}, "-"),
@@ -122,14 +118,7 @@ CASES = [
     (rc.driven_inertia_torque, {"driven_inertia": "kg m2", "shaft_angle": "-", "speed": "1/s"}, "N m"),
     (
         rc.coupling_length,
-        {
-            "float_width": "m",
-            "roller_width": "m",
-            "pin_gap": "m",
-            "bore": "m",
-            "shaft_diameter": "m",
-            "counter": "-",
-        },
+        {"float_width": "m", "roller_width": "m", "pin_gap": "m", "bore": "m", "shaft_diameter": "m", "counter": "-"},
         "m",
     ),
     (rc.backlash_angle, {"play": "m", "arm_radius": "m"}, "-"),

@@ -313,11 +313,7 @@ CASES = [
     ),
     (ws.bending_stress, {"moment": "N m", **WIRE}, "Pa"),
     (ws.contact_pressure, {"moment": "N m", "width": "m", "hub_radius": "m", "mean_radius": "m"}, "Pa"),
-    (
-        ws.axial_friction_force,
-        {"mu": "-", "pressure": "Pa", "hub_radius": "m", "width": "m", "coils": "-"},
-        "N",
-    ),
+    (ws.axial_friction_force, {"mu": "-", "pressure": "Pa", "hub_radius": "m", "width": "m", "coils": "-"}, "N"),
     (ws.belt_exponent, {"mu": "-", "coils": "-", "radius_ratio": "-"}, "-"),
     (ws.centrifugal_moment, {"density": "kg/m3", **WIRE, "mean_radius": "m", "speed": "1/s"}, "N m"),
     (ws.liftoff_speed, {"moment": "N m", "density": "kg/m3", **WIRE, "mean_radius": "m"}, "1/s"),
@@ -353,22 +349,10 @@ CASES = [
     (ws.wrap_angle, {"coils": "-", "clearance": "m", "mean_radius": "m"}, "-"),
     (ws.engagement_peak_torque, {"speed_difference": "1/s", "inertia": "kg m2", "stiffness": "N m"}, "N m"),
     (ws.hub_shear_stress, {"torque": "N m", "hub_diameter": "m", "bore_diameter": "m"}, "Pa"),
-    (
-        ws.collar_mass,
-        {"density": "kg/m3", "spring_diameter": "m", "clearance": "m", "wall": "m", "length": "m"},
-        "kg",
-    ),
+    (ws.collar_mass, {"density": "kg/m3", "spring_diameter": "m", "clearance": "m", "wall": "m", "length": "m"}, "kg"),
     (ws.collar_diameter, {"spring_diameter": "m", "clearance": "m", "wall": "m"}, "m"),
-    (
-        ws.tang_stress,
-        {"actuator_torque": "N m", "mean_radius": "m", "thickness": "m", "length_ratio": "-"},
-        "Pa",
-    ),
-    (
-        ws.overrun_life,
-        {"depth": "m", "wear_rate": "m3/J", "friction": "-", "rubbing": "W/m2", "duty": "-"},
-        "s",
-    ),
+    (ws.tang_stress, {"actuator_torque": "N m", "mean_radius": "m", "thickness": "m", "length_ratio": "-"}, "Pa"),
+    (ws.overrun_life, {"depth": "m", "wear_rate": "m3/J", "friction": "-", "rubbing": "W/m2", "duty": "-"}, "s"),
     (ws.overrun_pv, {"pressure": "Pa", "speed": "1/s", "hub_radius": "m"}, "W/m2"),
     (
         ws.overrun_temperature_rise,

@@ -94,10 +94,7 @@ def test_worked_overrun_life(pair, hours, digit):
 
 @pytest.mark.parametrize(
     ("sizes", "belt_exponent", "tang", "collar", "broken"),
-    [
-        (MANY, 8.617, 139.339e6, 0.151241, {"coils_practice", "belt_exponent"}),
-        (FEW, 5.745, 539.052e6, 0.106429, set()),
-    ],
+    [(MANY, 8.617, 139.339e6, 0.151241, {"coils_practice", "belt_exponent"}), (FEW, 5.745, 539.052e6, 0.106429, set())],
 )
 def test_worked_numbers_of_the_clearance_fit(sizes, belt_exponent, tang, collar, broken):
     found = actuated(sizes)
