@@ -187,8 +187,8 @@ def _remark_unused_classes(d: Declaration, drive: Drive) -> None:
     if drive.specifies("safety_factor"):
         reason = "safety_factor is stated"
     elif drive.safety_factor is not None:
-        alone = len(factors.rows_of(d, drive.driver_class, drive.driven_class)) > 1
-        unused = [name for name in unused if alone and name == "driver_class"]
+        ranged = len(factors.rows_of(d, drive.driver_class, drive.driven_class)) > 1
+        unused = [name for name in unused if ranged and name == "driver_class"]
         reason = f"the factor of {drive.driven_class} holds whatever drives it"
     if unused:
         d.advise("class_unused", True, f"{' and '.join(unused)} not used: {reason}")

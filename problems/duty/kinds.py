@@ -12,7 +12,7 @@ from .machine import MOVED
 
 START, COUPLING, CONTINUOUS_SLIP, OVERRUN = KINDS = ("start", "coupling", "continuous_slip", "overrun")
 # First come, first served.
-ASKED_BY = {"slip_speed": CONTINUOUS_SLIP, "overrun_speed": OVERRUN, **dict.fromkeys(("driven_inertia", *MOVED), START)}
+DUTY_OF = {"slip_speed": CONTINUOUS_SLIP, "overrun_speed": OVERRUN, **dict.fromkeys(("driven_inertia", *MOVED), START)}
 
 
 def declare_kind(d: Declaration, usual: str, refused: Mapping[str, str]) -> str:
@@ -35,7 +35,7 @@ def declare_kind(d: Declaration, usual: str, refused: Mapping[str, str]) -> str:
     kind = d.option(
         "duty",
         KINDS,
-        next((kind for word, kind in ASKED_BY.items() if word in d.specified), usual),
+        next((kind for word, kind in DUTY_OF.items() if word in d.specified), usual),
         text="start: it brings a load up to speed; coupling: it holds a torque; continuous_slip: it slips all the "
         "time; overrun: it lets the driven side run ahead; by default what the requirements stated ask for",
         source=DRIVE,

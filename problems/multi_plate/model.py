@@ -20,7 +20,7 @@ from ..components.pack.requirements import MadePackOptions, PackOptions
 from ..components.ring.model import declare_ring
 from ..duty import coverage
 from ..friction import startup_curves
-from ..sources import ARCHARD, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S0, SHAFT
+from ..sources import ARCHARD, LIST_S0, LIST_S1, NEALE, PLATES_IN_USE, S0, SHAFT, UNIFORM_WEAR
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ class MultiPlateClutch(DesignProblem):
 
     name = "multi_plate_clutch"
     title = "Multi-plate clutch"
-    sources = (LIST_S0, LIST_S1, NEALE, ARCHARD, *PLATES_IN_USE, *SHAFT)
+    sources = (LIST_S0, LIST_S1, UNIFORM_WEAR, NEALE, ARCHARD, *PLATES_IN_USE, *SHAFT)
     simulation_settings = startup_curves.SETTINGS
     understands = (
         *friction.COMMON,

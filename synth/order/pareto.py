@@ -234,12 +234,12 @@ def merged(
     >>> [[1 + k for k in group] for group in merged(values, ["a", "a", "a", "b", "a"], scores, 0.02)]
     [[5], [3, 2], [1], [4]]
     """
-    logarithms, signs = np.log(np.where(values == 0, 1.0, np.abs(values))), np.sign(values)
+    logarithms, polarity = np.log(np.where(values == 0, 1.0, np.abs(values))), np.sign(values)
     groups: list[list[int]] = []
     for k in np.argsort(scores, kind="stable").tolist():
         for group in groups:
             near = np.abs(logarithms[k] - logarithms[group[0]]) <= math.log1p(within)
-            if kinds[k] == kinds[group[0]] and np.all(near & (signs[k] == signs[group[0]])):
+            if kinds[k] == kinds[group[0]] and np.all(near & (polarity[k] == polarity[group[0]])):
                 group.append(k)
                 break
         else:
