@@ -118,7 +118,7 @@ class Sources:
     mass_of: ClassVar[str] = "Rotor without shaft, drum of a stationary coil, body, copper and powder"
     along: ClassVar[str] = "Length of the body"
     objectives: ClassVar[tuple[str, ...]] = ("coil_power", "input_inertia")  # where the question names none
-    cooling: ClassVar[str] = "still_air"  # by default
+    cooling: ClassVar[str] = "still_air"  # default of a clutch that slips all the time
 
     ruled: ClassVar[bool] = False
 
@@ -202,7 +202,7 @@ class Ruled(WithBody):
     # Least power and least inertia ask for ever larger bodies; with the rules of practice the supply limits power.
     objectives = ("mass", "outer_diameter")
     ruled = True
-    cooling = "finned"  # as are clutches that slip all the time
+    cooling = "finned"
 
     def declare_cost(self, d: Declaration, built: Built) -> None:
         """Declare cost and objectives; of equal designs the one with the cooler coil."""

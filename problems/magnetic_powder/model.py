@@ -214,7 +214,7 @@ class MagneticPowderClutch(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         layer_of = LAYERS[practice.declare_scope(d)]
         kind = declare_kind(d, CONTINUOUS_SLIP, {OVERRUN: coverage.BOTH_WAYS})
-        wants = d.block(WANTS[kind], cooling=layer_of.cooling)
+        wants = d.block(WANTS[kind], cooling=layer_of.cooling if kind == CONTINUOUS_SLIP else COOLING.default)
         cooling.refuse_unfit(d, "dry", turning=False)
         refuse_contradictions(d, wants)
         layer = layer_of(d, wants)
