@@ -65,12 +65,12 @@ CASES = {
             ),
             "practice_self": KnownDesign(
                 {
-                    "mean_diameter": "395 mm",
-                    "generator_length": "60 mm",
+                    "mean_diameter": "373 mm",
+                    "generator_length": "63.5 mm",
                     "cone_half_angle": "12 deg",
-                    "shell_thickness": "13 mm",
-                    "actuation_force": "4.4 kN",
-                    "ramp_time": "0.1 s",
+                    "shell_thickness": "12.5 mm",
+                    "actuation_force": "4.475 kN",
+                    "ramp_time": "0.057 s",
                 },
                 {},
                 {"friction_pair": "ci_ci_dry", "cone_layout": "outer_spring"},

@@ -37,6 +37,21 @@ POWDER_CONSTANTS = {
     POWDER + "SHAFT_ENDS": (0, 1, 0, 0, 0),
 }
 
+BUILT = KnownDesign(
+    {
+        "gap_radius": "77 mm",
+        "pole_length": "15 mm",
+        "powder_gap": "1 mm",
+        "coil_length": "19 mm",
+        "coil_height": "7 mm",
+        "yoke_thickness": "8 mm",
+        "flux_density": "0.7558659864679936 T",
+        "coil": "rotating",
+    },
+    {},
+    {"winding_wire": "Cu 0.5 class 155", "powder": "carbonyl_graphite"},
+)
+
 CASES = {
     "magnetic_powder_clutch": FamilyCases(
         option_sets={
@@ -92,15 +107,16 @@ CASES = {
         sound=sound_powder_clutches,
         constants=SHAFTS | MAGNETS | POWDER_CONSTANTS,
         designs={
-            "practice": KnownDesign(
+            **dict.fromkeys(("practice", "start"), BUILT),
+            "coupling": KnownDesign(
                 {
-                    "gap_radius": "77 mm",
+                    "gap_radius": "75 mm",
                     "pole_length": "15 mm",
                     "powder_gap": "1 mm",
-                    "coil_length": "19 mm",
+                    "coil_length": "20 mm",
                     "coil_height": "7 mm",
-                    "yoke_thickness": "8 mm",
-                    "flux_density": "0.7558659864679936 T",
+                    "yoke_thickness": "8.5 mm",
+                    "flux_density": "0.7992066061006738 T",
                     "coil": "rotating",
                 },
                 {},

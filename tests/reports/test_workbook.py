@@ -52,8 +52,8 @@ def asked_otherwise(sampled, family, rng):
     """Return other requirements, and the design as the engine evaluates it for them."""
     calculation, design = sampled.calculation, sampled.designs[0]
     problem = synth.load(family, **calculation.options)
-    for _ in range(20):
-        change = other_requirements(sampled, rng)
+    for tries in range(60):  # words for one torque or inertia have to agree: the fewer move, the sooner they do
+        change = other_requirements(sampled, rng, share=0.3 / (1 + tries / 5))
         asked = dict(design.frame.requirements)
         for name, value in change.numbers.items():
             asked[name] = typed_quantity(value, calculation.quantities[name].unit, None)
