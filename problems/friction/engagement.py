@@ -260,7 +260,7 @@ def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_ti
     if duty.jerk_limit is None:
         d.advise(
             "hard_start",
-            ramp_time < slip_time / 10,
+            ramp_time < (0.1 - 1e-6) * slip_time,  # at the limit of soft_start it is a tenth but for the tolerance
             "the ramp lasts less than a tenth of the slip, nearly a step: the driven side is jerked into motion; "
             "jerk limit asks for a soft start",
             source=f"{S1}, soft start",

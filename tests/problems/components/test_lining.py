@@ -186,3 +186,12 @@ def test_no_torque_comes_as_a_step_where_no_jerk_is_limited():
     )
     for found in (disc(requirements={"jerk_limit": "300 rad/s3"}), disc(practice="off")):
         assert "soft_start" not in found.limits
+
+
+def test_a_ramp_at_the_limit_of_the_soft_start_is_no_step():
+    duty = {"load_torque": "60.5 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.5 kg*m2"}
+    front = synth.synthesize("cone_clutch", duty, points=6)
+    assert all(design.utilisation["soft_start"] == pytest.approx(1, abs=2e-6) for design in front.designs)
+    assert not any("step" in remark for design in front.designs for remark in design.advice)
+    free = synth.synthesize("cone_clutch", {**duty, "soft_start_share": 0.05}, points=1).designs[0]
+    assert any("step" in remark for remark in free.advice)
