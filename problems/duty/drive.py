@@ -32,6 +32,7 @@ class Drive(Machine):
     """Speed and torque of a drive, all in SI; None where a word says nothing in the question."""
 
     group = "duty"
+    leading = ("load_torque", "required_torque", "driver_speed")
     unloaded = "a required_torque where load_torque is 0: nothing resists, but something has to be brought up to speed"
 
     driver_class = Option(

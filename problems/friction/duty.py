@@ -31,6 +31,7 @@ class Starting(Start):
     """What is asked of the start of a load, all in SI; None where an optional requirement is not given."""
 
     group = "duty"
+    leading = ("load_torque", "driver_speed", "driven_inertia")
     unloaded = f"{Start.unloaded}; or the slip_time_limit within which driven_inertia is"
 
     load_kind = Option(

@@ -276,10 +276,12 @@ def declare_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_ti
 
 
 def limit_soft_start(d: Declaration, duty: Duty, start: Startup, share: Any) -> None:
-    """Declare the least ramp over the slip time [-], where no jerk limit asks for a soft start."""
+    """Declare the least ramp over the slip time [-], and one inside it, where no jerk limit asks for a soft start."""
     if duty.jerk_limit is None:
         least, text = share * start.slip_time, "Soft start: the torque does not come as a step"
         d.at_least("soft_start", start.ramp_time, least, "s", text=text, source=UNSOURCED)
+        text = "The torque is up before lock-up; a longer ramp only lengthens the slip"
+        d.at_most("ramp_in_slip", start.ramp_time, start.slip_time, "s", text=text, source=UNSOURCED)
 
 
 def _name_startup(d: Declaration, *, duty: Starting, torques: Torques, ramp_time: Any) -> None:

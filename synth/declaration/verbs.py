@@ -193,11 +193,12 @@ class Slot(BlockField[Part]):
 class Block:
     """Quantities that are declared together, each once: its attribute is its field and its public name.
 
-    ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
-    the block, whose attributes are then the symbols. A default may be made of any other field, which is declared
-    before: of two words that follow from each other each has the other in its default, where it ``specifies`` that one.
-    Properties may say what follows from them. The attribute ``group`` of a class is the group under which its own
-    requirements and options are listed, where they name none.
+    ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, but before all
+    those that the attribute ``leading`` of a class names, and returns the block, whose attributes are then the symbols.
+    A default may be made of any other field, which is declared before: of two words that follow from each other each
+    has the other in its default, where it ``specifies`` that one. Properties may say what follows from them. The
+    attribute ``group`` of a class is the group under which its own requirements and options are listed, where they
+    name none.
 
     Parameters
     ----------
@@ -224,6 +225,7 @@ class Block:
     """
 
     group: ClassVar[str] = ""
+    leading: ClassVar[tuple[str, ...]] = ()
     declaration: Declaration
     _waiting: dict[str, Any]
 
@@ -257,7 +259,8 @@ class Block:
     def fields(cls) -> dict[str, BlockField[Any]]:
         """Declarations of the block, by name and in order."""
         everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
-        return {name: value for name, value in everything if isinstance(value, BlockField)}
+        found = {name: value for name, value in everything if isinstance(value, BlockField)}
+        return {name: found[name] for name in (*cls.leading, *found)}
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is what was declared; it cannot be set")

@@ -51,7 +51,9 @@ export function quantity(value, declared) {
 export function knobsOf(request, rows, read, record) {
   /** @type {Knob[]} */
   const found = [];
-  for (const row of rows.filter((row) => row.kind === "requirement")) {
+  const typed = Object.keys(request.requirements ?? {}); // in this order, before those at their defaults
+  const place = (/** @type {DeclarationRow} */ row) => (typed.includes(row.name) ? typed.indexOf(row.name) : typed.length);
+  for (const row of rows.filter((row) => row.kind === "requirement").sort((a, b) => place(a) - place(b))) {
     const stated = request.requirements?.[row.name];
     const asked = quantity(stated ?? row.default, row.unit);
     if (!asked || asked.number === 0) continue;
