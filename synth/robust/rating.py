@@ -20,7 +20,7 @@ import numpy as np
 from synth.model.constraint import Constraint
 from synth.model.model import Evaluation
 from synth.model.program import InputValue
-from synth.order.feasibility import SMALLEST, holds, most_used, utilisation
+from synth.order.feasibility import SMALLEST, TOLERANCE, holds, most_used, utilisation
 from synth.order.feasibility import residual as limit_residual
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
@@ -147,7 +147,11 @@ class Rater:
         # What decides comes first: limits that fail, then those that are not shown to hold.
         leading = {name: x["utilisation"] for name, x in limit_ratings.items() if x["holds"] is holding}
         # What has no share to tell is past all bounds, or cannot be computed.
-        name = next(iter(most_used({n: math.inf if used is None else used for n, used in leading.items()})), "")
+        shares = {n: math.inf if used is None else used for n, used in leading.items()}
+        name = next(iter(most_used(shares)), "")
+        # Of limits that are used alike one that what scatters moves tells more, such as the torque beside a count.
+        alike = (n for n, used in shares.items() if used >= (1 - TOLERANCE) * shares[name] and limit_ratings[n]["at"])
+        name = next(alike, name)
         proven = holding or (holding is False and limit_ratings[name]["proof"] == PROVEN)
         return DesignRating(
             holds=holding,

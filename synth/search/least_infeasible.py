@@ -154,6 +154,7 @@ def _conflict(limit: Constraint, value: float, bound: float, scale: float) -> Mi
     size = abs(bound) if abs(bound) > VANISHING * scale else float(size_of_miss(value, bound, scale))
     shown, allowed = (typed_quantity(x, limit.unit, 5) for x in (value, bound))
     words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[limit.sense]
+    asked = "allowed" if limit.sense == "at_most" else "needed"
     missed_by = miss_text(value, bound, limit.unit)
     return MissedLimit(
         limit=limit.name,
@@ -161,5 +162,5 @@ def _conflict(limit: Constraint, value: float, bound: float, scale: float) -> Mi
         limit_value=bound,
         unit=limit.unit,
         missed_by=abs(value - bound) / size,
-        sentence=f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {missed_by})",
+        sentence=f"{limit.name} is {shown} where {words} {allowed} is {asked} (missed by {missed_by})",
     )

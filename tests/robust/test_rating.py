@@ -341,3 +341,27 @@ def test_the_worst_limit_is_that_which_is_used_most(gap, load, worst):
     assert told["worst_utilisation"] == own["utilisation"]
     rivals = [x for x in told["limits"].values() if x["holds"] is own["holds"]]
     assert own["utilisation"] == max(x["utilisation"] for x in rivals)
+
+
+class Counted(synth.DesignProblem):
+    """A limit of a count that is used in full, and one that scatter just lets hold."""
+
+    name, title, sources = "counted", "Counted", ("made up",)
+
+    def declare(self, d):
+        swell = d.requirement("swell", "-", lower=0.5, upper=2)
+        discs = d.count("discs", 1, 4)
+        length = d.variable("length", "mm", 1, 100)
+        d.at_most("discs_practice", discs, 1, "-")
+        d.at_most("room", length * swell, 0.055 * (1 + 1e-9), "mm")
+        d.derive("inverse", "1/m", discs / length)
+        d.objective("inverse")
+
+
+def test_of_limits_used_alike_the_one_that_scatter_moves_is_the_worst():
+    design = synth.evaluate(Counted(), {"swell": "1"}, values={"length": "50 mm", "discs": 1})
+    told = synth.rate(design, {"swell": "+-10 %"}, problem=Counted()).designs[0].robust
+    assert (told["holds"], told["worst_limit"]) == (True, "room")
+    assert told["worst_at"] == pytest.approx({"swell": 1.1})
+    told = synth.rate(design, {"swell": "+-5 %"}, problem=Counted()).designs[0].robust
+    assert told["worst_limit"] == "discs_practice"

@@ -104,6 +104,9 @@ def test_where_only_sizes_between_the_makeable_ones_keep_all_limits_a_makeable_o
     assert explanation["nearest"]["side"] in ("5 mm", "6 mm")
     told = "Sizes between the makeable ones would keep every limit; the nearest makeable design found misses "
     assert told in explanation["message"]
+    (missed,) = explanation["conflicts"]
+    asked = {"area": "at least 21 mm2 is needed", "edge": "at most 9.6 mm is allowed"}
+    assert asked[missed["limit"]] in missed["sentence"]
 
 
 def test_a_winding_of_a_batch_row_that_only_other_hubs_would_hold_names_its_limits() -> None:

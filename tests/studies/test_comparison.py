@@ -215,6 +215,8 @@ def test_objectives_of_some_families_alone_are_told_not_to_count():
     assert list(mixed.objectives) == ["mass"]
     assert mixed.not_compared == ["not compared by sag, an objective of solid alone: stranger has no such objective"]
     assert compare(families, {"load": LOAD}, catalogs=OWN, points=4, objectives=["mass"]).not_compared == []
+    (told,) = compare([*families, families[-1]], {"load": LOAD}, catalogs=OWN, points=4).not_compared
+    assert told.endswith("stranger, stranger_2 have no such objective")
     alike = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4)
     assert alike.not_compared == []
 

@@ -85,8 +85,9 @@ class Comparison:
         sentences = []
         for name in (n for n in names if n not in self.objectives):
             whose = ", ".join(x.family for x in searched if x.offers.get(name))
-            lacking = ", ".join(x.family for x in searched if name not in x.offers)
-            why = f"{lacking} has no such objective" if lacking else "name it under objectives to compare by it"
+            without = [x.family for x in searched if name not in x.offers]
+            lacking = f"{', '.join(without)} {'have' if len(without) > 1 else 'has'} no such objective"
+            why = lacking if without else "name it under objectives to compare by it"
             sentences.append(f"not compared by {name}, an objective of {whose} alone: {why}")
         return sentences
 
