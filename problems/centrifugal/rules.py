@@ -117,3 +117,12 @@ class LeverRules(Rules):
             text="The springs have room on the circle of the weights",
             source=UNSOURCED,
         )
+        for one in built.springs:
+            d.at_most(
+                f"{one.part.slot}_inside",
+                built.rest_radius + one.outside / 2,
+                d.derived["outer_diameter"].sx / 2,
+                "mm",
+                text="No spring on the circle of the weights reaches beyond the clutch",
+                source="geometry",
+            )

@@ -63,7 +63,7 @@ class _Shape:
         self.face_2 = beside + size("pin_gap") + (self.wide + size("pin_gap") if self.counter else 0.0)
         self.arm_half, self.bar = size("arm_length") / 2, size("arm_width") / 2
         self.end_1, self.end_2 = self.face_1 - size("arm_thickness"), self.face_2 + size("arm_thickness")
-        out = size("boss_length") if self.has_bosses else 0.0
+        out = drawn_shaft(size).boss_length if self.has_bosses else 0.0
         self.left, self.right = self.end_1 - out, self.end_2 + out
         self.top = max(self.offset + self.arm_half, self.outside)
         self.along_2 = (math.sin(self.angle), math.cos(self.angle))

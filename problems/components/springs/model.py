@@ -46,9 +46,14 @@ class SpringSet:
         # Through the force of one spring, which a limit bounds: then that limit bounds the force of the set too.
         return self.count * centrifugal.spring_force(self.part.rate_R, deflection)
 
+    @property
+    def outside(self) -> Any:
+        """Outside diameter of a spring [m]."""
+        return self.part.mean_diameter_D + self.part.wire_diameter_d
+
     def share_of_circle(self, gap: Any) -> Any:
         """Return the length that the set takes of its circle, with a gap beside each spring [m]."""
-        return self.count * (self.part.mean_diameter_D + self.part.wire_diameter_d + gap)
+        return self.count * (self.outside + gap)
 
 
 def declare_springs(d: Declaration, *, slot: str, symbol: str, count_symbol: str, text: str) -> SpringSet:

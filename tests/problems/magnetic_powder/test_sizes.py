@@ -22,7 +22,7 @@ def test_a_small_clutch_is_smaller_than_any_bound_of_a_large_one():
     [
         ("0.226 N*m", 1000, "powder_per_torque"),
         ("0.565 N*m", 1000, "powder_per_torque"),
-        ("2e6 N*m", 500, "powder_mass"),
+        ("2e6 N*m", 500, "torque_capacity"),
     ],
 )
 def test_what_is_infeasible_is_so_by_a_limit(torque, speed, limit):
