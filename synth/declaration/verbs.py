@@ -259,8 +259,8 @@ class Block:
     def fields(cls) -> dict[str, BlockField[Any]]:
         """Declarations of the block, by name and in order."""
         everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
-        found = {name: value for name, value in everything if isinstance(value, BlockField)}
-        return {name: found[name] for name in (*cls.leading, *found)}
+        fields = {name: value for name, value in everything if isinstance(value, BlockField)}
+        return {name: fields[name] for name in (*cls.leading, *fields)}
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is what was declared; it cannot be set")
