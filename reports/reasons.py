@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from synth.results import Design, ParetoFront
-from synth.results.design import reached_limits
+from synth.results.design import lines_of, reached_limits
 from synth.text.numbers import percent
 from synth.text.plain_text import words
 
@@ -36,9 +36,9 @@ def why(front: ParetoFront, design: Design, limits: bool = True) -> str:
     elif "knee" in design.note:
         those = "both" if len(objectives) == 2 else "all"
         clauses.insert(0, f"knee of the front (least sum of {those}; #1: least distance)")
-    others = [d for d in front.designs if d is not design]
+    others = [d for d in lines_of(front.designs) if d is not design]
     if len(objectives) == 2 and others:
-        clauses.append(_between(front, design))
+        clauses.append(_between(front, design, others))
     elif len(objectives) > 2 and others:
         nearest = min(others, key=lambda d: _distance(front, design, d))
         clauses.append(f"against #{nearest.rank} next to it {_comparison(design, nearest, list(objectives))}")
@@ -63,10 +63,10 @@ def _is_best(front: ParetoFront, design: Design, name: str, sense: str) -> bool:
     return abs(design.objectives[name] - best) <= EQUAL * max(abs(best), 1e-300)
 
 
-def _between(front: ParetoFront, design: Design) -> str:
-    """Gain of a design of a front of two objectives over each of its two neighbours."""
+def _between(front: ParetoFront, design: Design, others: Sequence[Design]) -> str:
+    """Gain of a design of a front of two objectives over each of its two neighbours among others."""
     first, second = front.frame.objectives
-    line = sorted(front.designs, key=lambda d: d.objectives[first])
+    line = sorted([design, *others], key=lambda d: d.objectives[first])
     place = next(k for k, d in enumerate(line) if d is design)
     sides = [line[k] for k in (place - 1, place + 1) if 0 <= k < len(line)]
     if len(sides) == 2:

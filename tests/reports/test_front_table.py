@@ -142,6 +142,13 @@ def test_an_end_that_costs_much_for_little_is_told_to() -> None:
     assert why(front(*ends), ends[1]).startswith("smallest mass, whose last 0.5 % costs much; 0.1 % less mass")
 
 
+def test_why_names_designs_that_have_a_line() -> None:
+    designs = [design(1, 10, 2000), design(2, 10.1, 1990), design(3, 12, 1500)]
+    shown = front(designs[0], replace(designs[1], group=1), designs[2])
+    assert "than #3 next to it" in why(shown, shown.designs[0])
+    assert "between #1 and #3" in why(shown, shown.designs[1])
+
+
 def test_near_equals_stand_on_the_line_of_the_one_that_leads_them() -> None:
     designs = [design(k, 10 + k / 100, 2000) for k in range(1, 14)]
     designs = [replace(d, group=None if d.rank in (1, 5) else 1 if (d.rank or 0) < 5 else 5) for d in designs]
