@@ -95,7 +95,8 @@ def test_the_complete_clutch_is_never_lighter_or_shorter_than_its_parts(family: 
 @pytest.mark.slow
 @pytest.mark.parametrize(("family", "name"), KNOWN)
 def test_no_objective_improves_by_the_rules(family: str, name: str) -> None:
-    on, off = asked(family, name), asked(family, name, practice="off", **SAME_OPTIONS.get(family, {}))
+    same = SAME_OPTIONS.get(family, {})
+    on, off = asked(family, name, **same), asked(family, name, practice="off", **same)
     senses = synth.describe(problem_of(family, practice="off")).query("kind == 'objective'")
     for quantity, sense in zip(senses["name"], senses["sense"], strict=True):
         if quantity not in off.values:  # of another pack

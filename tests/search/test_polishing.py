@@ -258,6 +258,6 @@ def test_a_preference_has_a_sense():
 def test_a_magnet_does_not_slip_for_seconds_where_its_mass_does_not_see_it():
     duty = {"load_torque": "1.36 N*m", "driver_speed": "1000 1/min", "driven_inertia": "0.001 kg*m2"}
     first = synth.synthesize("electromagnetic_clutch", duty, points=2).designs[0]
-    assert first.values["mass"] == pytest.approx(0.3294, rel=1e-3)
+    assert first.values["mass"] == pytest.approx(0.3209, rel=1e-3)
     assert first.values["ramp_time"] < 0.1
-    assert first.values["wear_life"] > 5e6
+    assert first.values["wear_life"] > 3e6

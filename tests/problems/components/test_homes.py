@@ -57,7 +57,8 @@ def homes(family: str) -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Declaration, "_claim", noted)
         for options in cases.option_sets.values():
-            synth.load(family, **options).declaration(frozenset(given), as_catalogs(None))
+            for stated in (given, ()):
+                synth.load(family, **options).declaration(frozenset(stated), as_catalogs(None))
     return found
 
 

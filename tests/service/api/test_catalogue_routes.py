@@ -64,7 +64,7 @@ def test_a_whole_table_has_nothing_to_remark(client: Client) -> None:
     assert told["reading"] == {"separator": ",", "encoding": "utf-8", "decimal_commas": []}
     assert (told["missing"], told["remarks"]) == ([], [])
     assert all(column["known"] and column["meant"] is None for column in told["columns"])
-    assert len(told["columns"]) == 36
+    assert len(told["columns"]) == 42
 
 
 def test_it_is_told_how_a_table_was_read_and_which_columns_are_known(client: Client) -> None:
