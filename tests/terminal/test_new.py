@@ -88,7 +88,7 @@ def test_symbols_stand_for_names_and_options_that_differ_are_stated(tmp_path: Pa
     ("words", "told"),
     [
         (("no_such_clutch",), "family"),
-        (("multi_plate_clutch", "torque=5 N*m"), "a requirement of multi_plate_clutch: driver_speed"),
+        (("multi_plate_clutch", "torque=5 N*m"), "a requirement of multi_plate_clutch: power, "),
         (("multi_plate_clutch", "load_torque=5 kg"), "kg measures a mass"),
         (("multi_plate_clutch", "load_torque=-1 N*m"), "0 .. 1·10⁷ N*m"),
         (("multi_plate_clutch", "load_torque"), "name=value"),
