@@ -84,7 +84,7 @@ def advise_stronger(d: Declaration, limit: str, column: str = TURNING) -> None:
     d.step("cooler_rise", "K", used.value / factor, symbol="dT_next", text=text, source=UNSOURCED)
     message = (
         f"{limit.replace('_', ' ')} is used by more than 90 %: cooling {following} would bring the rise to about "
-        f"{100 / factor:.0f} % of what it is (cooler rise)"
+        f"{round(100 / factor)} % of what it is (cooler rise)"
     )
     d.advise("stronger_cooling", used.value > 0.9 * used.limit, message, source=UNSOURCED)
 

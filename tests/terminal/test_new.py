@@ -122,7 +122,7 @@ def test_a_terminal_asks_for_what_is_needed_until_it_is_right(tmp_path: Path) ->
                 shown += os.read(terminal, 4096)
             except OSError:  # the other end is closed
                 break
-            while shown.count(b"driving side:") + shown.count(b"clutch shaft:") > asked:
+            while shown.count(b"driving side:") + shown.count(b"that of the machine:") > asked:
                 asked += 1
                 os.write(terminal, next(answers))
     finally:

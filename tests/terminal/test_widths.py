@@ -110,7 +110,7 @@ def test_names_and_words_stay_whole_on_a_narrow_screen(folder: Path) -> None:
     lines = [line.rstrip() for line in check.splitlines()]
     assert any(re.match(r"plate count worthwhile +0\.\d+ +>= +0\.5 ", line) for line in lines)
     at = next(k for k, line in enumerate(lines) if line.startswith("switching factor"))
-    assert lines[at + 1] == "    Engagement-count factor; 1 up to about 50 engagements per hour"
+    assert lines[at + 1] == "    Engagement-count factor; by default that of engagements per hour: 1 up to"
     prices = at_once("prices", "front", "-o", "prices", folder=folder, COLUMNS="80").stdout
     told = next(line for line in prices.splitlines() if line.startswith("    ") and "of_" not in line and "sur" in line)
     assert len(told) > 40  # a sentence has the width of the screen
