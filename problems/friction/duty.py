@@ -13,7 +13,7 @@ from ..duty import COOLING, INERT, WORDS, Start, cooling, coverage, of_drive, re
 from ..duty.factors import BY_RATE, TABLE, switching_factor
 from ..mechanics import plates, startup
 from ..mechanics import ring as ring_formulas
-from ..sources import DRIVE, S0, S1, TYPICAL
+from ..sources import S0, S1, TYPICAL
 
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
@@ -64,23 +64,9 @@ class Starting(Start):
         text="Longest slip of one engagement",
         source=f"{TYPICAL} of the reference model",
     )
-    jerk_limit = Requirement(
-        "rad/s3",
-        lower=0.01,
-        upper=1e6,
-        optional=True,
-        symbol="jerk_max",
-        text="Largest jerk of the driven side: softness of the start",
-        source="requirement of the drive",
-    )
-    acceleration_limit = Requirement(
-        "rad/s2",
-        lower=0.01,
-        upper=1e6,
-        optional=True,
-        symbol="acc_max",
-        text="Largest acceleration, at the end of the ramp or of slip",
-        source="requirement of the drive",
+    jerk_limit = of_drive("rad/s3", 0.01, 1e6, "jerk_max", "Largest jerk of the driven side: softness of the start")
+    acceleration_limit = of_drive(
+        "rad/s2", 0.01, 1e6, "acc_max", "Largest acceleration, at the end of the ramp or of slip"
     )
 
 
@@ -137,36 +123,9 @@ class Duty(Starting):
         text="The clutch must slip at this torque",
         source=f"{S1}, clutch as safety element",
     )
-    actuation_force_limit = Requirement(
-        "N",
-        lower=1,
-        upper=1e6,
-        optional=True,
-        symbol="F_max",
-        text="Largest force of the actuator",
-        source="requirement of the drive",
-        group="actuator",
-    )
-    outer_diameter_limit = Requirement(
-        "mm",
-        lower=5,
-        upper=5000,
-        optional=True,
-        symbol="D_max",
-        text="Largest outside diameter",
-        source="requirement of the drive",
-        group="envelope",
-    )
-    length_limit = Requirement(
-        "mm",
-        lower=2,
-        upper=5000,
-        optional=True,
-        symbol="L_max",
-        text="Largest length, without actuator and end stops",
-        source="requirement of the drive",
-        group="envelope",
-    )
+    actuation_force_limit = of_drive("N", 1, 1e6, "F_max", "Largest force of the actuator", group="actuator")
+    outer_diameter_limit = of_drive("mm", 5, 5000, "D_max", "Largest outside diameter", group="envelope")
+    length_limit = of_drive("mm", 2, 5000, "L_max", "Largest length, without actuator and end stops", group="envelope")
     ambient_temperature = Requirement(
         "degC",
         40,
@@ -238,9 +197,7 @@ class DutyInRows(Duty):
 
     group = "duty"
 
-    starts_in_row = Requirement(
-        "-", lower=1, upper=1e6, optional=True, symbol="n_row", text="Starts of a row that begins cold", source=DRIVE
-    )
+    starts_in_row = of_drive("-", 1, 1e6, "n_row", "Starts of a row that begins cold")
 
     @property
     def repetition(self) -> str:

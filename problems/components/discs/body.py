@@ -9,12 +9,11 @@ import numpy as np
 
 from synth.declaration import Block, Declaration, Requirement
 
-from ...duty import cooling
+from ...duty import cooling, of_drive
 from ...friction.duty import Size
 from ...friction.engagement import SOFT_START_SHARE, limit_soft_start
 from ...mechanics import disc, plates
 from ...practice import UNSOURCED
-from ...sources import DRIVE
 from ..lining import wear
 from ..shaft.model import ShaftRequirements, declare_shaft, shaft_for
 from .model import DiscRequirements, Discs
@@ -83,16 +82,7 @@ class DiscRules(Block):
     )
     wear_life_min = wear.LEAST_LIFE
     soft_start_share = SOFT_START_SHARE
-    top_speed = Requirement(
-        "1/min",
-        lower=0.1,
-        upper=100000,
-        optional=True,
-        symbol="omega_top",
-        text="Highest speed of the disc",
-        source=DRIVE,
-        group="duty",
-    )
+    top_speed = of_drive("1/min", 0.1, 100000, "omega_top", "Highest speed of the disc", group="duty")
     rim_speed_limit = Requirement(
         "m/s",
         80,
