@@ -33,7 +33,7 @@ RISES_WITH_SPEED = "carries the more the faster it turns: use a clutch engaged f
 
 # By kind of family: requirements that ask for what it cannot do, and why.
 GRIPPING = dict.fromkeys((*STARTING, *SOFTNESS), SHOCK) | dict.fromkeys(SPEEDS, ENGAGED_FROM_OUTSIDE)
-GRIPPING |= {"slip_speed": DRY, "overload_torque": GRIPS_ALL}
+GRIPPING |= {"slip_speed": NO_LASTING_SLIP, "overload_torque": GRIPS_ALL}
 ACTUATED = GRIPPING | {"overrun_speed": BOTH_WAYS}
 JOINING = dict.fromkeys((*STARTING, *SPEEDS, "overload_torque", "slip_speed"), NEVER_SLIPS)
 JOINING |= {"overrun_speed": BOTH_WAYS}
